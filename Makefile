@@ -1,0 +1,47 @@
+# make setup | demo | test | test-all | check | benchmark: each does all the set-up it needs.
+PYTHON ?= python3
+VENV := .venv
+ifeq ($(OS),Windows_NT)
+PY := $(VENV)/Scripts/python.exe
+else
+PY := $(VENV)/bin/python
+endif
+
+.PHONY: setup demo test test-all check benchmark format clean
+
+setup: $(VENV)/.ready
+
+# CPU torch goes in first: asked for later, as a dependency, pip could choose a CUDA build of several gigabytes.
+$(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
+	.ci/system-libraries
+	test -x $(PY) || $(PYTHON) -m venv $(VENV)
+	$(PY) -m pip install --quiet --upgrade --constraint constraints.txt pip setuptools
+	$(PY) -m pip install --quiet --constraint constraints.txt torch
+	$(PY) -m pip install --quiet --constraint constraints.txt --editable '.[dev,cluster]'
+	$(PY) -m planning.warm_up
+	touch $@
+
+demo: setup
+	$(PY) app.py demo --out demo-out
+
+check: setup
+	$(PY) -m ruff check .
+	$(PY) -m ruff format --check .
+	$(PY) -m mypy
+	$(VENV)/bin/lint-imports
+
+test: check
+	$(PY) -m pytest
+
+test-all: check
+	$(PY) -m pytest -m 'not benchmark'
+
+benchmark: setup
+	$(PY) -m tests.benchmarks
+
+format: setup
+	$(PY) -m ruff format .
+	$(PY) -m ruff check --fix .
+
+clean:
+	rm -rf $(VENV) demo-out benchmark-out

@@ -1,0 +1,43 @@
+"""Every error that Reflight raises on purpose, in one tree.
+
+A message says what was expected, what was found, where, and what to do. Wrong calls (a programmer's mistake) raise
+`ValueError` or `TypeError` instead.
+"""
+
+from __future__ import annotations
+
+
+class GroundStationError(Exception):
+    """Root of all errors whose message is meant for the user."""
+
+
+class InputError(GroundStationError):
+    """A file or an argument that the user gave is wrong."""
+
+
+class InfeasibleError(GroundStationError):
+    """The input is well formed, but what was asked for cannot be done on this site with this aircraft."""
+
+
+class MissionError(GroundStationError):
+    """A mission cannot be written, read or flown as it stands."""
+
+
+class LinkError(GroundStationError):
+    """The link to a vehicle failed."""
+
+
+class LinkTimeout(LinkError):  # noqa: N818  (the name says what happened)
+    """The vehicle did not answer in time."""
+
+
+class LinkRejected(LinkError):  # noqa: N818
+    """The vehicle answered, and refused."""
+
+
+class ReconstructionError(GroundStationError):
+    """Photos cannot be turned into a model as they stand."""
+
+
+class OperationCancelled(GroundStationError):  # noqa: N818
+    """The user cancelled the work; nothing of it may look finished."""

@@ -1,0 +1,53 @@
+"""Compiled kernels: Numba with the options that every kernel here shares, and threads to run them on.
+
+Kernels release the interpreter lock and are run on ordinary threads in chunks, because Numba's own parallel loops are
+not safe to enter from two threads on every platform; jobs can then be cancelled between chunks, too. Compiled code is
+kept on disk; `python -m planning.warm_up` compiles everything once, at set-up.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, TypeVar, cast
+
+import numba
+
+F = TypeVar("F", bound=Callable[..., Any])
+Result = TypeVar("Result")
+
+
+def kernel(function: F) -> F:
+    """Compile a numeric function; NaN and signed zeros behave as IEEE 754 says."""
+    return cast("F", numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+
+
+def inline(function: F) -> F:
+    """Compile a small helper into whatever kernel calls it."""
+    return cast("F", numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function))
+
+
+def n_threads() -> int:
+    """Number of cores this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on macOS and Windows
+        return os.cpu_count() or 1
+
+
+def chunks(n: int, size: int) -> list[tuple[int, int]]:
+    """Half-open ranges of at most `size` that make up `range(n)`."""
+    return [(start, min(start + size, n)) for start in range(0, n, size)]
+
+
+def run_chunks(work: Callable[[int, int], Result], ranges: Iterable[tuple[int, int]]) -> list[Result]:
+    """Results of `work(start, stop)` for all ranges, in order, on all cores.
+
+    The result does not depend on the number of threads, as long as `work` does not.
+    """
+    ranges = list(ranges)
+    if len(ranges) <= 1 or n_threads() == 1:
+        return [work(start, stop) for start, stop in ranges]
+    with ThreadPoolExecutor(n_threads()) as pool:
+        return list(pool.map(lambda bounds: work(*bounds), ranges))

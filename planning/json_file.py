@@ -1,0 +1,142 @@
+"""JSON and TOML files as typed records: errors that name file and field, and writes that are whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import tempfile
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+import msgspec
+
+from planning.errors import InputError
+
+Record = TypeVar("Record")
+
+MAX_FILE_BYTES = 512 * 2**20
+"""Larger JSON files are refused before they are read: a site of 100 000 panels is under 50 MB."""
+
+
+def read_json(path: Path) -> Any:
+    """Content of a JSON file.
+
+    Raises
+    ------
+    InputError
+        Missing, unreadable, too large, not UTF-8, not JSON, or holding NaN or Infinity (which JSON does not have).
+    """
+    try:
+        if path.stat().st_size > MAX_FILE_BYTES:
+            raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**20} MiB; expected a JSON file")
+        text = path.read_text("utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: expected JSON in UTF-8, found other bytes at offset {error.start}") from error
+    try:
+        content = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}: not valid JSON, line {error.lineno}, column {error.colno}: {error.msg}") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: nested too deeply for a file of ours") from error
+    place = _first_not_finite(content, "")
+    if place is not None:
+        raise InputError(f"{path}: {place.lstrip('.')}: expected a finite number, got NaN or Infinity")
+    return content
+
+
+def _first_not_finite(content: Any, place: str) -> str | None:
+    """Where the first NaN or Infinity stands; JSON has neither, but Python reads them (and 1e999) all the same."""
+    if isinstance(content, float):
+        return None if math.isfinite(content) else place
+    if isinstance(content, dict):
+        parts = ((value, f"{place}.{key}") for key, value in content.items())
+    elif isinstance(content, list):
+        parts = ((value, f"{place}[{i}]") for i, value in enumerate(content))
+    else:
+        return None
+    return next((found for value, inner in parts if (found := _first_not_finite(value, inner)) is not None), None)
+
+
+def to_record(content: Any, record: type[Record], path: Path) -> Record:
+    """Typed record from plain JSON values; fields the record does not know are ignored.
+
+    Raises
+    ------
+    InputError
+        A field is missing, of the wrong type or refused by the record's own checks; the message names file and field.
+    """
+    try:
+        return msgspec.convert(content, record)
+    except msgspec.ValidationError as error:
+        raise InputError(f"{path}: {_in_words(str(error))}") from error
+
+
+_WORDS = {
+    "array": "list",
+    "float": "number",
+    "int": "whole number",
+    "str": "text",
+    "null": "nothing",
+    "bool": "true/false",
+}
+
+
+def _in_words(message: str) -> str:
+    """Turn "Expected `float`, got `str` - at `$.a.b`" into "a.b: expected number, got text"."""
+    text, _, place = message.partition(" - at `$")
+    place = place.rstrip("`").lstrip(".")
+    text = re.sub(r"`(\w+)`", lambda found: _WORDS.get(found[1], f"'{found[1]}'"), text).replace("`", "'")
+    text = re.sub(r"^Object missing", "missing", text)
+    text = text[:1].lower() + text[1:] if text.startswith("Expected") else text
+    if not place:
+        return text
+    return f"{place}.{text}" if re.match(r"\w+(\[\d+\])*: ", text) else f"{place}: {text}"
+
+
+def read_toml(path: Path, record: type[Record]) -> Record:
+    """Typed record from a TOML file; unknown keys are errors where the record forbids them.
+
+    Raises
+    ------
+    InputError
+        As for `to_record`, and for a file that is not TOML.
+    """
+    try:
+        content = tomllib.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not valid TOML ({error})") from error
+    return to_record(content, record, path)
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all: to a temporary neighbour first, then renamed over the target.
+
+    Raises
+    ------
+    InputError
+        The folder is missing or cannot be written.
+    """
+    try:
+        descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except OSError as error:
+        Path(temporary).unlink(missing_ok=True)
+        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise

@@ -1,0 +1,159 @@
+"""Triangle meshes in the local frame: reading, writing, and telling closed (solid) parts from open skins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+
+MESH_SUFFIXES = (".ply", ".obj", ".glb", ".stl")
+
+MAX_COORDINATE_M = 20_000.0
+"""Largest local coordinate accepted: beyond it float32 is coarser than 2 mm, and the file is likely in UTM metres."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TriangleMesh:
+    """Triangles in ENU metres.
+
+    Parameters
+    ----------
+    vertices_enu_m
+        Shape (v, 3), float64, finite.
+    triangles
+        Shape (t, 3), int64 indices into the vertices.
+    """
+
+    vertices_enu_m: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        if self.vertices_enu_m.ndim != 2 or self.vertices_enu_m.shape[1] != 3:
+            raise ValueError(f"expected vertices of shape (v, 3), got {self.vertices_enu_m.shape}")
+        if self.triangles.ndim != 2 or self.triangles.shape[1] != 3:
+            raise ValueError(f"expected triangles of shape (t, 3), got {self.triangles.shape}")
+        if not np.isfinite(self.vertices_enu_m).all():
+            raise ValueError("a vertex has a coordinate that is not finite")
+        if self.triangles.size and not 0 <= self.triangles.min() <= self.triangles.max() < len(self.vertices_enu_m):
+            raise ValueError("a triangle names a vertex that does not exist")
+
+    @property
+    def corners_enu_m(self) -> NDArray[np.float64]:
+        """Triangle corners, shape (t, 3, 3)."""
+        return self.vertices_enu_m[self.triangles]
+
+
+def empty_mesh() -> TriangleMesh:
+    """Mesh without triangles."""
+    return TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
+
+
+def join(meshes: list[TriangleMesh]) -> TriangleMesh:
+    """All triangles in one mesh."""
+    if not meshes:
+        return empty_mesh()
+    offsets = np.cumsum([0] + [len(m.vertices_enu_m) for m in meshes[:-1]])
+    return TriangleMesh(
+        np.concatenate([m.vertices_enu_m for m in meshes]),
+        np.concatenate([m.triangles + offset for m, offset in zip(meshes, offsets, strict=True)]),
+    )
+
+
+def box_mesh(min_enu_m: NDArray[np.float64], max_enu_m: NDArray[np.float64]) -> TriangleMesh:
+    """Closed box between two corners, twelve triangles, normals outwards."""
+    corners = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)], dtype=bool)
+    quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    return TriangleMesh(np.where(corners, max_enu_m, min_enu_m).astype(float), triangles.astype(np.int64))
+
+
+def read_mesh(path: Path) -> TriangleMesh:
+    """Read a PLY, OBJ, GLB or STL file; its coordinates are taken as they stand.
+
+    Raises
+    ------
+    InputError
+        The file is missing, is of another kind, cannot be read, has no triangles, or has coordinates that are not
+        finite or further than `MAX_COORDINATE_M` from the origin.
+    """
+    if path.suffix.lower() not in MESH_SUFFIXES:
+        raise InputError(f"{path}: expected a mesh file ({', '.join(MESH_SUFFIXES)}), got '{path.suffix}'")
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such mesh file")
+    import trimesh
+
+    try:
+        loaded = trimesh.load_mesh(path, process=False, maintain_order=True)
+        if isinstance(loaded, trimesh.Scene):
+            loaded = loaded.to_mesh()
+        vertices, triangles = np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
+    except Exception as error:  # trimesh's readers raise whatever their parsers raise
+        raise InputError(f"{path}: this mesh cannot be read ({error})") from error
+    if len(triangles) == 0:
+        raise InputError(f"{path}: the mesh has no triangles (a point cloud cannot serve as a building)")
+    used = vertices[triangles]
+    if not np.isfinite(used).all():
+        raise InputError(f"{path}: the mesh has coordinates that are not finite numbers")
+    if np.abs(used).max() > MAX_COORDINATE_M:
+        raise InputError(
+            f"{path}: the mesh has a coordinate of {np.abs(used).max():.0f} m; local ENU metres near the site's origin "
+            "are expected. Shift it (site import does) before using it"
+        )
+    return TriangleMesh(np.where(np.isfinite(vertices), vertices, 0.0), triangles)
+
+
+def write_mesh(path: Path, mesh: TriangleMesh) -> None:
+    """Write a binary PLY file."""
+    import trimesh
+
+    trimesh.Trimesh(mesh.vertices_enu_m, mesh.triangles, process=False).export(path, file_type="ply")
+
+
+def closed_parts(corners_enu_m: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Number of the closed part that each triangle belongs to, -1 for triangles of open skins.
+
+    Vertices at equal coordinates are one vertex; triangles that share an edge belong together. A part is closed when
+    each of its edges lies in exactly two (or another even number of) triangles.
+
+    Parameters
+    ----------
+    corners_enu_m
+        Shape (t, 3, 3), metres.
+
+    Returns
+    -------
+    part
+        Shape (t,), int64.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    n = len(corners_enu_m)
+    if n == 0:
+        return np.zeros(0, np.int64)
+    _, vertex = np.unique(corners_enu_m.reshape(-1, 3).round(6), axis=0, return_inverse=True)
+    triangles = vertex.reshape(n, 3)
+    degenerate = (
+        (triangles[:, 0] == triangles[:, 1])
+        | (triangles[:, 1] == triangles[:, 2])
+        | (triangles[:, 2] == triangles[:, 0])
+    )
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    owner = np.repeat(np.arange(n), 3)
+    kept = ~degenerate[owner]
+    edges, owner = edges[kept], owner[kept]
+    if len(edges) == 0:
+        return np.full(n, -1, np.int64)
+    _, edge, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
+    edge = edge.ravel()
+    n_edges = len(count)
+    graph = coo_array((np.ones(len(edge)), (owner, n + edge)), shape=(n + n_edges, n + n_edges))
+    _, label = connected_components(graph, directed=False)
+    open_labels = np.unique(label[n:][count % 2 == 1])
+    part = np.where(np.isin(label[:n], open_labels) | degenerate, -1, label[:n])
+    _, compact = np.unique(part, return_inverse=True)
+    return (compact - (1 if (part == -1).any() else 0)).astype(np.int64).ravel()

@@ -1,0 +1,270 @@
+"""The plan: camera, aircraft, constraints, viewpoints, sorties and what they cover; mirrors `plan.json` field by field.
+
+Angles stand in degrees here because these records are the file; arrays of radians are made by `viewpoint_arrays`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.effects import Decision
+from planning.frames import Vec3
+from planning.site import Origin, check_point
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A camera with rectangular field of view and the limits of the gimbal that carries it."""
+
+    name: str
+    sensor_width_mm: float
+    sensor_height_mm: float
+    focal_length_mm: float
+    image_width_px: int
+    image_height_px: int
+    gimbal_pitch_deg: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        for field in ("sensor_width_mm", "sensor_height_mm", "focal_length_mm", "image_width_px", "image_height_px"):
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value > 0):
+                raise ValueError(f"{field}: expected a positive number, got {value}")
+        low, high = self.gimbal_pitch_deg
+        if not -180.0 <= low <= high <= 90.0:
+            raise ValueError(f"gimbal_pitch_deg: expected [lowest, highest] within -180 to 90, got [{low}, {high}]")
+
+    @property
+    def half_width(self) -> float:
+        """Tangent of half the horizontal field of view."""
+        return self.sensor_width_mm / (2.0 * self.focal_length_mm)
+
+    @property
+    def half_height(self) -> float:
+        """Tangent of half the vertical field of view."""
+        return self.sensor_height_mm / (2.0 * self.focal_length_mm)
+
+    @property
+    def pixel_angle_rad(self) -> float:
+        """Angle that one pixel spans at the image centre."""
+        return self.sensor_width_mm / (self.focal_length_mm * self.image_width_px)
+
+    def gsd_m(self, distance_m: float) -> float:
+        """Ground sampling distance across the line of sight at `distance_m`, metres per pixel."""
+        return distance_m * self.pixel_angle_rad
+
+    def distance_for_gsd_m(self, gsd_m: float) -> float:
+        """Distance at which `gsd_m` is reached, metres."""
+        return gsd_m / self.pixel_angle_rad
+
+
+@dataclass(frozen=True, slots=True)
+class Aircraft:
+    """What an aircraft can do. Speeds, rates and times are those used for durations and battery use."""
+
+    name: str
+    endurance_s: float
+    max_speed_m_s: float
+    max_acceleration_m_s2: float = 2.5
+    max_ascent_m_s: float = 4.0
+    max_descent_m_s: float = 3.0
+    max_yaw_rate_deg_s: float = 60.0
+    max_gimbal_rate_deg_s: float = 60.0
+    max_wind_m_s: float = 10.0
+    max_waypoints: int = 65535
+    min_photo_interval_s: float = 0.7
+
+    def __post_init__(self) -> None:
+        for field in self.__slots__:
+            value = getattr(self, field)
+            if field != "name" and not (math.isfinite(value) and value > 0):
+                raise ValueError(f"{field}: expected a positive number, got {value}")
+
+
+@dataclass(frozen=True, slots=True)
+class Constraints:
+    """What every viewpoint and leg must keep, and which views count."""
+
+    min_distance_m: float = 10.0
+    section_step_deg: float = 30.0
+    occlusion: str = "auto"
+    whole_panel: bool = False
+    """A view counts only when all four corners are in the picture, not just the centroid."""
+    max_distance_m: float | None = None
+    """Views from further away do not count (a wanted GSD is turned into this)."""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.min_distance_m) and self.min_distance_m >= 0):
+            raise ValueError(f"min_distance_m: expected 0 or more, got {self.min_distance_m}")
+        check_section_step(self.section_step_deg)
+        if self.occlusion not in ("auto", "on", "off"):
+            raise ValueError(f"occlusion: expected auto, on or off, got '{self.occlusion}'")
+        if self.max_distance_m is not None and not self.max_distance_m > self.min_distance_m:
+            raise ValueError(
+                f"max_distance_m: expected more than the minimum distance {self.min_distance_m}, "
+                f"got {self.max_distance_m}"
+            )
+
+
+def check_section_step(step_deg: float) -> None:
+    """Raise `ValueError` unless `step_deg` divides 90 and leaves at most 90 rings."""
+    if not (
+        math.isfinite(step_deg) and 1.0 <= step_deg <= 90.0 and abs(90.0 / step_deg - round(90.0 / step_deg)) < 1e-9
+    ):
+        raise ValueError(f"section_step_deg: expected a divisor of 90 from 1 to 90 degrees, got {step_deg}")
+
+
+@dataclass(frozen=True, slots=True)
+class FlightRules:
+    """How a sortie is flown; all of it enters durations and battery use."""
+
+    battery_reserve: float = 0.25
+    """Part of the endurance that must be left at landing."""
+    settle_s: float = 2.0
+    """Hover between the end of all turning and the shutter."""
+    photo_s: float = 1.0
+    """Hover from the shutter until the aircraft may move."""
+    max_speed_m_s: float | None = None
+    """Lower than the aircraft's own maximum where wanted."""
+    wind_m_s: float = 0.0
+    """Steady wind, from the worst direction."""
+    takeoff_landing_s: float = 30.0
+    """Motors running on the ground, take-off check hover and landing together."""
+    turn_in_flight: bool = False
+    """Turn heading and gimbal while flying the leg instead of at the waypoint."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.battery_reserve < 1.0:
+            raise ValueError(f"battery_reserve: expected 0 to below 1, got {self.battery_reserve}")
+        for field in ("settle_s", "photo_s", "wind_m_s", "takeoff_landing_s"):
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value >= 0):
+                raise ValueError(f"{field}: expected 0 or more, got {value}")
+        if self.max_speed_m_s is not None and not self.max_speed_m_s > 0:
+            raise ValueError(f"max_speed_m_s: expected a positive speed, got {self.max_speed_m_s}")
+
+
+@dataclass(frozen=True, slots=True)
+class Viewpoint:
+    """One photo: where the camera is and where it looks (roll 0)."""
+
+    id: str
+    position_enu_m: Vec3
+    heading_deg: float
+    gimbal_pitch_deg: float
+
+    def __post_init__(self) -> None:
+        if not self.id:
+            raise ValueError("id: expected a name, got an empty text")
+        check_point(self.position_enu_m, "position_enu_m")
+        if not -180.0 <= self.heading_deg <= 360.0:
+            raise ValueError(f"heading_deg: expected (-180, 180], got {self.heading_deg}")
+        if not -180.0 <= self.gimbal_pitch_deg <= 90.0:
+            raise ValueError(f"gimbal_pitch_deg: expected -180 to 90, got {self.gimbal_pitch_deg}")
+
+
+@dataclass(frozen=True, slots=True)
+class Sortie:
+    """One flight on one battery, from take-off to landing.
+
+    `path_enu_m` is the polyline really flown; the sortie's viewpoints are among its vertices, in order.
+    """
+
+    viewpoint_ids: tuple[str, ...]
+    path_enu_m: tuple[Vec3, ...]
+    length_m: float
+    duration_s: float
+
+    def __post_init__(self) -> None:
+        for i, point in enumerate(self.path_enu_m):
+            check_point(point, f"path_enu_m[{i}]")
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """Hemisphere sections covered, all there are, and an upper bound on what any allowed views could cover."""
+
+    covered: int
+    total: int
+    reachable_upper_bound: int
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.covered <= self.reachable_upper_bound <= self.total:
+            raise ValueError(
+                "coverage: expected 0 <= covered <= reachable_upper_bound <= total, got "
+                f"{self.covered}, {self.reachable_upper_bound}, {self.total}"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class HistoryPoint:
+    """Sections covered by the best viewpoint set known `t_s` seconds after the start."""
+
+    t_s: float
+    covered: int
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """The content of `plan.json`."""
+
+    site: str
+    site_sha256: str
+    method: str
+    seed: int
+    camera: Camera
+    aircraft: Aircraft
+    constraints: Constraints
+    viewpoints: tuple[Viewpoint, ...]
+    sorties: tuple[Sortie, ...]
+    coverage: Coverage
+    history: tuple[HistoryPoint, ...] = ()
+    format: str = "reflight-plan/1"
+    origin: Origin | None = None
+    """Of the site; without it (plans of other programs) export needs the site file."""
+    home_enu_m: Vec3 | None = None
+    rules: FlightRules = FlightRules()
+    effects: tuple[Decision, ...] = ()
+    profile: str = ""
+    """Identifier of the aircraft-and-camera profile in the catalogue, empty when they were given by hand."""
+
+    def __post_init__(self) -> None:
+        if self.format != "reflight-plan/1":
+            raise ValueError(f"format: expected 'reflight-plan/1', got '{self.format}'")
+        if self.home_enu_m is not None:
+            check_point(self.home_enu_m, "home_enu_m")
+        ids = [viewpoint.id for viewpoint in self.viewpoints]
+        known = set(ids)
+        if len(known) != len(ids):
+            twice = next(i for i in ids if ids.count(i) > 1)
+            raise ValueError(f"viewpoints: expected unique ids, '{twice}' occurs twice")
+        for i, sortie in enumerate(self.sorties):
+            for viewpoint_id in sortie.viewpoint_ids:
+                if viewpoint_id not in known:
+                    raise ValueError(f"sorties[{i}].viewpoint_ids: there is no viewpoint '{viewpoint_id}'")
+
+    @property
+    def duration_s(self) -> float:
+        """Flight time of all sorties together."""
+        return sum(sortie.duration_s for sortie in self.sorties)
+
+
+class ViewpointArrays(NamedTuple):
+    """Viewpoints as arrays: positions shape (n, 3) ENU metres, heading and pitch shape (n,) radians."""
+
+    positions_enu_m: NDArray[np.float64]
+    heading_rad: NDArray[np.float64]
+    pitch_rad: NDArray[np.float64]
+
+
+def viewpoint_arrays(viewpoints: tuple[Viewpoint, ...]) -> ViewpointArrays:
+    """Arrays of all viewpoints, in order."""
+    return ViewpointArrays(
+        np.array([v.position_enu_m for v in viewpoints], dtype=np.float64).reshape(-1, 3),
+        np.radians(np.array([v.heading_deg for v in viewpoints], dtype=np.float64)),
+        np.radians(np.array([v.gimbal_pitch_deg for v in viewpoints], dtype=np.float64)),
+    )

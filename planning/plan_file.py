@@ -1,0 +1,35 @@
+"""Reading and writing `plan.json` (format reflight-plan/1, docs/file-formats.md)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from planning.json_file import read_json, to_record, write_atomically
+from planning.plan import Plan
+
+
+def read_plan(path: Path) -> Plan:
+    """Read a plan.
+
+    Raises
+    ------
+    InputError
+        The file is missing or wrong; the message names the file, the field and what was expected.
+    """
+    return to_record(read_json(path), Plan, path)
+
+
+def plan_to_json(plan: Plan) -> dict[str, Any]:
+    """Content of `plan.json`; optional fields that are not set are left out."""
+    content: dict[str, Any] = msgspec.to_builtins(plan)
+    content = {"format": content.pop("format"), **content}
+    return {key: value for key, value in content.items() if value is not None}
+
+
+def write_plan(path: Path, plan: Plan) -> None:
+    """Write a plan, whole or not at all."""
+    write_atomically(path, json.dumps(plan_to_json(plan), indent=1, allow_nan=False).encode())

@@ -1,0 +1,122 @@
+"""How long work reports progress, is cancelled, is stopped early, and shows its quality against time.
+
+Three small arguments, passed last, in this order where present:
+
+- `monitor` publishes progress and raises `OperationCancelled` when the user cancelled: the work is thrown away.
+- `stop` is asked now and then; when it answers True an *anytime* algorithm returns the best it has.
+- `trace` collects (elapsed time, quality): the curve that shows what accuracy costs in time.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+Clock = Callable[[], float]
+"""Seconds from an arbitrary start, never going back. `time.perf_counter` outside tests."""
+
+Stop = Callable[[], bool]
+"""Asked between steps; True means: return the best so far."""
+
+
+class Monitor(Protocol):
+    """Takes progress; may raise `OperationCancelled`."""
+
+    def report(self, stage: str, done: float, total: float) -> None:
+        """Say that `done` of `total` parts of `stage` are finished (`total` 0: not known)."""
+
+
+class _Quiet:
+    def report(self, stage: str, done: float, total: float) -> None:
+        """Ignore it."""
+
+
+QUIET: Monitor = _Quiet()
+
+
+def never() -> bool:
+    """Stop criterion that lets the algorithm end by itself."""
+    return False
+
+
+class TimeLimit:
+    """Stop criterion: True once `seconds` have passed since it was made."""
+
+    def __init__(self, seconds: float, clock: Clock = time.perf_counter) -> None:
+        self._clock = clock
+        self.deadline_s = clock() + seconds
+
+    def __call__(self) -> bool:
+        """True once the time is up."""
+        return self._clock() >= self.deadline_s
+
+    def remaining_s(self) -> float:
+        """Seconds left; never negative."""
+        return max(0.0, self.deadline_s - self._clock())
+
+
+class StopRequest:
+    """Stop criterion: True once the user pressed "good enough, stop here" (`request`)."""
+
+    def __init__(self) -> None:
+        self._event = threading.Event()
+
+    def request(self) -> None:
+        """Ask for the best so far; safe from any thread."""
+        self._event.set()
+
+    def __call__(self) -> bool:
+        """True once it was requested."""
+        return self._event.is_set()
+
+
+def any_of(*criteria: Stop) -> Stop:
+    """Stop criterion that holds once one of `criteria` does."""
+
+    def stop() -> bool:
+        return any(criterion() for criterion in criteria)
+
+    return stop
+
+
+@dataclass(frozen=True, slots=True)
+class QualityPoint:
+    """The best quality known after `t_s` seconds. The unit of `value` is the algorithm's: sections, metres, seconds."""
+
+    t_s: float
+    value: float
+
+
+@dataclass(slots=True)
+class Trace:
+    """Quality against time of one run, and whoever wants to see it grow.
+
+    Parameters
+    ----------
+    clock
+        Source of time; its value at construction is t = 0.
+    observer
+        Called with every recorded point, in the thread that does the work.
+    """
+
+    clock: Clock = time.perf_counter
+    observer: Callable[[QualityPoint], None] | None = None
+    points: list[QualityPoint] = field(default_factory=list)
+    _start_s: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._start_s = self.clock()
+
+    def elapsed_s(self) -> float:
+        """Seconds since the trace was made."""
+        return self.clock() - self._start_s
+
+    def record(self, value: float) -> None:
+        """Add the best quality known now."""
+        point = QualityPoint(self.elapsed_s(), value)
+        self.points.append(point)
+        if self.observer is not None:
+            self.observer(point)

@@ -1,0 +1,256 @@
+"""The site: panels by facade, building mesh, obstacles, airspace, no-fly volumes and home, in local ENU metres.
+
+The classes mirror `site.json` field by field; `planning.site_file` reads and writes them. Every check that a single
+object can make for itself is made in its `__post_init__`, so that a wrong site cannot exist. `SiteModel` adds the
+geometry that the file only names.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.frames import Vec3
+from planning.mesh import MAX_COORDINATE_M, TriangleMesh
+
+MIN_PANEL_AREA_M2 = 1e-4
+"""Smaller panels are degenerate: no pane is under 1 cm x 1 cm."""
+
+MAX_PANEL_WARP_M = 0.05
+"""A corner may lie this far off the mean plane of its panel (cold-bent glass reaches a few centimetres)."""
+
+
+def check_point(point: Vec3, name: str) -> None:
+    """Raise `ValueError` naming `name` unless `point` is finite and local."""
+    for axis, value in zip("xyz", point, strict=True):
+        if not math.isfinite(value):
+            raise ValueError(f"{name}: expected finite metres, {axis} is {value}")
+        if abs(value) > MAX_COORDINATE_M:
+            raise ValueError(
+                f"{name}: expected local ENU metres within {MAX_COORDINATE_M:.0f} m of the origin, {axis} is "
+                f"{value:.1f} (projected coordinates such as UTM must be shifted to the site's origin first)"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where the local frame's origin lies: WGS 84 geodetic, height above the ellipsoid."""
+
+    lat_deg: float
+    lon_deg: float
+    ellipsoid_height_m: float
+
+    def __post_init__(self) -> None:
+        if not -90.0 <= self.lat_deg <= 90.0:
+            raise ValueError(f"lat_deg: expected -90 to 90, got {self.lat_deg}")
+        if not -180.0 <= self.lon_deg <= 180.0:
+            raise ValueError(f"lon_deg: expected -180 to 180, got {self.lon_deg}")
+        if not -1000.0 <= self.ellipsoid_height_m <= 10_000.0:
+            raise ValueError(f"ellipsoid_height_m: expected -1000 to 10000, got {self.ellipsoid_height_m}")
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """One glass panel: four corners, counter-clockwise seen from outside, so (c2-c0) x (c3-c1) points outwards.
+
+    `source_id` names the object the panel was imported from (an IFC GlobalId, a gml:id), where it was imported.
+    """
+
+    id: str
+    corners_enu_m: tuple[Vec3, Vec3, Vec3, Vec3]
+    source_id: str | None = None
+
+    def __post_init__(self) -> None:
+        if not self.id:
+            raise ValueError("id: expected a name, got an empty text")
+        for i, corner in enumerate(self.corners_enu_m):
+            check_point(corner, f"corners_enu_m[{i}]")
+        corners = np.array(self.corners_enu_m)
+        area_vector = 0.5 * np.cross(corners[2] - corners[0], corners[3] - corners[1])
+        area = float(np.linalg.norm(area_vector))
+        if area < MIN_PANEL_AREA_M2:
+            raise ValueError(
+                f"corners_enu_m: panel '{self.id}' has an area of {area:.2g} m2, so it has no normal; expected four "
+                "corners in order around the pane"
+            )
+        warp = float(np.abs((corners - corners.mean(axis=0)) @ (area_vector / area)).max())
+        if warp > max(MAX_PANEL_WARP_M, 0.02 * math.sqrt(area)):
+            raise ValueError(
+                f"corners_enu_m: panel '{self.id}' is not flat, a corner lies {warp:.2f} m off its mean plane; split it"
+            )
+        edges = np.roll(corners, -1, axis=0) - corners
+        turns = np.cross(edges, np.roll(edges, -1, axis=0)) @ area_vector
+        if (turns < -1e-9 * area**2).any():
+            raise ValueError(
+                f"corners_enu_m: panel '{self.id}' is not convex or its corners are not in order around the pane"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Facade:
+    """Panels that belong to one plane or one curved surface."""
+
+    id: str
+    panels: tuple[Panel, ...]
+
+    def __post_init__(self) -> None:
+        if not self.id:
+            raise ValueError("id: expected a name, got an empty text")
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """A solid to keep away from: a mesh file (path relative to the site file) or an axis-aligned box."""
+
+    id: str
+    mesh: str | None = None
+    box_enu_m: tuple[Vec3, Vec3] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.mesh is None) == (self.box_enu_m is None):
+            raise ValueError(f"obstacle '{self.id}': expected either mesh or box_enu_m, got both or neither")
+        if self.box_enu_m is not None:
+            low, high = self.box_enu_m
+            check_point(low, "box_enu_m[0]")
+            check_point(high, "box_enu_m[1]")
+            if not all(a < b for a, b in zip(low, high, strict=True)):
+                raise ValueError(
+                    f"box_enu_m: obstacle '{self.id}' needs its minimum corner first, got {low} and {high}"
+                )
+
+
+@dataclass(frozen=True, slots=True)
+class NoFlyZone:
+    """A vertical prism that must not be entered: a simple polygon, from `floor_m` to `ceiling_m` (ENU z)."""
+
+    id: str
+    polygon_enu_m: tuple[tuple[float, float], ...]
+    floor_m: float
+    ceiling_m: float
+
+    def __post_init__(self) -> None:
+        if len(self.polygon_enu_m) < 3:
+            raise ValueError(f"polygon_enu_m: zone '{self.id}' needs at least 3 corners, got {len(self.polygon_enu_m)}")
+        for i, (x, y) in enumerate(self.polygon_enu_m):
+            check_point((x, y, 0.0), f"polygon_enu_m[{i}]")
+        check_point((0.0, 0.0, self.floor_m), "floor_m")
+        check_point((0.0, 0.0, self.ceiling_m), "ceiling_m")
+        if not self.floor_m < self.ceiling_m:
+            raise ValueError(f"ceiling_m: zone '{self.id}' needs a ceiling above its floor ({self.floor_m} m)")
+        import shapely
+
+        polygon = shapely.Polygon(self.polygon_enu_m)
+        if not polygon.is_valid or polygon.area < 1e-6:
+            raise ValueError(f"polygon_enu_m: zone '{self.id}' crosses itself or has no area")
+
+    def prism(self) -> TriangleMesh:
+        """Closed mesh of the volume."""
+        import shapely
+
+        polygon = shapely.orient_polygons(shapely.Polygon(self.polygon_enu_m))
+        parts = []
+        for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)):
+            ring = shapely.get_coordinates(shapely.orient_polygons(triangle))[:3]
+            parts.append(np.c_[ring, np.full(3, self.ceiling_m)])
+            parts.append(np.c_[ring[::-1], np.full(3, self.floor_m)])
+        ring = shapely.get_coordinates(polygon)
+        for a, b in itertools.pairwise(ring):
+            low_a, low_b = (*a, self.floor_m), (*b, self.floor_m)
+            high_a, high_b = (*a, self.ceiling_m), (*b, self.ceiling_m)
+            parts.append(np.array([low_a, low_b, high_b]))
+            parts.append(np.array([low_a, high_b, high_a]))
+        corners = np.array(parts, dtype=float)
+        return TriangleMesh(corners.reshape(-1, 3), np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3))
+
+
+@dataclass(frozen=True, slots=True)
+class Airspace:
+    """The box in which viewpoints and legs must stay; only the column above home may lie below its floor."""
+
+    min_enu_m: Vec3
+    max_enu_m: Vec3
+    ground_z_m: float
+    no_fly: tuple[NoFlyZone, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_point(self.min_enu_m, "min_enu_m")
+        check_point(self.max_enu_m, "max_enu_m")
+        check_point((0.0, 0.0, self.ground_z_m), "ground_z_m")
+        for axis, low, high in zip("xyz", self.min_enu_m, self.max_enu_m, strict=True):
+            if not low < high:
+                raise ValueError(f"max_enu_m: the airspace is empty, {axis} runs from {low} to {high} m")
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """The content of `site.json`: everything about a place but the meshes, which it names by path."""
+
+    name: str
+    origin: Origin
+    facades: tuple[Facade, ...]
+    airspace: Airspace
+    home_enu_m: Vec3
+    building_mesh: str | None = None
+    obstacles: tuple[Obstacle, ...] = ()
+    format: str = "reflight-site/1"
+
+    def __post_init__(self) -> None:
+        if self.format != "reflight-site/1":
+            raise ValueError(f"format: expected 'reflight-site/1', got '{self.format}'")
+        check_point(self.home_enu_m, "home_enu_m")
+        if not any(facade.panels for facade in self.facades):
+            raise ValueError("facades: expected at least one panel, got none")
+        seen: set[str] = set()
+        for facade in self.facades:
+            for panel in facade.panels:
+                if panel.id in seen:
+                    raise ValueError(f"facades: expected unique panel ids, '{panel.id}' occurs twice")
+                seen.add(panel.id)
+
+    @property
+    def panels(self) -> tuple[Panel, ...]:
+        """All panels, facade by facade."""
+        return tuple(panel for facade in self.facades for panel in facade.panels)
+
+    @property
+    def n_panels(self) -> int:
+        """Number of panels."""
+        return sum(len(facade.panels) for facade in self.facades)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SiteModel:
+    """A site with its geometry.
+
+    Parameters
+    ----------
+    building
+        The building's mesh; without triangles when the site has none.
+    obstacles
+        One mesh per `site.obstacles`, in that order; boxes are closed meshes here.
+    sha256
+        Of the site file as it was read or written, hexadecimal; empty while the site was never in a file.
+    """
+
+    site: Site
+    building: TriangleMesh
+    obstacles: tuple[TriangleMesh, ...] = ()
+    sha256: str = ""
+
+    def __post_init__(self) -> None:
+        if len(self.obstacles) != len(self.site.obstacles):
+            raise ValueError(f"expected {len(self.site.obstacles)} obstacle meshes, got {len(self.obstacles)}")
+
+
+def panel_corners(site: Site) -> NDArray[np.float64]:
+    """Corners of all panels, shape (m, 4, 3), ENU metres, in the order of `site.panels`."""
+    return np.array([panel.corners_enu_m for panel in site.panels], dtype=np.float64)
+
+
+def panel_triangles(corners_enu_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Two triangles per panel, shape (2 m, 3, 3), from corners of shape (m, 4, 3)."""
+    return corners_enu_m[:, [[0, 1, 2], [0, 2, 3]], :].reshape(-1, 3, 3)

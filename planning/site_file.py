@@ -1,0 +1,69 @@
+"""Reading and writing `site.json` (format reflight-site/1, docs/file-formats.md)."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from planning.errors import InputError
+from planning.json_file import read_json, to_record, write_atomically
+from planning.mesh import TriangleMesh, box_mesh, empty_mesh, read_mesh
+from planning.site import Obstacle, Site, SiteModel
+
+
+def read_site(path: Path) -> SiteModel:
+    """Read a site and the meshes it names.
+
+    Raises
+    ------
+    InputError
+        The file or a mesh is missing or wrong; the message names the file, the field and what was expected.
+    """
+    content = read_json(path)
+    site = to_record(content, Site, path)
+    folder = path.parent
+    building = empty_mesh() if site.building_mesh is None else _read_named_mesh(folder, site.building_mesh, path)
+    obstacles = tuple(_obstacle_geometry(folder, obstacle, path) for obstacle in site.obstacles)
+    return SiteModel(site, building, obstacles, hashlib.sha256(path.read_bytes()).hexdigest())
+
+
+def _read_named_mesh(folder: Path, name: str, site_path: Path) -> TriangleMesh:
+    try:
+        return read_mesh(folder / name)
+    except InputError as error:
+        raise InputError(f"{site_path}: {error}") from error
+
+
+def _obstacle_geometry(folder: Path, obstacle: Obstacle, site_path: Path) -> TriangleMesh:
+    if obstacle.box_enu_m is not None:
+        return box_mesh(np.array(obstacle.box_enu_m[0]), np.array(obstacle.box_enu_m[1]))
+    assert obstacle.mesh is not None  # Obstacle's own check
+    return _read_named_mesh(folder, obstacle.mesh, site_path)
+
+
+def site_to_json(site: Site) -> dict[str, Any]:
+    """Content of `site.json`; absent optional fields are left out."""
+    content: dict[str, Any] = msgspec.to_builtins(site)
+    content = {"format": content.pop("format"), **content}
+    if content["building_mesh"] is None:
+        del content["building_mesh"]
+    content["obstacles"] = [_without_none(obstacle) for obstacle in content["obstacles"]]
+    for facade in content["facades"]:
+        facade["panels"] = [_without_none(panel) for panel in facade["panels"]]
+    return content
+
+
+def _without_none(fields: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in fields.items() if value is not None}
+
+
+def write_site(path: Path, site: Site) -> str:
+    """Write a site file, whole or not at all; returns the SHA-256 of what was written. Meshes are not touched."""
+    text = json.dumps(site_to_json(site), indent=1, allow_nan=False)
+    write_atomically(path, text.encode())
+    return hashlib.sha256(text.encode()).hexdigest()
