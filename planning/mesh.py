@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -69,6 +70,37 @@ def box_mesh(min_enu_m: NDArray[np.float64], max_enu_m: NDArray[np.float64]) -> 
     quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
     triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
     return TriangleMesh(np.where(corners, max_enu_m, min_enu_m).astype(float), triangles.astype(np.int64))
+
+
+def extrude(polygon_enu_m: NDArray[np.float64], floor_m: float, ceiling_m: float) -> TriangleMesh:
+    """Closed vertical prism over a simple polygon, normals outwards.
+
+    Parameters
+    ----------
+    polygon_enu_m
+        Shape (k, 2), either direction, not closed, k >= 3.
+    floor_m, ceiling_m
+        ENU z of the bottom and the top.
+    """
+    import shapely
+
+    polygon = shapely.orient_polygons(shapely.Polygon(polygon_enu_m))
+    parts = []
+    for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)):
+        ring = shapely.get_coordinates(shapely.orient_polygons(triangle))[:3]
+        parts.append(np.c_[ring, np.full(3, ceiling_m)])
+        parts.append(np.c_[ring[::-1], np.full(3, floor_m)])
+    for a, b in itertools.pairwise(shapely.get_coordinates(polygon)):
+        low_a, low_b, high_a, high_b = (*a, floor_m), (*b, floor_m), (*a, ceiling_m), (*b, ceiling_m)
+        parts.append(np.array([low_a, low_b, high_b]))
+        parts.append(np.array([low_a, high_b, high_a]))
+    return from_corners(np.array(parts, dtype=np.float64))
+
+
+def from_corners(corners_enu_m: NDArray[np.float64]) -> TriangleMesh:
+    """Mesh of separate triangles from their corners, shape (t, 3, 3)."""
+    n = len(corners_enu_m)
+    return TriangleMesh(corners_enu_m.reshape(-1, 3), np.arange(3 * n, dtype=np.int64).reshape(n, 3))
 
 
 def read_mesh(path: Path) -> TriangleMesh:

@@ -7,7 +7,6 @@ geometry that the file only names.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 
@@ -15,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.frames import Vec3
-from planning.mesh import MAX_COORDINATE_M, TriangleMesh
+from planning.mesh import MAX_COORDINATE_M, TriangleMesh, box_mesh, extrude
 
 MIN_PANEL_AREA_M2 = 1e-4
 """Smaller panels are degenerate: no pane is under 1 cm x 1 cm."""
@@ -123,6 +122,19 @@ class Obstacle:
                 )
 
 
+def box_geometry(obstacle: Obstacle) -> TriangleMesh:
+    """Closed box of an obstacle that is one.
+
+    Raises
+    ------
+    ValueError
+        The obstacle is a mesh.
+    """
+    if obstacle.box_enu_m is None:
+        raise ValueError(f"obstacle '{obstacle.id}' is a mesh, not a box")
+    return box_mesh(np.array(obstacle.box_enu_m[0]), np.array(obstacle.box_enu_m[1]))
+
+
 @dataclass(frozen=True, slots=True)
 class NoFlyZone:
     """A vertical prism that must not be entered: a simple polygon, from `floor_m` to `ceiling_m` (ENU z)."""
@@ -149,22 +161,7 @@ class NoFlyZone:
 
     def prism(self) -> TriangleMesh:
         """Closed mesh of the volume."""
-        import shapely
-
-        polygon = shapely.orient_polygons(shapely.Polygon(self.polygon_enu_m))
-        parts = []
-        for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)):
-            ring = shapely.get_coordinates(shapely.orient_polygons(triangle))[:3]
-            parts.append(np.c_[ring, np.full(3, self.ceiling_m)])
-            parts.append(np.c_[ring[::-1], np.full(3, self.floor_m)])
-        ring = shapely.get_coordinates(polygon)
-        for a, b in itertools.pairwise(ring):
-            low_a, low_b = (*a, self.floor_m), (*b, self.floor_m)
-            high_a, high_b = (*a, self.ceiling_m), (*b, self.ceiling_m)
-            parts.append(np.array([low_a, low_b, high_b]))
-            parts.append(np.array([low_a, high_b, high_a]))
-        corners = np.array(parts, dtype=float)
-        return TriangleMesh(corners.reshape(-1, 3), np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3))
+        return extrude(np.array(self.polygon_enu_m), self.floor_m, self.ceiling_m)
 
 
 @dataclass(frozen=True, slots=True)

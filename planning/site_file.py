@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-import numpy as np
 
 from planning.errors import InputError
 from planning.json_file import read_json, to_record, write_atomically
-from planning.mesh import TriangleMesh, box_mesh, empty_mesh, read_mesh
-from planning.site import Obstacle, Site, SiteModel
+from planning.mesh import TriangleMesh, empty_mesh, read_mesh
+from planning.site import Obstacle, Site, SiteModel, box_geometry
 
 
 def read_site(path: Path) -> SiteModel:
@@ -41,7 +40,7 @@ def _read_named_mesh(folder: Path, name: str, site_path: Path) -> TriangleMesh:
 
 def _obstacle_geometry(folder: Path, obstacle: Obstacle, site_path: Path) -> TriangleMesh:
     if obstacle.box_enu_m is not None:
-        return box_mesh(np.array(obstacle.box_enu_m[0]), np.array(obstacle.box_enu_m[1]))
+        return box_geometry(obstacle)
     assert obstacle.mesh is not None  # Obstacle's own check
     return _read_named_mesh(folder, obstacle.mesh, site_path)
 

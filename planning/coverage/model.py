@@ -1,0 +1,258 @@
+"""The coverage model of a site: which elements (panel and section) a view covers, effects included."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.coverage import kernel
+from planning.coverage.sections import (
+    NOT_SEEN,
+    PanelFrames,
+    SectionGrid,
+    in_picture,
+    sections_of,
+    sections_seen,
+)
+from planning.frames import camera_axes
+from planning.jit import chunks, run_chunks
+from planning.plan import Camera, ViewpointArrays
+
+Precision = Literal["f32", "f64"]
+
+LineOfSight = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
+"""(from, to), both shape (k, 3) ENU metres, to shape (k,): True where the straight line between them is free."""
+
+OCCLUSION_OFFSET_M = 0.15
+"""Lines of sight end this far in front of the centroid, so that the pane's own frame does not hide it (contract)."""
+
+VIEWS_PER_CHUNK = 2048
+PAIRS_PER_CHUNK = 4_000_000
+"""Bounds the memory of one chunk of codes to 16 MB."""
+
+
+class Elements(NamedTuple):
+    """Elements covered by each of n views, as compressed rows: view i covers `items[starts[i]:starts[i + 1]]`.
+
+    An element is panel * n_sections + section. `starts` has shape (n + 1,), int64; `items` int32.
+    """
+
+    starts: NDArray[np.int64]
+    items: NDArray[np.int32]
+
+    def of(self, view: int) -> NDArray[np.int32]:
+        """Elements of one view."""
+        return self.items[self.starts[view] : self.starts[view + 1]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CoverageModel:
+    """What counts as covered.
+
+    Parameters
+    ----------
+    frames, camera, grid
+        Panels, camera, and sections of their hemispheres.
+    whole_panel
+        All four corners must be in the picture, not only the centroid.
+    max_distance_m
+        Views from further away cover nothing; None for no limit.
+    sight
+        Line-of-sight test where occlusion is taken into account, else None.
+    precision
+        Of the fast kernel. `f32` differs from `f64` only on section borders.
+    """
+
+    frames: PanelFrames
+    camera: Camera
+    grid: SectionGrid
+    whole_panel: bool = False
+    max_distance_m: float | None = None
+    sight: LineOfSight | None = None
+    precision: Precision = "f32"
+
+    @property
+    def n_elements(self) -> int:
+        """Number of (panel, section) pairs."""
+        return len(self.frames) * self.grid.n_sections
+
+    @property
+    def targets_enu_m(self) -> NDArray[np.float64]:
+        """Where lines of sight end, shape (m, 3): just in front of each centroid."""
+        return self.frames.centroids + OCCLUSION_OFFSET_M * self.frames.normals
+
+    def covered_count(self, views: ViewpointArrays) -> int:
+        """Number of elements that at least one view covers: the paper's fitness E (Eq. 10)."""
+        return int(np.count_nonzero(self.covered(views)))
+
+    def covered(self, views: ViewpointArrays) -> NDArray[np.bool_]:
+        """Whether at least one view covers each element, shape (n_elements,)."""
+        if self.whole_panel or self.sight is not None:
+            hit = np.zeros(self.n_elements, np.bool_)
+            hit[self.elements(views).items] = True
+            return hit
+        arguments = _Arguments.of(self)
+        packed = arguments.pack(views)
+        hits = np.zeros((len(self.frames), self.grid.n_sections + 1), np.uint8)
+        kernel.mark_covered(*arguments.call(packed, hits))
+        return hits[:, 1:].reshape(-1).view(np.bool_)
+
+    def elements(self, views: ViewpointArrays) -> Elements:
+        """Elements that each view covers, on all cores; the result does not depend on their number."""
+        n, m = len(views.positions_enu_m), len(self.frames)
+        arguments = _Arguments.of(self)
+        packed = arguments.pack(views)
+
+        def work(start: int, stop: int) -> Elements:
+            codes = np.empty((m, stop - start), np.int32)
+            kernel.fill_codes(*arguments.call(np.ascontiguousarray(packed[:, start:stop]), codes))
+            counts = np.zeros(stop - start, np.int64)
+            kernel.elements_per_view(codes, counts)
+            starts = np.concatenate([[0], np.cumsum(counts)])
+            items = np.empty(starts[-1], np.int32)
+            kernel.gather_elements(codes, self.grid.n_sections, starts[:-1].copy(), items)
+            return self._with_effects(_rows(views, start, stop), Elements(starts, items))
+
+        size = max(1, min(VIEWS_PER_CHUNK, PAIRS_PER_CHUNK // max(m, 1)))
+        parts = run_chunks(work, chunks(n, size))
+        counts = [np.diff(part.starts) for part in parts]
+        starts = np.concatenate([[0], np.cumsum(np.concatenate(counts))]) if parts else np.zeros(1, np.int64)
+        items = np.concatenate([part.items for part in parts]) if parts else np.zeros(0, np.int32)
+        return Elements(starts.astype(np.int64), items)
+
+    def _with_effects(self, views: ViewpointArrays, found: Elements) -> Elements:
+        """Drop elements that are only partly in the picture or hidden, where that counts."""
+        if not self.whole_panel and self.sight is None:
+            return found
+        view = np.repeat(np.arange(len(found.starts) - 1), np.diff(found.starts))
+        panel = found.items // self.grid.n_sections
+        kept = np.ones(len(view), np.bool_)
+        if self.whole_panel:
+            kept &= _corners_in_picture(views, self.frames.corners, self.camera, view, panel)
+        if self.sight is not None:
+            asked = np.flatnonzero(kept)
+            kept[asked] = self.sight(views.positions_enu_m[view[asked]], self.targets_enu_m[panel[asked]])
+        counts = np.bincount(view[kept], minlength=len(found.starts) - 1)
+        return Elements(np.concatenate([[0], np.cumsum(counts)]).astype(np.int64), found.items[kept])
+
+
+def codes_all_around(model: CoverageModel, points_enu_m: NDArray[np.float64]) -> NDArray[np.int32]:
+    """Section + 1 of each panel's hemisphere in which points lie, whatever a camera looks at: shape (m, n), 0 for none.
+
+    Points, shape (n, 3), further away than the largest distance count as none; occlusion is not looked at.
+    """
+    arguments = _Arguments.of(model)
+    packed = np.zeros((kernel.N_VIEW_ROWS, len(points_enu_m)), arguments.dtype)
+    packed[:3] = (points_enu_m - arguments.centre).T
+    codes = np.empty((len(model.frames), len(points_enu_m)), np.int32)
+    kernel.fill_codes(*arguments.call(packed, codes))
+    return codes
+
+
+def exact_sections(model: CoverageModel, views: ViewpointArrays) -> NDArray[np.int64]:
+    """Section of each panel that each view covers, by the definition in float64: shape (n, m), -1 for none.
+
+    Slow; this is what is written into plans and what the fast kernel is tested against.
+    """
+    n, m = len(views.positions_enu_m), len(model.frames)
+    section = np.full((n, m), NOT_SEEN, np.int64)
+    for start, stop in chunks(n, max(1, 200_000 // max(m, 1))):
+        part = _rows(views, start, stop)
+        section[start:stop] = sections_seen(
+            part, model.frames, model.camera, model.grid, model.whole_panel, model.max_distance_m
+        )
+    if model.sight is not None:
+        view, panel = np.nonzero(section != NOT_SEEN)
+        free = model.sight(views.positions_enu_m[view], model.targets_enu_m[panel])
+        section[view[~free], panel[~free]] = NOT_SEEN
+    return section
+
+
+def exact_coverage(model: CoverageModel, views: ViewpointArrays) -> NDArray[np.int64]:
+    """Number of views that cover each element by the definition in float64, shape (m, n_sections)."""
+    section = exact_sections(model, views)
+    view, panel = np.nonzero(section != NOT_SEEN)
+    counts = np.zeros((len(model.frames), model.grid.n_sections), np.int64)
+    np.add.at(counts, (panel, section[view, panel]), 1)
+    return counts
+
+
+class _Arguments(NamedTuple):
+    """Arrays as the kernel wants them, relative to the panels' centre."""
+
+    centre: NDArray[np.float64]
+    dtype: type[np.floating[Any]]
+    panels: NDArray[Any]
+    limits: NDArray[Any]
+    cos2: tuple[Any, ...]
+    tangents: tuple[Any, ...]
+    further: NDArray[Any]
+    n_rings: int
+
+    @classmethod
+    def of(cls, model: CoverageModel) -> _Arguments:
+        dtype: type[np.floating[Any]] = np.float32 if model.precision == "f32" else np.float64
+        frames = model.frames
+        centre = frames.centroids.mean(axis=0)
+        panels = np.concatenate(
+            [frames.centroids - centre, frames.normals, frames.tangents, frames.bitangents], axis=1
+        ).astype(dtype)
+        farthest = np.inf if model.max_distance_m is None else model.max_distance_m**2
+        limits = np.array(
+            [model.camera.half_width, model.camera.half_height, farthest, 0.0, np.finfo(dtype).tiny], dtype
+        )
+        borders = np.radians(model.grid.step_deg * np.arange(1, model.grid.n_rings))
+        narrow, wide = kernel.WIDTHS
+        width = narrow if len(borders) <= narrow else wide
+        n_further = -(-max(0, len(borders) - width) // wide)
+        # Borders that no direction crosses fill the last pass up.
+        cos2 = np.full(width + n_further * wide, -1.0)
+        tangents = np.full(width + n_further * wide, np.inf)
+        cos2[: len(borders)], tangents[: len(borders)] = np.cos(borders) ** 2, np.tan(borders)
+        cos2, tangents = cos2.astype(dtype), tangents.astype(dtype)
+        further = np.stack([cos2[width:], tangents[width:]]).reshape(2, n_further, wide)
+        return cls(
+            centre, dtype, panels, limits, tuple(cos2[:width]), tuple(tangents[:width]), further, model.grid.n_rings
+        )
+
+    def call(self, packed: NDArray[Any], output: NDArray[Any]) -> tuple[Any, ...]:
+        """Arguments of a kernel."""
+        return self.panels, packed, self.limits, self.cos2, self.tangents, self.further, self.n_rings, output
+
+    def pack(self, views: ViewpointArrays) -> NDArray[Any]:
+        """Views as 11 rows: position, forward, right (x, y), up."""
+        forward, right, up = camera_axes(views.heading_rad, views.pitch_rad)
+        columns = [views.positions_enu_m - self.centre, forward, right[:, :2], up]
+        return np.ascontiguousarray(np.concatenate(columns, axis=1).T.astype(self.dtype))
+
+
+def _rows(views: ViewpointArrays, start: int, stop: int) -> ViewpointArrays:
+    return ViewpointArrays(
+        views.positions_enu_m[start:stop], views.heading_rad[start:stop], views.pitch_rad[start:stop]
+    )
+
+
+def _corners_in_picture(
+    views: ViewpointArrays,
+    corners: NDArray[np.float64],
+    camera: Camera,
+    view: NDArray[np.int64],
+    panel: NDArray[np.int32],
+) -> NDArray[np.bool_]:
+    """Whether all four corners lie in the picture, for pairs of view and panel of shape (k,)."""
+    forward, right, up = (axis[view][:, None, :] for axis in camera_axes(views.heading_rad, views.pitch_rad))
+    v = corners[panel] - views.positions_enu_m[view][:, None, :]
+    depth = (v * forward).sum(axis=2)
+    inside = (
+        (depth > 0.0)
+        & (np.abs((v * right).sum(axis=2)) <= camera.half_width * depth)
+        & (np.abs((v * up).sum(axis=2)) <= camera.half_height * depth)
+    )
+    return np.asarray(inside.all(axis=1))
+
+
+__all__ = ["CoverageModel", "Elements", "LineOfSight", "exact_coverage", "exact_sections", "in_picture", "sections_of"]

@@ -1,0 +1,134 @@
+"""Where an aircraft may be: the airspace box, minus what lies too close to panels, mesh, obstacles or no-fly zones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InfeasibleError
+from planning.geometry.solids import Solids
+from planning.mesh import join
+from planning.site import SiteModel, panel_corners, panel_triangles
+
+Array = NDArray[np.float64]
+
+SAFETY_MARGIN_M = 0.002
+"""Kept on top of every distance, so that coordinates rounded to 0.1 mm and readers in float32 still find it kept."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FreeSpace:
+    """The allowed positions and straight legs of one site for one minimum distance.
+
+    Parameters
+    ----------
+    low_enu_m, high_enu_m
+        The airspace box, shape (3,).
+    solids
+        Panels, building and obstacles.
+    no_fly
+        No-fly volumes.
+    min_distance_m
+        To be kept from `solids` everywhere.
+    no_fly_distance_m
+        To be kept from `no_fly`: the minimum distance, or less where home itself stands closer.
+    home_enu_m
+        Take-off and landing, shape (3,).
+    """
+
+    low_enu_m: Array
+    high_enu_m: Array
+    solids: Solids
+    no_fly: Solids
+    min_distance_m: float
+    no_fly_distance_m: float
+    home_enu_m: Array
+
+    @property
+    def column_top_enu_m(self) -> Array:
+        """Lowest point above home that lies in the airspace, shape (3,)."""
+        return np.array([*self.home_enu_m[:2], max(self.home_enu_m[2], self.low_enu_m[2] + SAFETY_MARGIN_M)])
+
+    def is_allowed(self, points_enu_m: Array) -> NDArray[np.bool_]:
+        """Whether viewpoints may lie at points of shape (n, 3)."""
+        points = np.asarray(points_enu_m, np.float64).reshape(-1, 3)
+        low, high = self.low_enu_m + SAFETY_MARGIN_M, self.high_enu_m - SAFETY_MARGIN_M
+        allowed = np.asarray(np.all((points >= low) & (points <= high), axis=1))
+        for solids, distance in self._kept_distances():
+            asked = np.flatnonzero(allowed)
+            allowed[asked] = solids.clearance_m(points[asked], 2.0 * distance) >= distance
+        return allowed
+
+    def legs_clear(self, a_enu_m: Array, b_enu_m: Array) -> NDArray[np.bool_]:
+        """Whether straight legs between allowed points, shape (n, 3), keep every distance on their whole length."""
+        clear = np.ones(len(a_enu_m), np.bool_)
+        for solids, distance in self._kept_distances():
+            asked = np.flatnonzero(clear)
+            clear[asked] = solids.segments_clear(a_enu_m[asked], b_enu_m[asked], distance)
+        return clear
+
+    def _kept_distances(self) -> tuple[tuple[Solids, float], ...]:
+        kept: tuple[tuple[Solids, float], ...] = ((self.solids, self.min_distance_m + SAFETY_MARGIN_M),)
+        if len(self.no_fly.part):
+            kept += ((self.no_fly, self.no_fly_distance_m + SAFETY_MARGIN_M),)
+        return kept
+
+
+def free_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
+    """Allowed space of a site.
+
+    Raises
+    ------
+    InfeasibleError
+        Home, or the column above it, is outside the airspace, too close to something, inside a solid or in a no-fly
+        volume; the message gives the measured distance.
+    """
+    site = model.site
+    airspace = site.airspace
+    solids = Solids.of(
+        np.concatenate([panel_triangles(panel_corners(site)), join([model.building, *model.obstacles]).corners_enu_m])
+    )
+    no_fly = Solids.of(join([zone.prism() for zone in airspace.no_fly]).corners_enu_m)
+    home = np.array(site.home_enu_m)
+    space = FreeSpace(
+        np.array(airspace.min_enu_m), np.array(airspace.max_enu_m), solids, no_fly, min_distance_m, min_distance_m, home
+    )
+    _check_home(space)
+    column = no_fly.segment_distances_m(home[None], space.column_top_enu_m[None], 2.0 * min_distance_m + 1.0)[0]
+    return FreeSpace(
+        space.low_enu_m,
+        space.high_enu_m,
+        solids,
+        no_fly,
+        min_distance_m,
+        min(min_distance_m, max(0.0, float(column) - 2.0 * SAFETY_MARGIN_M)),
+        home,
+    )
+
+
+def _check_home(space: FreeSpace) -> None:
+    home, top = space.home_enu_m, space.column_top_enu_m
+    inside = (home[:2] > space.low_enu_m[:2]).all() and (home[:2] < space.high_enu_m[:2]).all()
+    if not inside or top[2] >= space.high_enu_m[2]:
+        raise InfeasibleError(
+            f"home_enu_m: home {_text(home)} is not below or inside the airspace box {_text(space.low_enu_m)} to "
+            f"{_text(space.high_enu_m)}; move home or widen the airspace"
+        )
+    if space.solids.clearance_m(home[None], 1.0)[0] < 0:
+        raise InfeasibleError(f"home_enu_m: home {_text(home)} lies inside a building or obstacle; move it outside")
+    if space.no_fly.clearance_m(home[None], 1.0)[0] < 0:
+        raise InfeasibleError(f"home_enu_m: home {_text(home)} lies inside a no-fly volume; move it outside")
+    distance = space.solids.segment_distances_m(home[None], top[None], 10.0 * space.min_distance_m + 10.0)[0]
+    if distance < space.min_distance_m + SAFETY_MARGIN_M:
+        raise InfeasibleError(
+            f"home_enu_m: the take-off column above home {_text(home)} comes within {distance:.2f} m of the building "
+            f"or an obstacle, {space.min_distance_m:g} m are required; move home away"
+        )
+    if space.no_fly.segment_distances_m(home[None], top[None], 1.0)[0] <= 2.0 * SAFETY_MARGIN_M:
+        raise InfeasibleError(f"home_enu_m: the take-off column above home {_text(home)} crosses a no-fly volume")
+
+
+def _text(point: Array) -> str:
+    return "(" + ", ".join(f"{value:g}" for value in point) + ")"
