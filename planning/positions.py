@@ -13,7 +13,7 @@ from planning.space import SAFETY_MARGIN_M, FreeSpace
 Array = NDArray[np.float64]
 
 BORDER_SHARE = 0.3
-"""Chance that a coordinate of a border position is moved to the end of the airspace: rare sections are seen from there."""
+"""Chance that a coordinate of a border position lies at the end of the airspace: rare sections are seen from there."""
 
 
 def spread_positions(space: FreeSpace, frames: PanelFrames, n: int, rng: np.random.Generator) -> Array:
@@ -24,8 +24,8 @@ def spread_positions(space: FreeSpace, frames: PanelFrames, n: int, rng: np.rand
     """
     low, high = space.low_enu_m + 2 * SAFETY_MARGIN_M, space.high_enu_m - 2 * SAFETY_MARGIN_M
     third = -(-n // 3)
-    inside = low + _sobol(third, rng) * (high - low)
-    border = low + _sobol(third, rng) * (high - low)
+    inside = low + sobol(third, rng) * (high - low)
+    border = low + sobol(third, rng) * (high - low)
     moved = rng.random((third, 3)) < BORDER_SHARE
     border = np.where(moved, np.where(rng.random((third, 3)) < 0.5, low, high), border)
     panel = rng.integers(0, len(frames), third)
@@ -53,7 +53,7 @@ def aimed_views(positions_enu_m: Array, targets_enu_m: Array, camera: Camera) ->
     return ViewpointArrays(positions_enu_m, heading, np.clip(pitch, low, high))
 
 
-def _sobol(n: int, rng: np.random.Generator) -> Array:
+def sobol(n: int, rng: np.random.Generator) -> Array:
     """Scrambled Sobol points in the unit cube, shape (n, 3)."""
     from scipy.stats import qmc
 

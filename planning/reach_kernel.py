@@ -1,4 +1,4 @@
-"""Branch and bound over the allowed space for one hemisphere section: a witness, a proof that there is none, or neither.
+"""Branch and bound over the allowed space for one hemisphere section: a witness, a proof of none, or neither.
 
 The airspace box is divided into smaller boxes (cells). A cell is dropped when no point of it can be a viewpoint that
 covers the section:
@@ -66,7 +66,7 @@ class Bodies(NamedTuple):
 @inline
 def _support(v: Array, half: Array) -> float:
     """How far a box with half sizes `half` reaches along v from its centre."""
-    return abs(v[0]) * half[0] + abs(v[1]) * half[1] + abs(v[2]) * half[2]
+    return float(abs(v[0]) * half[0] + abs(v[1]) * half[1] + abs(v[2]) * half[2])
 
 
 @kernel
@@ -94,7 +94,8 @@ def _misses_section(offset: Array, half: Array, radius: float, panel: Array, bou
     if theta - spread >= bounds[1] or theta + spread < bounds[0]:
         return True
     elevation = np.arcsin(min(max(-offset[2] / distance, -1.0), 1.0))
-    return elevation - spread > np.arcsin(limits.highest_sine) or elevation + spread < np.arcsin(limits.lowest_sine)
+    too_high = elevation - spread > np.arcsin(limits.highest_sine)
+    return bool(too_high or elevation + spread < np.arcsin(limits.lowest_sine))
 
 
 @kernel
@@ -146,7 +147,7 @@ def _is_witness(p: Array, panel: Array, bounds: Array, limits: Limits) -> bool:
     ):
         return False
     sine = -dz / distance
-    return limits.lowest_sine + ANGLE_MARGIN < sine < limits.highest_sine - ANGLE_MARGIN
+    return bool(limits.lowest_sine + ANGLE_MARGIN < sine < limits.highest_sine - ANGLE_MARGIN)
 
 
 @kernel

@@ -189,7 +189,8 @@ def _keeps_margins(
     elevation = np.arcsin(np.clip(-d[:, 2], -1.0, 1.0))
     elevation_gap = np.minimum(elevation - lowest, highest - elevation)
     in_range = True if model.max_distance_m is None else distance < model.max_distance_m - SAFETY_MARGIN_M
-    return (theta_gap > ANGLE_MARGIN) & (phi_gap > ANGLE_MARGIN) & (elevation_gap > ANGLE_MARGIN) & in_range
+    smallest_gap = np.minimum(np.minimum(theta_gap, phi_gap), elevation_gap)
+    return np.asarray((smallest_gap > ANGLE_MARGIN) & in_range)
 
 
 def _branch_and_bound(

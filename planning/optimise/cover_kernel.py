@@ -1,0 +1,170 @@
+"""Maximum coverage on candidates and elements with exact gains, kept up to date by an inverse index; compiled.
+
+With counts c_e of chosen views per element, weights w_e and a wanted depth k, the objective is f = sum w_e min(c_e, k):
+monotone and submodular. Adding or removing a view touches only the candidates that share one of its elements, so
+greedy steps and exchanges cost microseconds.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.jit import kernel
+
+
+class CoverState(NamedTuple):
+    """Candidates, elements, and what is chosen so far.
+
+    Parameters
+    ----------
+    starts, items
+        Elements of each candidate: `items[starts[i]:starts[i + 1]]`.
+    inverse_starts, inverse_items
+        Candidates of each element.
+    weights
+        Weight of each element.
+    counts
+        Chosen views per element.
+    gains
+        How much f grows when a candidate is added, exact.
+    depth
+        k, shape (1,).
+    """
+
+    starts: NDArray[np.int64]
+    items: NDArray[np.int32]
+    inverse_starts: NDArray[np.int64]
+    inverse_items: NDArray[np.int32]
+    weights: NDArray[np.float64]
+    counts: NDArray[np.int32]
+    gains: NDArray[np.float64]
+    depth: NDArray[np.int64]
+
+
+@kernel
+def invert(
+    starts: NDArray[np.int64], items: NDArray[np.int32], n_elements: int
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """Candidates of each element, from the elements of each candidate."""
+    inverse_starts = np.zeros(n_elements + 1, np.int64)
+    for e in items:
+        inverse_starts[e + 1] += 1
+    for e in range(n_elements):
+        inverse_starts[e + 1] += inverse_starts[e]
+    place = inverse_starts[:-1].copy()
+    inverse_items = np.empty(len(items), np.int32)
+    for c in range(len(starts) - 1):
+        for i in range(starts[c], starts[c + 1]):
+            e = items[i]
+            inverse_items[place[e]] = c
+            place[e] += 1
+    return inverse_starts, inverse_items
+
+
+@kernel
+def refresh_gains(state: CoverState) -> None:
+    """Compute all gains from the counts."""
+    for c in range(len(state.gains)):
+        gain = 0.0
+        for i in range(state.starts[c], state.starts[c + 1]):
+            e = state.items[i]
+            if state.counts[e] < state.depth[0]:
+                gain += state.weights[e]
+        state.gains[c] = gain
+
+
+@kernel
+def add_elements(state: CoverState, elements: NDArray[np.int32]) -> None:
+    """Count one more view that covers `elements`, and update the gains."""
+    for e in elements:
+        state.counts[e] += 1
+        if state.counts[e] == state.depth[0]:
+            for i in range(state.inverse_starts[e], state.inverse_starts[e + 1]):
+                state.gains[state.inverse_items[i]] -= state.weights[e]
+
+
+@kernel
+def remove_elements(state: CoverState, elements: NDArray[np.int32]) -> None:
+    """Undo `add_elements`."""
+    for e in elements:
+        if state.counts[e] == state.depth[0]:
+            for i in range(state.inverse_starts[e], state.inverse_starts[e + 1]):
+                state.gains[state.inverse_items[i]] += state.weights[e]
+        state.counts[e] -= 1
+
+
+@kernel
+def loss_of(state: CoverState, elements: NDArray[np.int32]) -> float:
+    """How much f shrinks when a chosen view that covers `elements` is removed."""
+    loss = 0.0
+    for e in elements:
+        if state.counts[e] <= state.depth[0]:
+            loss += state.weights[e]
+    return loss
+
+
+@kernel
+def objective(state: CoverState) -> float:
+    """The objective f of what is chosen."""
+    total = 0.0
+    for e in range(len(state.counts)):
+        total += state.weights[e] * min(state.counts[e], state.depth[0])
+    return total
+
+
+@kernel
+def greedy_steps(state: CoverState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int, enough: float) -> int:
+    """Add the candidate of the largest gain until `n_wanted` are chosen, f reaches `enough` or no gain is left.
+
+    `chosen` takes the candidates' numbers; returns how many there are now.
+    """
+    f = objective(state)
+    while n_chosen < n_wanted and f < enough:
+        best = np.argmax(state.gains)
+        gain = state.gains[best]
+        if gain <= 1e-9:
+            break
+        add_elements(state, state.items[state.starts[best] : state.starts[best + 1]])
+        chosen[n_chosen] = best
+        n_chosen += 1
+        f += gain
+    return n_chosen
+
+
+@kernel
+def exchange_steps(
+    state: CoverState, chosen: NDArray[np.int64], tabu: NDArray[np.int64], clock: int, n_steps: int, seed: int
+) -> float:
+    """Swap chosen candidates against others for `n_steps` steps; returns how much f grew (never negative).
+
+    Each step drops a chosen candidate (the one of least loss among a few drawn at random), adds the best other one, and
+    undoes both when that makes f smaller. Dropped candidates rest for a while (`tabu`, numbers of steps from `clock`),
+    so that steps of equal value do not go in circles.
+    """
+    np.random.seed(seed)  # noqa: NPY002  (Numba's own generator, per thread)
+    grown = 0.0
+    n = len(chosen)
+    for step in range(clock, clock + n_steps):
+        worst, least = -1, np.inf
+        for _ in range(4):
+            place = np.random.randint(n)  # noqa: NPY002
+            c = chosen[place]
+            loss = loss_of(state, state.items[state.starts[c] : state.starts[c + 1]])
+            if loss < least:
+                worst, least = place, loss
+        dropped = chosen[worst]
+        remove_elements(state, state.items[state.starts[dropped] : state.starts[dropped + 1]])
+        tabu[dropped] = step + 1 + n // 4 + np.random.randint(n + 1)  # noqa: NPY002
+        best, gain = -1, -1.0
+        for c in range(len(state.gains)):
+            if state.gains[c] > gain and tabu[c] <= step:
+                best, gain = c, state.gains[c]
+        if best < 0 or gain < least - 1e-9:
+            best, gain = dropped, least
+        add_elements(state, state.items[state.starts[best] : state.starts[best + 1]])
+        chosen[worst] = best
+        grown += gain - least
+    return grown

@@ -1,0 +1,151 @@
+"""Obstacle-avoiding legs between stops: costs of all pairs, and the polyline of each leg that is really flown.
+
+Where the straight leg between two stops keeps every distance it is flown; elsewhere the way leads over the roadmap and
+is then pulled tight. Every leg is certified on its whole length, not sampled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import dijkstra
+
+from planning.errors import InfeasibleError
+from planning.jit import chunks
+from planning.progress import QUIET, Monitor
+from planning.routing.roadmap import LegMetric, Roadmap
+
+Array = NDArray[np.float64]
+
+ROADMAP_NEIGHBOURS = 16
+PAIRS_PER_STEP = 200_000
+TIGHTEN_ROUNDS = 12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LegTable:
+    """Costs between home (index 0) and stops (1 to n), and what is needed to draw the legs.
+
+    Parameters
+    ----------
+    points_enu_m
+        Home on the ground and the stops, shape (n + 1, 3).
+    cost
+        Symmetric, shape (n + 1, n + 1), in the metric's unit; infinite where no way was found.
+    """
+
+    roadmap: Roadmap
+    metric: LegMetric
+    points_enu_m: Array
+    cost: Array
+    _is_straight: NDArray[np.bool_]
+    _graph: csr_array
+
+    def polyline(self, start: int, end: int) -> Array:
+        """The way from one stop to another, shape (k, 3), both ends included.
+
+        Raises
+        ------
+        InfeasibleError
+            There is no way between them.
+        """
+        ends = self.points_enu_m[[start, end]]
+        if start == end:
+            return ends[:1]
+        if self._is_straight[start, end]:
+            return ends
+        _, previous = dijkstra(self._graph, directed=False, indices=[start], return_predecessors=True)
+        if previous[0, end] < 0:
+            raise InfeasibleError(f"there is no clear way between {ends[0].round(1)} and {ends[1].round(1)}")
+        way = [end]
+        while way[-1] != start:
+            way.append(int(previous[0, way[-1]]))
+        points = np.concatenate([self.points_enu_m, self.roadmap.nodes_enu_m])[way[::-1]]
+        return self._tightened(points, from_home=start == 0, to_home=end == 0)
+
+    def _tightened(self, points: Array, from_home: bool, to_home: bool) -> Array:
+        """Shortcut and straighten a polyline while it stays clear; the vertical part above home is kept."""
+        first = 1 if from_home else 0
+        last = len(points) - (1 if to_home else 0)
+        inner = _pull_tight(self.roadmap, points[first:last], self.metric)
+        return np.concatenate([points[:first], inner, points[last:]])
+
+
+def _pull_tight(roadmap: Roadmap, points: Array, metric: LegMetric) -> Array:
+    """Drop vertices that a clear leg can skip, and move the others towards the line between their neighbours."""
+    clear = roadmap.space.legs_clear
+    for _ in range(TIGHTEN_ROUNDS):
+        before = metric(np.diff(points, axis=0)).sum()
+        points = _skip_vertices(points, clear)
+        for i in range(1, len(points) - 1):
+            a, b, c = points[i - 1 : i + 2]
+            foot = a + np.clip((b - a) @ (c - a) / max((c - a) @ (c - a), 1e-12), 0.0, 1.0) * (c - a)
+            tries = b + np.array([1.0, 0.75, 0.5, 0.25, 0.1, 0.03])[:, None] * (foot - b)
+            good = clear(np.broadcast_to(a, tries.shape), tries) & clear(tries, np.broadcast_to(c, tries.shape))
+            if good.any():
+                points[i] = tries[np.argmax(good)]
+        if metric(np.diff(points, axis=0)).sum() > before - 1e-3:
+            break
+    return points
+
+
+def _skip_vertices(points: Array, clear: Callable[[Array, Array], NDArray[np.bool_]]) -> Array:
+    """Greedy shortcut: from each kept vertex jump to the furthest one that a clear leg reaches."""
+    kept = [0]
+    while kept[-1] < len(points) - 1:
+        here = kept[-1]
+        further = np.arange(here + 1, len(points))
+        reached = clear(np.broadcast_to(points[here], (len(further), 3)), points[further])
+        kept.append(int(further[reached][-1]) if reached.any() else here + 1)
+    return points[kept].copy()
+
+
+def build_leg_table(roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, monitor: Monitor = QUIET) -> LegTable:
+    """Costs between home and stops, shape (n, 3), all of which must be allowed positions."""
+    space = roadmap.space
+    n = len(stops_enu_m) + 1
+    points = np.concatenate([space.home_enu_m[None], stops_enu_m])
+    i, j = np.triu_indices(n, 1)
+    straight = np.zeros((n, n), np.bool_)
+    for start, end in chunks(len(i), PAIRS_PER_STEP):
+        monitor.report("checking legs", start, len(i))
+        a, b = i[start:end], j[start:end]
+        from_stop = a > 0
+        straight[a[from_stop], b[from_stop]] = space.legs_clear(points[a[from_stop]], points[b[from_stop]])
+    straight |= straight.T
+    graph = _with_stops(roadmap, points, straight, metric)
+    monitor.report("finding ways around", 0, n)
+    cost = np.full((n, n), np.inf)
+    cost[i, j] = np.where(straight[i, j], metric(points[j] - points[i]), np.inf)
+    cost = np.minimum(cost, cost.T)
+    np.fill_diagonal(cost, 0.0)
+    needs_way = np.flatnonzero(~np.isfinite(cost).all(axis=1))
+    for start, end in chunks(len(needs_way), 64):
+        monitor.report("finding ways around", start, len(needs_way))
+        rows = needs_way[start:end]
+        around = dijkstra(graph, directed=False, indices=rows)[:, :n]
+        cost[rows] = np.where(np.isfinite(cost[rows]), cost[rows], around)
+    return LegTable(roadmap, metric, points, np.minimum(cost, cost.T), straight, graph)
+
+
+def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], metric: LegMetric) -> csr_array:
+    """Roadmap plus stops: nodes 0 to n - 1 are home and stops, then the roadmap's."""
+    n, nodes = len(points), roadmap.nodes_enu_m
+    all_points = np.concatenate([points, nodes])
+    column = np.stack([np.zeros(roadmap.n_column, np.int64), n + np.arange(roadmap.n_column)], axis=1)
+    joined = roadmap.nearest_clear(points[1:], ROADMAP_NEIGHBOURS)
+    joined = np.stack([joined[:, 0] + 1, joined[:, 1] + n], axis=1)
+    nearest = np.argsort(np.where(straight, np.linalg.norm(points[:, None] - points[None], axis=2), np.inf), axis=1)[
+        :, :ROADMAP_NEIGHBOURS
+    ]
+    a = np.repeat(np.arange(n), nearest.shape[1])
+    direct = np.stack([a, nearest.ravel()], axis=1)
+    direct = direct[straight[direct[:, 0], direct[:, 1]]]
+    edges = np.concatenate([column, joined, np.unique(np.sort(direct, axis=1), axis=0), roadmap.edges + n])
+    weight = np.maximum(metric(all_points[edges[:, 1]] - all_points[edges[:, 0]]), 1e-9)
+    size = len(all_points)
+    return csr_array(coo_array((weight, (edges[:, 0], edges[:, 1])), shape=(size, size)))
