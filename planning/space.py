@@ -116,9 +116,11 @@ def _check_home(space: FreeSpace) -> None:
             f"home_enu_m: home {_text(home)} is not below or inside the airspace box {_text(space.low_enu_m)} to "
             f"{_text(space.high_enu_m)}; move home or widen the airspace"
         )
-    if space.solids.clearance_m(home[None], 1.0)[0] < 0:
+    # A home on the ground lies on the bottom face of the building it is in; a hand's breadth above it does not.
+    places = home + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]])
+    if (space.solids.clearance_m(places, 1.0) < 0).any():
         raise InfeasibleError(f"home_enu_m: home {_text(home)} lies inside a building or obstacle; move it outside")
-    if space.no_fly.clearance_m(home[None], 1.0)[0] < 0:
+    if (space.no_fly.clearance_m(places, 1.0) < 0).any():
         raise InfeasibleError(f"home_enu_m: home {_text(home)} lies inside a no-fly volume; move it outside")
     distance = space.solids.segment_distances_m(home[None], top[None], 10.0 * space.min_distance_m + 10.0)[0]
     if distance < space.min_distance_m + SAFETY_MARGIN_M:

@@ -1,0 +1,77 @@
+"""Allowed positions and legs, and homes that cannot be."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from planning.errors import InfeasibleError
+from planning.scenes import SCENES
+from planning.site import Airspace, NoFlyZone
+from planning.space import SAFETY_MARGIN_M, free_space
+
+
+def office_with(**changes):
+    model = SCENES["office"]()
+    return replace(model, site=replace(model.site, **changes))
+
+
+def test_viewpoint_at_exactly_the_minimum_distance_is_refused_only_for_the_rounding_margin():
+    space = free_space(SCENES["office"](), 10.0)
+    points = np.array([[0.0, -10.0 - d, 20.0] for d in (-1e-6, 0.0, 0.9 * SAFETY_MARGIN_M, 1.1 * SAFETY_MARGIN_M)])
+    assert space.is_allowed(points).tolist() == [False, False, False, True]
+    rounded = np.round(points[3], 4)
+    assert space.solids.clearance_m(rounded[None])[0] >= 10.0
+
+
+def test_positions_outside_the_airspace_inside_the_building_and_not_finite_are_refused():
+    space = free_space(SCENES["office"](), 1.0)
+    points = np.array([[0, -20, 80], [0, -20, 1], [0, 9, 20], [np.nan, -20, 20], [0, -np.inf, 20], [0, -20, 20.0]])
+    assert space.is_allowed(points).tolist() == [False] * 5 + [True]
+
+
+def test_leg_through_the_building_is_not_clear_and_leg_along_the_facade_is():
+    space = free_space(SCENES["office"](), 10.0)
+    a = np.array([[0.0, -20.0, 20.0], [-40.0, -11.0, 20.0]])
+    b = np.array([[0.0, 40.0, 20.0], [40.0, -11.0, 20.0]])
+    assert space.legs_clear(a, b).tolist() == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("home", "message"),
+    [
+        ((0.0, 9.0, 0.0), "inside a building"),
+        ((0.0, -4.0, 0.0), "comes within 4.00 m"),
+        ((0.0, -200.0, 0.0), "not below or inside the airspace"),
+        ((0.0, -45.0, 80.0), "not below or inside the airspace"),
+    ],
+)
+def test_impossible_homes_are_refused_with_what_was_measured(home, message):
+    with pytest.raises(InfeasibleError, match=message):
+        free_space(office_with(home_enu_m=home), 10.0)
+
+
+def test_home_in_a_no_fly_zone_or_below_one_is_refused():
+    airspace = SCENES["office"]().site.airspace
+    square = ((-10.0, -50.0), (10.0, -50.0), (10.0, -40.0), (-10.0, -40.0))
+    for floor, message in ((0.0, "inside a no-fly"), (2.0, "crosses a no-fly")):
+        zone = NoFlyZone("zone", square, floor - 0.5, 50.0)
+        with pytest.raises(InfeasibleError, match=message):
+            free_space(office_with(airspace=replace(airspace, no_fly=(zone,))), 10.0)
+
+
+def test_home_close_to_a_no_fly_zone_lowers_the_distance_kept_from_it_and_nothing_else():
+    airspace = SCENES["office"]().site.airspace
+    zone = NoFlyZone("road", ((4.0, -60.0), (60.0, -60.0), (60.0, -30.0), (4.0, -30.0)), 0.0, 120.0)
+    space = free_space(office_with(airspace=replace(airspace, no_fly=(zone,))), 10.0)
+    assert space.no_fly_distance_m == pytest.approx(4.0, abs=0.01)
+    assert space.min_distance_m == 10.0
+    points = np.array([[30.0, -29.0 + 4.0, 20.0], [30.0, -26.1, 20.0], [30.0, -45.0, 20.0], [30.0, -12.0, 20.0]])
+    assert space.is_allowed(points).tolist() == [True, False, False, True]
+
+
+def test_column_runs_from_home_to_the_airspace_floor_or_is_home_itself_when_home_is_higher():
+    assert free_space(SCENES["office"](), 10.0).column_top_enu_m[2] == pytest.approx(3.0 + SAFETY_MARGIN_M)
+    airspace = Airspace((-60.0, -70.0, 3.0), (60.0, 50.0, 75.0), ground_z_m=0.0)
+    high = free_space(office_with(airspace=airspace, home_enu_m=(0.0, -45.0, 12.0)), 10.0)
+    assert high.column_top_enu_m[2] == 12.0
