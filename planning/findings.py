@@ -7,11 +7,15 @@ from enum import StrEnum
 
 
 class Severity(StrEnum):
-    """How bad a finding is: an `ERROR` grounds the flight, a `WARNING` wants a decision, a `NOTE` informs."""
+    """How bad a finding is: an `ERROR` grounds the flight, a `WARNING` wants a decision, a `NOTE` informs.
+
+    `OK` says that a rule was looked at and kept.
+    """
 
     ERROR = "error"
     WARNING = "warning"
     NOTE = "note"
+    OK = "ok"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,183 @@
+"""`site import`: a building model or mesh to a site file."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from planning.errors import InputError
+
+if TYPE_CHECKING:
+    from planning.site_import.options import ImportOptions, PanelGrid
+
+Number3 = tuple[float, float, float]
+
+MAX_LISTED = 12
+"""Facades listed one by one."""
+
+EPILOG = """examples:
+  site import office.ifc -o office.site.json
+  site import block.gml -o block.site.json --building BLDG_0003
+  site import tower.obj -o tower.site.json --origin 22.3372,114.2636,62 \\
+      --panel-grid '-18,0,0 18,0,0 -18,0,42' --rows 14 --columns 20 --gap 0.1
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser("site", help="make a site file from a building model")
+    actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
+    command = actions.add_parser(
+        "import",
+        help="import IFC, CityGML, CityJSON, OBJ, PLY, GLB or STL",
+        description="Make a site from a building model. Windows become panels; a mesh needs --panel-grid.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.set_defaults(run=run)
+    # Coordinates south of the equator start with a minus; argparse would take "-33.8,151.2,5" for an option.
+    command._negative_number_matcher = re.compile(r"-[\d.]")
+    add = command.add_argument
+    add("file", type=Path, metavar="FILE", help="the model: .ifc, .gml, .xml, .json, .obj, .ply, .glb or .stl")
+    add("-o", "--out", type=Path, required=True, metavar="SITE", help="site file to write; its meshes go beside it")
+    add("--name", help="name of the site (default: the building's, else the file's)")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+    place = command.add_argument_group("where it is (instead of what the file says)").add_argument
+    place("--origin", type=_point, metavar="LAT,LON,H", help="place of the file's zero point; H above the ellipsoid")
+    place("--crs", help="coordinate reference system of the file's coordinates, such as EPSG:25832+7837")
+    place("--axis-order", choices=("auto", "xy", "yx"), default="auto", help="xy: east first, yx: north first")
+    place(
+        "--height-reference",
+        choices=("auto", "orthometric", "ellipsoid"),
+        default="auto",
+        help="what heights are above: sea level, the ellipsoid, or as the system says (default)",
+    )
+    place("--ground", type=float, metavar="Z", help="the ground's third coordinate in the file (default: lowest point)")
+    content = command.add_argument_group("what is in the file").add_argument
+    content("--building", metavar="ID", help="the building wanted, in a file with many")
+    content("--units", default="m", choices=("m", "cm", "mm", "ft", "in", "us-ft"), help="of a mesh file (default m)")
+    content("--up", choices=("y", "z"), help="axis that points up in a mesh file (default: y for GLB, else z)")
+    content("--deflection", type=float, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")
+    grid = command.add_argument_group("panels that you state").add_argument
+    grid(
+        "--panel-grid",
+        type=_triple,
+        action="append",
+        metavar="'E,N,U E,N,U E,N,U'",
+        help="lower left, lower right and upper left corner of a facade, seen from outside; may be repeated",
+    )
+    grid("--rows", type=int, action="append", metavar="N", help="panels upwards, once for all grids or one for each")
+    grid("--columns", type=int, action="append", metavar="N", help="panels side by side, likewise")
+    grid("--gap", type=float, default=0.0, metavar="M", help="width of the mullions between panels (default 0)")
+    grid("--grid-tolerance", type=float, default=2.0, metavar="M", help="allowed distance from the mesh (default 2 m)")
+    flight = command.add_argument_group("airspace and home (local metres east, north, up)").add_argument
+    flight("--home", type=_point, metavar="E,N,U", help="take-off place (default: in front of the largest facade)")
+    flight("--airspace-margin", type=float, default=40.0, metavar="M", help="around the building (default 40 m)")
+    flight("--floor", type=float, metavar="U", help="of the airspace (default: 2 m above ground)")
+    flight("--ceiling", type=float, metavar="U", help="of the airspace (default: 30 m above the building)")
+
+
+def _point(text: str) -> Number3:
+    parts = text.split(",")
+    try:
+        x, y, z = (float(part) for part in parts)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"expected three numbers with commas between them, got '{text}'") from None
+    return x, y, z
+
+
+def _triple(text: str) -> tuple[Number3, Number3, Number3]:
+    points = text.split()
+    if len(points) != 3:
+        raise argparse.ArgumentTypeError(f"expected three points with blanks between them, got '{text}'")
+    return _point(points[0]), _point(points[1]), _point(points[2])
+
+
+def run(options: argparse.Namespace) -> int:
+    """Import a site; returns the exit status."""
+    from planning.site_import.importer import import_site, write_imported_site
+
+    started = time.perf_counter()
+    imported = import_site(options.file, _import_options(options))
+    model = write_imported_site(options.out, imported, options.file)
+    seconds = time.perf_counter() - started
+    site = model.site
+    facades = [{"id": facade.id, "panels": len(facade.panels)} for facade in site.facades]
+    if options.json:
+        content = {
+            "site": str(options.out),
+            "name": site.name,
+            "panels": site.n_panels,
+            "facades": facades,
+            "building_mesh": site.building_mesh,
+            "triangles": len(model.building.triangles),
+            "origin": {
+                "lat_deg": site.origin.lat_deg,
+                "lon_deg": site.origin.lon_deg,
+                "ellipsoid_height_m": site.origin.ellipsoid_height_m,
+            },
+            "home_enu_m": site.home_enu_m,
+            "notes": imported.notes,
+            "sha256": model.sha256,
+            "seconds": round(seconds, 3),
+        }
+        print(json.dumps(content, indent=1, allow_nan=False))
+        return 0
+    listed = ", ".join(f"{facade['id']} {facade['panels']}" for facade in facades[:MAX_LISTED])
+    more = f", and {len(facades) - MAX_LISTED} smaller ones" if len(facades) > MAX_LISTED else ""
+    origin = site.origin
+    print(f"{options.out}: site '{site.name}', {site.n_panels} panels on {len(facades)} facades ({listed}{more})")
+    print(f"origin {origin.lat_deg:.7f}, {origin.lon_deg:.7f}, {origin.ellipsoid_height_m:.2f} m above the ellipsoid")
+    for note in imported.notes:
+        print(f"note: {note}", file=sys.stderr)
+    return 0
+
+
+def _import_options(options: argparse.Namespace) -> ImportOptions:
+    from planning.site import Origin
+    from planning.site_import.options import ImportOptions
+
+    try:
+        origin = None if options.origin is None else Origin(*options.origin)
+    except ValueError as error:
+        raise InputError(f"--origin: {error}") from error
+    return ImportOptions(
+        name=options.name,
+        origin=origin,
+        crs=options.crs,
+        axis_order=options.axis_order,
+        height_reference=options.height_reference,
+        up=options.up,
+        unit=options.units,
+        panel_grids=_grids(options),
+        grid_tolerance_m=options.grid_tolerance,
+        building=options.building,
+        ground_z=options.ground,
+        home_enu_m=options.home,
+        airspace_margin_m=options.airspace_margin,
+        floor_m=options.floor,
+        ceiling_m=options.ceiling,
+        deflection_m=options.deflection,
+    )
+
+
+def _grids(options: argparse.Namespace) -> tuple[PanelGrid, ...]:
+    """One grid for each --panel-grid, with its own rows and columns or those that all share."""
+    from planning.site_import.options import PanelGrid
+
+    corners = options.panel_grid or []
+    counts = []
+    for name, values in (("--rows", options.rows or []), ("--columns", options.columns or [])):
+        if corners and len(values) not in (1, len(corners)):
+            raise InputError(
+                f"{name}: expected it once, or once for each of {len(corners)} --panel-grid, got {len(values)}"
+            )
+        if values and not corners:
+            raise InputError(f"{name} goes with --panel-grid, which is missing")
+        counts.append(values * len(corners) if len(values) == 1 else values)
+    return tuple(PanelGrid(c, rows, columns, options.gap) for c, rows, columns in zip(corners, *counts, strict=True))

@@ -1,0 +1,153 @@
+"""From a site to a problem that optimisers can work on: free space, effects, reachability, and what can be flown to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from planning.coverage.model import CoverageModel, Precision
+from planning.coverage.sections import SectionGrid, panel_frames
+from planning.effects import Decision, Wish, decide
+from planning.errors import InfeasibleError
+from planning.findings import Finding, Severity
+from planning.occlusion import Occlusion, OcclusionScene, line_of_sight
+from planning.optimise.problem import ViewProblem, nothing_to_see
+from planning.plan import Camera, Constraints
+from planning.positions import spread_positions
+from planning.progress import QUIET, Monitor, Stop, never
+from planning.reachability import MAX_CELLS, MAX_POSITIONS, find_reachable
+from planning.routing.roadmap import build_roadmap
+from planning.site import SiteModel, panel_corners
+from planning.space import FreeSpace, free_space
+
+N_PLACES = 3000
+"""Allowed places on which effects look at the scene."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prepared:
+    """A problem with the decisions that shaped it.
+
+    Parameters
+    ----------
+    constraints
+        As asked for, with occlusion as it was decided.
+    effects
+        Decisions of all effects.
+    findings
+        What the pilot should know about the site: panels that nobody can see, distances that had to be lowered.
+    """
+
+    problem: ViewProblem
+    constraints: Constraints
+    effects: tuple[Decision, ...]
+    findings: tuple[Finding, ...]
+
+
+def coverage_model(
+    site_model: SiteModel, space: FreeSpace, camera: Camera, constraints: Constraints, precision: Precision = "f32"
+) -> CoverageModel:
+    """Coverage model for constraints whose occlusion is decided (`on` or `off`)."""
+    if constraints.occlusion == "auto":
+        raise ValueError("occlusion is not decided yet")
+    return CoverageModel(
+        panel_frames(panel_corners(site_model.site)),
+        camera,
+        SectionGrid(constraints.section_step_deg),
+        whole_panel=constraints.whole_panel,
+        max_distance_m=constraints.max_distance_m,
+        sight=line_of_sight(space.solids.bvh.corners) if constraints.occlusion == "on" else None,
+        precision=precision,
+    )
+
+
+def decide_occlusion(site_model: SiteModel, space: FreeSpace, wish: Wish, seed: int = 0) -> Decision:
+    """Whether occlusion is taken into account on this site, and why."""
+    frames = panel_frames(panel_corners(site_model.site))
+    places = spread_positions(space, frames, N_PLACES, np.random.default_rng(seed))
+    return decide(Occlusion(), OcclusionScene(frames, space.solids.bvh.corners, places), wish)
+
+
+def prepare(
+    site_model: SiteModel,
+    camera: Camera,
+    constraints: Constraints,
+    *,
+    precision: Precision = "f32",
+    max_positions: int = MAX_POSITIONS,
+    max_cells: int = MAX_CELLS,
+    seed: int = 0,
+    stop: Stop = never,
+    monitor: Monitor = QUIET,
+) -> Prepared:
+    """Prepare a site.
+
+    Raises
+    ------
+    InfeasibleError
+        Home cannot be used, the airspace is empty, or no allowed viewpoint sees any panel.
+    """
+    monitor.report("reading the site", 0, 1)
+    space = free_space(site_model, constraints.min_distance_m)
+    decision = decide_occlusion(site_model, space, _wish(constraints), seed)
+    decided = replace(constraints, occlusion="on" if decision.on else "off")
+    model = coverage_model(site_model, space, camera, decided, precision)
+    if len(spread_positions(space, model.frames, N_PLACES, np.random.default_rng(seed))) == 0:
+        raise InfeasibleError(
+            f"airspace: no place in it keeps {constraints.min_distance_m:g} m from the building and all obstacles; "
+            "widen the airspace or lower the minimum distance"
+        )
+    reachability = find_reachable(model, space, seed, max_positions, max_cells, stop, monitor)
+    if reachability.upper_bound == 0:
+        raise nothing_to_see()
+    monitor.report("finding ways around", 0, 1)
+    problem = ViewProblem(model, space, reachability, build_roadmap(space, seed))
+    return Prepared(problem, decided, (decision,), _findings(site_model, problem))
+
+
+def _wish(constraints: Constraints) -> Wish:
+    wishes: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
+    return wishes[constraints.occlusion]
+
+
+def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...]:
+    found = []
+    space, model = problem.space, problem.model
+    inside = space.solids.clearance_m(model.targets_enu_m, 1.0) < 0
+    bounds = (problem.reachability.verdicts != 0).sum(axis=1)
+    for index, panel in enumerate(site_model.site.panels):
+        if inside[index]:
+            found.append(
+                Finding(
+                    Severity.WARNING,
+                    "panel-faces-inwards",
+                    f"panel '{panel.id}' looks into a solid: its corners may be clockwise, or the mesh covers it",
+                    panel.id,
+                )
+            )
+        elif bounds[index] == 0:
+            found.append(
+                Finding(
+                    Severity.WARNING,
+                    "panel-unseen",
+                    f"no allowed viewpoint sees panel '{panel.id}'",
+                    panel.id,
+                    0.0,
+                    float(model.grid.n_sections),
+                    "sections",
+                )
+            )
+    if space.no_fly_distance_m < space.min_distance_m:
+        found.append(
+            Finding(
+                Severity.WARNING,
+                "home-near-no-fly",
+                f"home stands {space.no_fly_distance_m:.1f} m from a no-fly volume; no more than that is kept from it",
+                "home",
+                space.no_fly_distance_m,
+                space.min_distance_m,
+                "m",
+            )
+        )
+    return tuple(found)
