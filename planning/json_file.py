@@ -78,6 +78,7 @@ def to_record(content: Any, record: type[Record], path: Path) -> Record:
 
 _WORDS = {
     "array": "list",
+    "object": "object",
     "float": "number",
     "int": "whole number",
     "str": "text",
