@@ -119,7 +119,9 @@ def objective(state: CoverState) -> float:
 def greedy_steps(state: CoverState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int, enough: float) -> int:
     """Add the candidate of the largest gain until `n_wanted` are chosen, f reaches `enough` or no gain is left.
 
-    `chosen` takes the candidates' numbers; returns how many there are now.
+    `chosen` takes the candidates' numbers; returns how many there are now. Beyond depth 1 a candidate that is chosen
+    could still gain by being chosen again; its gain is set to minus infinity, since a second photo from the same place
+    is no second view.
     """
     f = objective(state)
     while n_chosen < n_wanted and f < enough:
@@ -128,6 +130,8 @@ def greedy_steps(state: CoverState, chosen: NDArray[np.int64], n_chosen: int, n_
         if gain <= 1e-9:
             break
         add_elements(state, state.items[state.starts[best] : state.starts[best + 1]])
+        if state.depth[0] > 1:
+            state.gains[best] = -np.inf
         chosen[n_chosen] = best
         n_chosen += 1
         f += gain

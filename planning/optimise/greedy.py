@@ -19,8 +19,7 @@ from planning.optimise import cover_kernel as kernel
 from planning.optimise.bounds import dual_bound
 from planning.optimise.candidates import N_CANDIDATES, Pool, candidate_pool
 from planning.optimise.improve import Exchange, cover_state, improve_views
-from planning.optimise.problem import Goal, ViewProblem, ViewSet, concatenate, take
-from planning.plan import ViewpointArrays
+from planning.optimise.problem import Goal, ViewProblem, ViewSet, take
 from planning.progress import Monitor, Stop, Trace
 
 Array = NDArray[np.float64]
@@ -86,7 +85,7 @@ def greedy(
         if parameters.improve:
             views = improve_views(problem, pool, chosen, weights, seed, stop, trace, monitor)
     else:
-        views = spend_spare_views(problem.model, pool, views, goal.n_views, stop, monitor)
+        views = take(pool.views, spend_spare_views(problem.model, pool, chosen, goal.n_views, stop, monitor))
     return ViewSet(views, bound)
 
 
@@ -147,21 +146,26 @@ def element_weights(model: CoverageModel, by_solid_angle: bool) -> Array:
 
 
 def spend_spare_views(
-    model: CoverageModel, pool: Pool, views: ViewpointArrays, n_views: int, stop: Stop, monitor: Monitor
-) -> ViewpointArrays:
-    """Add candidates until there are `n_views`: more views of each section, then finer sections (`SPARE_STAGES`)."""
+    model: CoverageModel, pool: Pool, chosen: NDArray[np.int64], n_views: int, stop: Stop, monitor: Monitor
+) -> NDArray[np.int64]:
+    """Numbers of the chosen candidates and of further ones, until there are `n_views` or nothing is left to gain.
+
+    Further ones bring more views of each section, then finer sections (`SPARE_STAGES`).
+    """
     for division, depth in SPARE_STAGES:
-        n_spare = n_views - len(views.heading_rad)
+        n_spare = n_views - len(chosen)
         if n_spare <= 0 or stop():
             break
-        monitor.report("spending spare views", len(views.heading_rad), n_views)
+        monitor.report("spending spare views", len(chosen), n_views)
         finer = replace(model, grid=SectionGrid(model.grid.step_deg / division))
         elements = pool.elements if division == 1 else finer.elements(pool.views)
         state = cover_state(elements, np.ones(finer.n_elements))
         state.depth[0] = depth
-        state.counts[:] = np.bincount(finer.elements(views).items, minlength=finer.n_elements)
+        for candidate in chosen:
+            kernel.add_elements(state, elements.of(candidate))
         kernel.refresh_gains(state)
+        state.gains[chosen] = -np.inf
         added = np.zeros(n_spare, np.int64)
         n_added = kernel.greedy_steps(state, added, 0, n_spare, np.inf)
-        views = concatenate([views, take(pool.views, added[:n_added])])
-    return views
+        chosen = np.concatenate([chosen, added[:n_added]])
+    return chosen

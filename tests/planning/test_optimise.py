@@ -114,6 +114,7 @@ def test_greedy_with_enough_views_covers_everything_any_candidate_covers_and_spe
     chosen, trace = run(greedy, problem, Goal(n_views=400), parameters=FAST)
     counts = exact_coverage(problem.model, chosen.views)
     assert len(chosen.views.heading_rad) == 400
+    assert len(np.unique(np.column_stack(chosen.views), axis=0)) == 400
     assert np.count_nonzero(counts) >= 0.99 * problem.reachability.upper_bound
     assert np.count_nonzero(counts) <= problem.reachability.upper_bound
     assert np.count_nonzero(counts >= 2) > 0.95 * np.count_nonzero(counts)
