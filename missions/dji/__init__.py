@@ -1,0 +1,1 @@
+"""DJI's wayline format (WPML): KMZ files with what the user edits (template) and what the aircraft flies (waylines)."""

@@ -1,0 +1,267 @@
+"""What the aircraft would do with a wayline: where it takes photos, and how the camera stands at each.
+
+The order of things at a waypoint: the aircraft arrives with the heading that the waypoint before gave it, does the
+actions triggered by its arrival, turns as the leg that begins wants it, does the actions triggered by that, and leaves.
+Sources: DJI Cloud API documentation, WPML common elements (heading modes, triggers); files of FlightHub 2 (a time-lapse
+started on a leg). That a photo trigger by time or distance shoots at once when it is armed is assumed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from missions.dji.wpml import Action, ActionGroup, Folder, WpmlWaypoint
+from missions.legs import bearing_deg, courses_deg, leg_lengths_m, point_between, shots_on_leg
+from missions.model import ReadPhoto
+from planning.frames import wrap_heading_deg
+
+PHOTO_FUNCS = ("takePhoto", "orientedShoot", "accurateShoot")
+
+_LAPSE_SHOT = Action(None, "takePhoto", {})
+
+
+@dataclass(frozen=True, slots=True)
+class FlownPoint:
+    """A point of the flight with the photos taken there; the height is in the wayline's own reference."""
+
+    lat_deg: float
+    lon_deg: float
+    height_m: float
+    photos: tuple[ReadPhoto, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Leg:
+    """A leg as flown: headings and pitches at its two ends; None where they are not known."""
+
+    start: FlownPoint
+    end: FlownPoint
+    mode: str
+    heading_deg: tuple[float | None, float | None]
+    pitch_deg: tuple[float | None, float | None]
+    poi_lat_lon_deg: tuple[float, float] | None
+
+    def point_at(self, fraction: float) -> FlownPoint:
+        """Point at `fraction` of the leg, without photos."""
+        ends = (self.start.lat_deg, self.start.lon_deg, self.end.lat_deg, self.end.lon_deg)
+        height_m = self.start.height_m + fraction * (self.end.height_m - self.start.height_m)
+        return FlownPoint(*point_between(*ends, fraction), height_m)
+
+    def heading_at(self, fraction: float) -> float | None:
+        """Heading of the nose at `fraction` of the leg."""
+        start, end = self.heading_deg
+        if self.mode == "towardPOI" and self.poi_lat_lon_deg is not None:
+            point = self.point_at(fraction)
+            return bearing_deg(point.lat_deg, point.lon_deg, *self.poi_lat_lon_deg)
+        if self.mode == "smoothTransition" and end is not None:
+            return end if start is None else start + fraction * wrap_heading_deg(end - start)
+        return start
+
+    def pitch_at(self, fraction: float) -> float | None:
+        """Gimbal pitch at `fraction` of the leg."""
+        start, end = self.pitch_deg
+        return end if start is None or end is None else start + fraction * (end - start)
+
+
+@dataclass(slots=True)
+class _Trigger:
+    """Something that takes photos along legs, every so many seconds or metres, up to a waypoint."""
+
+    actions: tuple[Action, ...]
+    every: float
+    in_seconds: bool
+    end_index: int
+    travelled: float = 0.0
+
+
+class _Groups:
+    """Action groups by where they act; groups of at most one leg are found without a search."""
+
+    def __init__(self, groups: Iterable[ActionGroup]) -> None:
+        self._short: dict[int, list[tuple[range, ActionGroup]]] = {}
+        self._long: list[tuple[range, ActionGroup]] = []
+        for group in groups:
+            if group.start_index is not None and group.end_index is not None:
+                legs = range(group.start_index, group.end_index)
+                near = self._long if len(legs) > 1 else self._short.setdefault(group.start_index, [])
+                near.append((legs, group))
+
+    def at_waypoint(self, trigger: str, index: int) -> Iterator[ActionGroup]:
+        """Groups of one trigger that act at waypoint `index`."""
+        return (group for legs, group in self._near(trigger, index) if index in legs or index == legs.stop)
+
+    def on_leg(self, trigger: str, index: int) -> Iterator[ActionGroup]:
+        """Groups of one trigger that act on the leg from waypoint `index` to the next."""
+        return (group for legs, group in self._near(trigger, index) if index in legs)
+
+    def _near(self, trigger: str, index: int) -> Iterator[tuple[range, ActionGroup]]:
+        candidates = (*self._short.get(index - 1, ()), *self._short.get(index, ()), *self._long)
+        return ((legs, group) for legs, group in candidates if group.trigger == trigger)
+
+
+@dataclass(slots=True)
+class Flight:
+    """A wayline being flown.
+
+    Parameters
+    ----------
+    ids_from_suffix
+        Whether the suffixes of the photos' names are viewpoint ids, which they are in our own files.
+    """
+
+    folder: Folder
+    ids_from_suffix: bool
+    nose_deg: float | None = None
+    gimbal_yaw_deg: float = 0.0
+    pitch_deg: float | None = None
+    lapse: _Trigger | None = None
+    triggers: list[_Trigger] = field(default_factory=list)
+
+    def points(self) -> list[FlownPoint]:
+        """All waypoints, and between them the points where photos are taken on the way.
+
+        The wayline must have passed `missions.dji.check`: coordinates, heights and speeds are there.
+        """
+        waypoints = self.folder.waypoints
+        places = [_place(waypoint) for waypoint in waypoints]
+        lat, lon, height = [p.lat_deg for p in places], [p.lon_deg for p in places], [p.height_m for p in places]
+        courses, lengths_m = courses_deg(lat, lon), leg_lengths_m(lat, lon, height)
+        groups = _Groups(group for waypoint in waypoints for group in waypoint.groups)
+        self._act(self.folder.start_actions)
+        flown: list[FlownPoint] = []
+        photos: list[ReadPhoto] = []
+        for index, waypoint in enumerate(waypoints):
+            self._arrive(waypoint, is_first=index == 0, courses=courses)
+            for group in groups.at_waypoint("reachPoint", index):
+                photos += self._act(group.actions)
+            if index == len(waypoints) - 1:
+                flown.append(_with(places[index], photos))
+                break
+            self._turn_for_leg(waypoint, places[index], courses[index])
+            photos += self._begin_leg(groups, index)
+            leg = self._leg(waypoint, waypoints[index + 1], places[index], places[index + 1], groups, index)
+            speed_m_s = waypoint.speed_m_s or self.folder.speed_m_s or 1.0
+            flown.append(_with(places[index], photos))
+            on_the_way = self._shots(leg, float(lengths_m[index]), speed_m_s, index)
+            flown += [_with(leg.point_at(fraction), [shot]) for fraction, shot in on_the_way if fraction < 1.0]
+            photos = [shot for fraction, shot in on_the_way if fraction == 1.0]
+            self.nose_deg, self.pitch_deg = leg.heading_at(1.0), leg.pitch_at(1.0)
+        return flown
+
+    def _arrive(self, waypoint: WpmlWaypoint, *, is_first: bool, courses: Sequence[float | None]) -> None:
+        """Set the heading that a waypoint itself demands; the first one is reached looking along its leg."""
+        is_fixed = waypoint.heading_mode == "fixed" and waypoint.heading_angle_enable
+        if is_fixed or (is_first and waypoint.heading_mode == "smoothTransition"):
+            self.nose_deg = waypoint.heading_angle_deg
+        elif is_first and waypoint.heading_mode == "followWayline":
+            self.nose_deg = next((course for course in courses if course is not None), None)
+
+    def _turn_for_leg(self, waypoint: WpmlWaypoint, place: FlownPoint, course_deg: float | None) -> None:
+        if waypoint.heading_mode == "followWayline" and course_deg is not None:
+            self.nose_deg = course_deg
+        elif waypoint.heading_mode == "manually":
+            self.nose_deg = None
+        elif waypoint.heading_mode == "towardPOI" and waypoint.poi_lat_lon_deg is not None:
+            self.nose_deg = bearing_deg(place.lat_deg, place.lon_deg, *waypoint.poi_lat_lon_deg)
+
+    def _begin_leg(self, groups: _Groups, index: int) -> list[ReadPhoto]:
+        """Actions and triggers that begin with the leg from waypoint `index`; the photos taken there and then."""
+        photos: list[ReadPhoto] = []
+        for group in groups.on_leg("betweenAdjacentPoints", index):
+            photos += self._act(group.actions)
+        for name, in_seconds in (("multipleTiming", True), ("multipleDistance", False)):
+            for group in groups.on_leg(name, index):
+                shoots = any(action.func in PHOTO_FUNCS for action in group.actions)
+                if group.start_index == index and shoots and group.trigger_param and group.end_index is not None:
+                    photos += self._act(group.actions)
+                    trigger = _Trigger(group.actions, group.trigger_param, in_seconds, group.end_index)
+                    self.triggers.append(trigger)
+        return photos
+
+    def _leg(
+        self,
+        waypoint: WpmlWaypoint,
+        following: WpmlWaypoint,
+        start: FlownPoint,
+        end: FlownPoint,
+        groups: _Groups,
+        index: int,
+    ) -> _Leg:
+        pitch_after_deg = self.pitch_deg
+        for group in groups.on_leg("betweenAdjacentPoints", index):
+            for action in group.actions:
+                if action.func == "gimbalEvenlyRotate":
+                    pitch_after_deg = action.number("gimbalPitchRotateAngle")
+        headings = (self.nose_deg, following.heading_angle_deg)
+        pitches = (self.pitch_deg, pitch_after_deg)
+        return _Leg(start, end, waypoint.heading_mode, headings, pitches, waypoint.poi_lat_lon_deg)
+
+    def _shots(self, leg: _Leg, length_m: float, speed_m_s: float, index: int) -> list[tuple[float, ReadPhoto]]:
+        """Photos on a leg in order, each with its fraction of the leg in (0, 1]."""
+        self.triggers = [trigger for trigger in self.triggers if trigger.end_index > index]
+        due: list[tuple[float, tuple[Action, ...]]] = []
+        for trigger in (*self.triggers, *([] if self.lapse is None else [self.lapse])):
+            length = length_m / speed_m_s if trigger.in_seconds else length_m
+            due += [(fraction, trigger.actions) for fraction in shots_on_leg(trigger.travelled, length, trigger.every)]
+            trigger.travelled += length
+        shots: list[tuple[float, ReadPhoto]] = []
+        for fraction, actions in sorted(due, key=lambda shot: shot[0]):
+            self.nose_deg, self.pitch_deg = leg.heading_at(fraction), leg.pitch_at(fraction)
+            shots += [(fraction, photo) for photo in self._act(actions)]
+        return shots
+
+    def _act(self, actions: Sequence[Action]) -> list[ReadPhoto]:
+        """Do actions in order; the photos they take."""
+        photos: list[ReadPhoto] = []
+        for action in actions:
+            if action.func == "rotateYaw":
+                self.nose_deg = action.number("aircraftHeading")
+            elif action.func == "gimbalRotate":
+                self._rotate_gimbal(action)
+            elif action.func == "takePhoto":
+                photos.append(self._photo(action.params.get("fileSuffix", "")))
+            elif action.func in PHOTO_FUNCS:
+                photos.append(self._oriented_photo(action))
+            elif action.func == "startTimeLapse" and self.lapse is None:
+                every_s = action.number("minShootInterval") or 0.0
+                self.lapse = _Trigger((_LAPSE_SHOT,), every_s, in_seconds=True, end_index=len(self.folder.waypoints))
+                photos.append(self._photo(""))
+            elif action.func == "stopTimeLapse":
+                self.lapse = None
+        return photos
+
+    def _rotate_gimbal(self, action: Action) -> None:
+        pitch, yaw = action.number("gimbalPitchRotateAngle"), action.number("gimbalYawRotateAngle")
+        is_relative = action.params.get("gimbalRotateMode") == "relativeAngle"
+        if action.is_on("gimbalPitchRotateEnable") and pitch is not None:
+            if not is_relative:
+                self.pitch_deg = pitch
+            elif self.pitch_deg is not None:
+                self.pitch_deg += pitch
+        if action.is_on("gimbalYawRotateEnable") and yaw is not None:
+            from_north = action.params.get("gimbalHeadingYawBase") == "north" and not is_relative
+            self.gimbal_yaw_deg = yaw - (self.nose_deg or 0.0) if from_north else yaw
+
+    def _photo(self, suffix: str) -> ReadPhoto:
+        heading = None if self.nose_deg is None else wrap_heading_deg(self.nose_deg + self.gimbal_yaw_deg)
+        return ReadPhoto(heading, self.pitch_deg, suffix if self.ids_from_suffix else "")
+
+    def _oriented_photo(self, action: Action) -> ReadPhoto:
+        """A photo that says all its angles itself; the gimbal's yaw counts from north."""
+        self.nose_deg, self.gimbal_yaw_deg = action.number("aircraftHeading"), 0.0
+        self.pitch_deg = action.number("gimbalPitchRotateAngle")
+        yaw = action.number("gimbalYawRotateAngle")
+        heading = self.nose_deg if yaw is None else yaw
+        return ReadPhoto(None if heading is None else wrap_heading_deg(heading), self.pitch_deg)
+
+
+def _place(waypoint: WpmlWaypoint) -> FlownPoint:
+    assert waypoint.lat_deg is not None  # missions.dji.check made sure of all three
+    assert waypoint.lon_deg is not None
+    assert waypoint.execute_height_m is not None
+    return FlownPoint(waypoint.lat_deg, waypoint.lon_deg, waypoint.execute_height_m)
+
+
+def _with(place: FlownPoint, photos: Sequence[ReadPhoto]) -> FlownPoint:
+    return FlownPoint(place.lat_deg, place.lon_deg, place.height_m, tuple(photos))

@@ -1,0 +1,286 @@
+"""The content of template.kml and waylines.wpml as records, as tolerant as a check of it needs.
+
+Nothing is judged here but whether the text is XML and WPML at all: a missing element is None, an element that does not
+hold what it should is None and listed in `WpmlDocument.garbled`. `missions.dji.check` says what is wrong,
+`missions.dji.read` what the aircraft would do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
+
+from planning.errors import MissionError
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+Number = TypeVar("Number", int, float)
+
+_WPML_NAMESPACE = re.compile(r"\{https?://www\.(?:dji|uav)\.com/wpmz/(\d+\.\d+\.\d+)\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """One action: its actionActuatorFunc and the text of each parameter."""
+
+    action_id: int | None
+    func: str
+    params: dict[str, str]
+
+    def number(self, name: str) -> float | None:
+        """A numeric parameter; None where it is missing or no number."""
+        return _as_number(self.params.get(name, ""), float)
+
+    def is_on(self, name: str) -> bool:
+        """Whether a 0/1 parameter is 1."""
+        return self.params.get(name, "") in ("1", "true")
+
+
+@dataclass(frozen=True, slots=True)
+class ActionGroup:
+    """Actions and what triggers them between two waypoint indices, both included."""
+
+    group_id: int | None
+    start_index: int | None
+    end_index: int | None
+    trigger: str
+    trigger_param: float | None
+    actions: tuple[Action, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class WpmlWaypoint:
+    """One Placemark with a Point. `execute_height_m` stands in waylines, the other two heights in templates."""
+
+    index: int | None
+    lon_deg: float | None
+    lat_deg: float | None
+    execute_height_m: float | None
+    height_m: float | None
+    ellipsoid_height_m: float | None
+    speed_m_s: float | None
+    heading_mode: str
+    heading_angle_deg: float | None
+    heading_angle_enable: bool
+    heading_path_mode: str
+    poi_lat_lon_deg: tuple[float, float] | None
+    turn_mode: str
+    turn_damping_m: float | None
+    use_straight_line: bool
+    gimbal_heading: bool
+    groups: tuple[ActionGroup, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Folder:
+    """One wayline, or one template. `height_mode` is executeHeightMode in waylines and heightMode in templates."""
+
+    template_type: str
+    wayline_id: int | None
+    height_mode: str
+    speed_m_s: float | None
+    distance_m: float | None
+    duration_s: float | None
+    image_format: str
+    start_actions: tuple[Action, ...]
+    waypoints: tuple[WpmlWaypoint, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MissionConfig:
+    """The missionConfig element. `payloads` are (payloadEnumValue, payloadPositionIndex)."""
+
+    fly_to_wayline_mode: str
+    finish_action: str
+    exit_on_rc_lost: str
+    rc_lost_action: str
+    takeoff_security_height_m: float | None
+    takeoff_ref_lat_lon_height: tuple[float, float, float] | None
+    transitional_speed_m_s: float | None
+    rth_height_m: float | None
+    drone: tuple[int, int] | None
+    payloads: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class WpmlDocument:
+    """template.kml or waylines.wpml."""
+
+    version: str
+    author: str
+    config: MissionConfig
+    folders: tuple[Folder, ...]
+    garbled: tuple[str, ...]
+
+
+def parse_wpml(content: bytes, part: str) -> WpmlDocument:
+    """Records of one part of a mission.
+
+    Parameters
+    ----------
+    part
+        Name of the file, for messages.
+
+    Raises
+    ------
+    MissionError
+        The content is not XML, declares entities (which no mission needs and attacks do), or is not WPML.
+    """
+    from xml.etree.ElementTree import ParseError
+
+    from defusedxml.common import DefusedXmlException
+    from defusedxml.ElementTree import fromstring
+
+    try:
+        root = fromstring(content, forbid_dtd=True)
+    except DefusedXmlException as error:
+        raise MissionError(f"{part}: declares a DTD or entities, which no mission needs; refused as hostile") from error
+    except (ParseError, ValueError, LookupError) as error:
+        raise MissionError(f"{part}: not readable as XML ({error}); export the mission again") from error
+    version = next((found[1] for element in root.iter() if (found := _WPML_NAMESPACE.match(element.tag))), "")
+    document = _child(root, "Document")
+    if not version or document is None:
+        raise MissionError(
+            f"{part}: this is XML, but not a DJI mission; expected kml/Document with the namespace "
+            f"http://www.dji.com/wpmz/1.0.x, found <{_local(root)}>"
+        )
+    return _Parser().document(document, version)
+
+
+def _local(element: Element) -> str:
+    return element.tag.rpartition("}")[2]
+
+
+def _children(element: Element | None, name: str) -> Iterator[Element]:
+    return (child for child in (element if element is not None else ()) if _local(child) == name)
+
+
+def _child(element: Element | None, name: str) -> Element | None:
+    return next(_children(element, name), None)
+
+
+def _text(element: Element | None, name: str) -> str:
+    child = _child(element, name)
+    return "" if child is None else (child.text or "").strip()
+
+
+def _as_number(text: str, kind: Callable[[str], Number]) -> Number | None:
+    try:
+        return None if "_" in text else kind(text)
+    except ValueError:
+        return None
+
+
+@dataclass(slots=True)
+class _Parser:
+    """Elements to records; collects the texts that are no numbers where numbers belong."""
+
+    garbled: list[str] = field(default_factory=list)
+
+    def number(self, element: Element | None, name: str, kind: Callable[[str], Number]) -> Number | None:
+        """Number in a child element; None, noted in `garbled`, where it holds something else."""
+        text = _text(element, name)
+        value = _as_number(text, kind)
+        if text and value is None:
+            self.garbled.append(f"{name} is '{text[:40]}'")
+        return value
+
+    def numbers(self, text: str, n: int, name: str) -> tuple[float, ...] | None:
+        """The first `n` numbers of a comma-separated text; None where there are fewer."""
+        values = [_as_number(part.strip(), float) for part in text.split(",")[:n]]
+        found = tuple(value for value in values if value is not None)
+        if len(found) == n:
+            return found
+        if text:
+            self.garbled.append(f"{name} is '{text[:40]}'")
+        return None
+
+    def document(self, element: Element, version: str) -> WpmlDocument:
+        config = self.config(_child(element, "missionConfig"))
+        folders = tuple(self.folder(folder) for folder in _children(element, "Folder"))
+        return WpmlDocument(version, _text(element, "author"), config, folders, tuple(self.garbled))
+
+    def config(self, element: Element | None) -> MissionConfig:
+        drone = _child(element, "droneInfo")
+        drone_number = self.number(drone, "droneEnumValue", int)
+        payloads = [
+            (self.number(payload, "payloadEnumValue", int), self.number(payload, "payloadPositionIndex", int) or 0)
+            for payload in _children(element, "payloadInfo")
+        ]
+        reference = self.numbers(_text(element, "takeOffRefPoint"), 3, "takeOffRefPoint")
+        return MissionConfig(
+            fly_to_wayline_mode=_text(element, "flyToWaylineMode"),
+            finish_action=_text(element, "finishAction"),
+            exit_on_rc_lost=_text(element, "exitOnRCLost"),
+            rc_lost_action=_text(element, "executeRCLostAction"),
+            takeoff_security_height_m=self.number(element, "takeOffSecurityHeight", float),
+            takeoff_ref_lat_lon_height=None if reference is None else (reference[0], reference[1], reference[2]),
+            transitional_speed_m_s=self.number(element, "globalTransitionalSpeed", float),
+            rth_height_m=self.number(element, "globalRTHHeight", float),
+            drone=None if drone_number is None else (drone_number, self.number(drone, "droneSubEnumValue", int) or 0),
+            payloads=tuple((number, position) for number, position in payloads if number is not None),
+        )
+
+    def folder(self, element: Element) -> Folder:
+        placemarks = [p for p in _children(element, "Placemark") if _child(p, "Point") is not None]
+        coordinates = _child(element, "waylineCoordinateSysParam")
+        return Folder(
+            template_type=_text(element, "templateType"),
+            wayline_id=self.number(element, "waylineId", int),
+            height_mode=_text(element, "executeHeightMode") or _text(coordinates, "heightMode"),
+            speed_m_s=self.number(element, "autoFlightSpeed", float),
+            distance_m=self.number(element, "distance", float),
+            duration_s=self.number(element, "duration", float),
+            image_format=_text(_child(element, "payloadParam"), "imageFormat"),
+            start_actions=self.actions(_child(element, "startActionGroup")),
+            waypoints=tuple(self.waypoint(placemark) for placemark in placemarks),
+        )
+
+    def waypoint(self, element: Element) -> WpmlWaypoint:
+        heading, turn = _child(element, "waypointHeadingParam"), _child(element, "waypointTurnParam")
+        position = self.numbers(_text(_child(element, "Point"), "coordinates"), 2, "coordinates")
+        poi = self.numbers(_text(heading, "waypointPoiPoint"), 2, "waypointPoiPoint")
+        return WpmlWaypoint(
+            index=self.number(element, "index", int),
+            lon_deg=None if position is None else position[0],
+            lat_deg=None if position is None else position[1],
+            execute_height_m=self.number(element, "executeHeight", float),
+            height_m=self.number(element, "height", float),
+            ellipsoid_height_m=self.number(element, "ellipsoidHeight", float),
+            speed_m_s=self.number(element, "waypointSpeed", float),
+            heading_mode=_text(heading, "waypointHeadingMode"),
+            heading_angle_deg=self.number(heading, "waypointHeadingAngle", float),
+            heading_angle_enable=_text(heading, "waypointHeadingAngleEnable") in ("1", "true"),
+            heading_path_mode=_text(heading, "waypointHeadingPathMode"),
+            poi_lat_lon_deg=None if poi is None else (poi[0], poi[1]),
+            turn_mode=_text(turn, "waypointTurnMode"),
+            turn_damping_m=self.number(turn, "waypointTurnDampingDist", float),
+            use_straight_line=_text(element, "useStraightLine") in ("1", "true"),
+            gimbal_heading=_child(element, "waypointGimbalHeadingParam") is not None,
+            groups=tuple(self.group(group) for group in _children(element, "actionGroup")),
+        )
+
+    def group(self, element: Element) -> ActionGroup:
+        trigger = _child(element, "actionTrigger")
+        return ActionGroup(
+            group_id=self.number(element, "actionGroupId", int),
+            start_index=self.number(element, "actionGroupStartIndex", int),
+            end_index=self.number(element, "actionGroupEndIndex", int),
+            trigger=_text(trigger, "actionTriggerType"),
+            trigger_param=self.number(trigger, "actionTriggerParam", float),
+            actions=self.actions(element),
+        )
+
+    def actions(self, element: Element | None) -> tuple[Action, ...]:
+        return tuple(self.action(action) for action in _children(element, "action"))
+
+    def action(self, element: Element) -> Action:
+        params = _child(element, "actionActuatorFuncParam")
+        return Action(
+            action_id=self.number(element, "actionId", int),
+            func=_text(element, "actionActuatorFunc"),
+            params={_local(p): (p.text or "").strip() for p in (params if params is not None else ())},
+        )

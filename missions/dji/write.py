@@ -1,0 +1,252 @@
+"""A mission as DJI's KMZ: template.kml and waylines.wpml that agree, in the element order of DJI's own files.
+
+Every waypoint stops (`toPointAndStopWithDiscontinuityCurvature`) and every leg is straight, because only then is the
+flown path the checked polyline. At each view one action group turns the aircraft, tilts the gimbal, waits until both
+have settled and takes the photo. Between views the nose stays where it is (`fixed`) or, where the plan turns in flight,
+moves on to the next heading (`smoothTransition`); it never swings to the course and back.
+"""
+
+from __future__ import annotations
+
+import io
+import itertools
+import math
+import zipfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from missions.dji.actions import photo_group
+from missions.dji.catalogue import DjiCatalogue, DjiProfile, dji_catalogue, dji_profile
+from missions.dji.xml_text import Node, number, render
+from missions.heights import altitude_amsl_m
+from missions.legs import leg_lengths_m
+from missions.model import GeoPoint, HeightReference, Mission, Waypoint
+
+MAX_SPEED_M_S = 15.0
+"""Highest autoFlightSpeed and globalTransitionalSpeed of the format."""
+
+MIN_RTH_HEIGHT_M = 20.0
+"""Lowest return height that DJI's remote controllers accept."""
+
+STOP_MODE = "toPointAndStopWithDiscontinuityCurvature"
+
+
+class LinkLoss(StrEnum):
+    """What the aircraft does when it no longer hears the remote controller."""
+
+    CONTINUE = "continue"
+    """Fly the mission to its end at home: the only path that has been checked."""
+    GO_HOME = "go-home"
+    """Leave the mission, climb to the return height and fly straight home, over whatever stands in between."""
+
+
+@dataclass(frozen=True, slots=True)
+class DjiOptions:
+    """What a pilot may choose.
+
+    Parameters
+    ----------
+    rth_height_m
+        Height above take-off at which the aircraft returns when it leaves the mission (low battery, the return button,
+        `LinkLoss.GO_HOME`); it must clear everything on the site.
+    created_ms
+        Time of writing, milliseconds since 1970 UTC, for createTime and updateTime.
+    """
+
+    rth_height_m: float
+    created_ms: int
+    height_reference: HeightReference = HeightReference.ABOVE_TAKEOFF
+    link_loss: LinkLoss = LinkLoss.CONTINUE
+
+
+def kmz_bytes(mission: Mission, options: DjiOptions) -> bytes:
+    """A mission as KMZ; the same mission and options give the same bytes.
+
+    Raises
+    ------
+    MissionError
+        The mission's profile is none of DJI's aircraft.
+    """
+    writer = _Writer(mission, options, dji_profile(mission.profile), dji_catalogue())
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, document in (("template.kml", writer.template()), ("waylines.wpml", writer.waylines())):
+            member = zipfile.ZipInfo(f"wpmz/{name}", date_time=(1980, 1, 1, 0, 0, 0))
+            member.compress_type, member.create_system, member.external_attr = zipfile.ZIP_DEFLATED, 3, 0o644 << 16
+            archive.writestr(member, render(document))
+    return content.getvalue()
+
+
+@dataclass(frozen=True, slots=True)
+class _Writer:
+    mission: Mission
+    options: DjiOptions
+    profile: DjiProfile
+    catalogue: DjiCatalogue
+
+    @property
+    def speed(self) -> str:
+        return number(min(self.mission.speed_m_s, MAX_SPEED_M_S), 2)
+
+    @property
+    def is_relative(self) -> bool:
+        return self.options.height_reference is HeightReference.ABOVE_TAKEOFF
+
+    def template(self) -> Node:
+        time = str(self.options.created_ms)
+        times: list[Node] = [("author", "Reflight"), ("createTime", time), ("updateTime", time)]
+        mode = "relativeToStartPoint" if self.is_relative else "EGM96"
+        folder: list[Node] = [
+            ("templateType", "waypoint"),
+            ("templateId", "0"),
+            ("waylineCoordinateSysParam", [("coordinateMode", "WGS84"), ("heightMode", mode)]),
+            ("autoFlightSpeed", self.speed),
+            ("globalHeight", self.template_heights(self.mission.waypoints[0].position)[1]),
+            ("caliFlightEnable", "0"),
+            ("gimbalPitchMode", "manual"),
+            ("globalWaypointHeadingParam", _heading_param("fixed", 0.0, None)),
+            ("globalWaypointTurnMode", STOP_MODE),
+            ("globalUseStraightLine", "1"),
+            *(("Placemark", placemark) for placemark in self.placemarks(is_template=True)),
+            ("payloadParam", self.payload_param()),
+        ]
+        config: list[Node] = [*times, ("missionConfig", self.config(is_template=True)), ("Folder", folder)]
+        return ("Document", config)
+
+    def waylines(self) -> Node:
+        points = [waypoint.position for waypoint in self.mission.waypoints]
+        legs_m = leg_lengths_m(
+            [p.lat_deg for p in points], [p.lon_deg for p in points], [p.height_ellipsoid_m for p in points]
+        )
+        folder: list[Node] = [
+            ("templateId", "0"),
+            ("executeHeightMode", "relativeToStartPoint" if self.is_relative else "WGS84"),
+            ("waylineId", "0"),
+            ("distance", number(float(legs_m.sum()), 3)),
+            ("duration", number(self.mission.duration_s, 3)),
+            ("autoFlightSpeed", self.speed),
+            *(("Placemark", placemark) for placemark in self.placemarks(is_template=False)),
+        ]
+        return ("Document", [("missionConfig", self.config(is_template=False)), ("Folder", folder)])
+
+    def config(self, *, is_template: bool) -> list[Node]:
+        mission, home = self.mission, self.mission.takeoff
+        drone = self.catalogue.drones[self.profile.drone].numbers
+        payload = self.catalogue.payloads[self.profile.payload].number
+        stays = self.options.link_loss is LinkLoss.CONTINUE
+        # As high as the first waypoint, which is straight above home, and not higher: rounded down.
+        climb_m = math.floor(mission.height_above_takeoff_m(mission.waypoints[0].position) * 10.0) / 10.0
+        reference: list[Node] = [
+            ("takeOffRefPoint", f"{home.lat_deg:.6f},{home.lon_deg:.6f},{home.height_ellipsoid_m:.6f}"),
+            ("takeOffRefPointAGLHeight", "0"),
+        ]
+        return [
+            ("flyToWaylineMode", "safely"),
+            ("finishAction", "goHome"),
+            ("exitOnRCLost", "goContinue" if stays else "executeLostAction"),
+            ("executeRCLostAction", "goBack"),
+            ("takeOffSecurityHeight", number(climb_m, 1)),
+            *(reference if is_template else []),
+            ("globalTransitionalSpeed", self.speed),
+            ("globalRTHHeight", number(max(self.options.rth_height_m, MIN_RTH_HEIGHT_M), 1)),
+            ("droneInfo", [("droneEnumValue", str(drone[0])), ("droneSubEnumValue", str(drone[1]))]),
+            ("waylineAvoidLimitAreaMode", "0"),
+            (
+                "payloadInfo",
+                [("payloadEnumValue", str(payload)), ("payloadSubEnumValue", "0"), ("payloadPositionIndex", "0")],
+            ),
+        ]
+
+    def payload_param(self) -> list[Node]:
+        return [
+            ("payloadPositionIndex", "0"),
+            ("focusMode", "firstPoint"),
+            ("meteringMode", "average"),
+            ("imageFormat", self.profile.lens),
+        ]
+
+    def template_heights(self, point: GeoPoint) -> tuple[str, str]:
+        """Ellipsoid height and height of a template; where the mission is relative DJI writes that into both."""
+        if self.is_relative:
+            relative = number(self.mission.height_above_takeoff_m(point), 4)
+            return relative, relative
+        return number(point.height_ellipsoid_m, 4), number(altitude_amsl_m(point), 4)
+
+    def placemarks(self, *, is_template: bool) -> Iterator[list[Node]]:
+        headings = _headings_at(self.mission.waypoints) if self.mission.rules.turn_in_flight else None
+        group_ids = itertools.count()
+        nose_deg: float | None = None
+        for index, waypoint in enumerate(self.mission.waypoints):
+            mode, angle_deg = ("fixed", 0.0) if headings is None else ("smoothTransition", headings[index])
+            enable = None if is_template else headings is not None
+            heading: Node = ("waypointHeadingParam", _heading_param(mode, angle_deg, enable))
+            groups: list[Node] = []
+            if waypoint.photos:
+                args = (next(group_ids), index, waypoint.photos, nose_deg, self.profile, self.mission.rules.settle_s)
+                groups = [photo_group(*args, is_template=is_template)]
+                nose_deg = waypoint.photos[-1].heading_deg
+            place: list[Node] = [("Point", [("coordinates", _lon_lat(waypoint.position))]), ("index", str(index))]
+            if is_template:
+                ellipsoid, height = self.template_heights(waypoint.position)
+                yield [
+                    *place,
+                    ("ellipsoidHeight", ellipsoid),
+                    ("height", height),
+                    heading,
+                    *((f"useGlobal{what}", value) for what, value in _USE_GLOBAL),
+                    ("useStraightLine", "1"),
+                    *groups,
+                    ("isRisky", "0"),
+                ]
+            else:
+                height_m = waypoint.position.height_ellipsoid_m
+                if self.is_relative:
+                    height_m = self.mission.height_above_takeoff_m(waypoint.position)
+                yield [
+                    *place,
+                    ("executeHeight", number(height_m, 4)),
+                    ("waypointSpeed", self.speed),
+                    heading,
+                    ("waypointTurnParam", [("waypointTurnMode", STOP_MODE), ("waypointTurnDampingDist", "0")]),
+                    ("useStraightLine", "1"),
+                    *groups,
+                    (
+                        "waypointGimbalHeadingParam",
+                        [("waypointGimbalPitchAngle", "0"), ("waypointGimbalYawAngle", "0")],
+                    ),
+                    ("isRisky", "0"),
+                    ("waypointWorkType", "0"),
+                ]
+
+
+_USE_GLOBAL = (("Height", "0"), ("Speed", "1"), ("HeadingParam", "0"), ("TurnParam", "1"))
+
+
+def _lon_lat(point: GeoPoint) -> str:
+    return f"{number(point.lon_deg, 10)},{number(point.lat_deg, 10)}"
+
+
+def _headings_at(waypoints: Sequence[Waypoint]) -> list[float]:
+    """Heading with which each waypoint is reached: that of its photo, and before a photo that of the next one."""
+    headings: list[float] = []
+    ahead: float | None = None
+    for waypoint in reversed(waypoints):
+        if waypoint.photos:
+            ahead = waypoint.photos[0].heading_deg
+        headings.append(math.nan if ahead is None else ahead)
+    headings.reverse()
+    last = next((w.photos[-1].heading_deg for w in reversed(waypoints) if w.photos), 0.0)
+    return [last if math.isnan(heading) else heading for heading in headings]
+
+
+def _heading_param(mode: str, angle_deg: float, enable: bool | None) -> list[Node]:
+    """Heading of a waypoint; templates have no waypointHeadingAngleEnable (`enable` None)."""
+    return [
+        ("waypointHeadingMode", mode),
+        ("waypointHeadingAngle", number(angle_deg, 2)),
+        ("waypointPoiPoint", "0.000000,0.000000,0.000000"),
+        *([] if enable is None else [("waypointHeadingAngleEnable", "1" if enable else "0")]),
+        ("waypointHeadingPathMode", "followBadArc"),
+        ("waypointHeadingPoiIndex", "0"),
+    ]

@@ -1,0 +1,163 @@
+"""Plans as the contents of mission files, with everything the checks of their format found on them."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from missions.build import missions_from_plan
+from missions.dji.write import LinkLoss
+from missions.mavlink.autopilots import Autopilot
+from missions.model import FileFormat, HeightReference, Mission
+from planning.errors import MissionError
+from planning.findings import Finding, Severity
+from planning.frames import Vec3
+from planning.plan import Plan
+from planning.site import Origin, SiteModel, panel_corners
+
+
+@dataclass(frozen=True, slots=True)
+class ExportOptions:
+    """What a pilot may choose; each format takes what concerns it.
+
+    Parameters
+    ----------
+    height_reference
+        Of DJI and MAVLink files; KML is always above sea level, a table of photos has a column for each.
+    autopilot
+        Whose rules MAVLink files follow; None: PX4 for the profile px4, ArduPilot for all others.
+    link_loss, rth_height_m
+        For DJI. Without a height above take-off the aircraft returns as high as `site` or, without it, the path needs.
+    site
+        For the return height and for fences.
+    clock
+        Seconds since 1970 UTC, for the time of creation in DJI files.
+    """
+
+    height_reference: HeightReference = HeightReference.ABOVE_TAKEOFF
+    autopilot: Autopilot | None = None
+    link_loss: LinkLoss = LinkLoss.CONTINUE
+    rth_height_m: float | None = None
+    site: SiteModel | None = None
+    clock: Callable[[], float] = time.time
+
+
+@dataclass(frozen=True, slots=True)
+class EncodedFiles:
+    """Contents of the files of an export, and what the checks found on them."""
+
+    contents: tuple[bytes, ...]
+    findings: tuple[Finding, ...]
+
+
+DEFAULT_OPTIONS = ExportOptions()
+
+CLEARANCE_M = 10.0
+"""How far above the highest point of the site aircraft return."""
+
+
+def encode(
+    plan: Plan,
+    origin: Origin | None,
+    home_enu_m: Vec3 | None,
+    file_format: FileFormat,
+    options: ExportOptions = DEFAULT_OPTIONS,
+) -> EncodedFiles:
+    """Contents that `export` writes, with all findings instead of a refusal at the first.
+
+    Raises
+    ------
+    InputError, MissionError
+        As `export`, where there is nothing to check.
+    """
+    missions = missions_from_plan(plan, origin, home_enu_m)
+    match file_format:
+        case FileFormat.DJI_KMZ:
+            return _encode_dji(missions, options)
+        case FileFormat.MAVLINK_PLAN | FileFormat.MAVLINK_WPL:
+            return _encode_mavlink(missions, file_format, options)
+        case FileFormat.KML:
+            from missions.kml_view import kml_bytes
+
+            return EncodedFiles((kml_bytes(missions),), ())
+        case FileFormat.CSV:
+            from missions.csv_table import csv_bytes
+
+            return EncodedFiles((csv_bytes(missions),), ())
+
+
+def _encode_dji(missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
+    from missions.dji.check import check_dji
+    from missions.dji.container import parts_of_kmz
+    from missions.dji.write import DjiOptions, kmz_bytes
+
+    created_ms = round(options.clock() * 1000.0)
+    rth_height_m, findings = _return_height(missions, options)
+    dji_options = DjiOptions(rth_height_m, created_ms, options.height_reference, options.link_loss)
+    contents = [kmz_bytes(mission, dji_options) for mission in missions]
+    for mission, content in zip(missions, contents, strict=True):
+        findings += _in_sortie(check_dji(parts_of_kmz(content)), mission, missions)
+    return EncodedFiles(tuple(contents), tuple(findings))
+
+
+def _return_height(missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:
+    """Height above take-off at which an aircraft that leaves its mission flies home, and what there is to say of it."""
+    path_m = max(m.height_above_takeoff_m(w.position) for m in missions for w in m.waypoints)
+    if options.site is None:
+        if options.rth_height_m is not None:
+            return options.rth_height_m, []
+        text = "the return height clears the path only, because the site was not given; check that it clears everything"
+        return path_m, [Finding(Severity.WARNING, "return-height", text, "", path_m, None, "m")]
+    home_z = options.site.site.home_enu_m[2]
+    meshes = (options.site.building, *options.site.obstacles)
+    tops = [float(mesh.vertices_enu_m[:, 2].max()) for mesh in meshes if len(mesh.vertices_enu_m)]
+    top_m = max([float(panel_corners(options.site.site)[..., 2].max()), *tops]) - home_z
+    if options.rth_height_m is None:
+        return math.ceil(max(path_m, top_m + CLEARANCE_M)), []
+    if options.rth_height_m < top_m:
+        text = "the return height is below the highest point of the site: a returning aircraft may hit it"
+        return options.rth_height_m, [
+            Finding(Severity.ERROR, "return-height", text, "", options.rth_height_m, top_m, "m")
+        ]
+    return options.rth_height_m, []
+
+
+def _encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
+    from missions.mavlink.check import check_items
+    from missions.mavlink.fence import fence_polygons
+    from missions.mavlink.items import MavlinkFile, mission_items
+    from missions.mavlink.plan_json import plan_json_bytes
+    from missions.mavlink.wpl import wpl_bytes
+
+    reference = options.height_reference
+    if reference is HeightReference.ELLIPSOID:
+        raise MissionError(
+            "MAVLink has no heights above the ellipsoid; expected above-takeoff or amsl (its absolute altitude)"
+        )
+    contents: list[bytes] = []
+    findings: list[Finding] = []
+    for mission in missions:
+        default = Autopilot.PX4 if mission.profile == Autopilot.PX4 else Autopilot.ARDUPILOT
+        autopilot = options.autopilot or default
+        items = mission_items(mission, autopilot, reference)
+        found = list(check_items(MavlinkFile(items, mission.takeoff, autopilot), autopilot))
+        if file_format is FileFormat.MAVLINK_WPL:
+            contents.append(wpl_bytes(items, mission.takeoff))
+        else:
+            zones = options.site.site.airspace.no_fly if options.site is not None else ()
+            fences, on_fences = fence_polygons(mission, zones)
+            found += on_fences
+            speed_m_s = mission.speed_m_s
+            contents.append(plan_json_bytes(items, mission.takeoff, autopilot, speed_m_s, reference, fences))
+        findings += _in_sortie(found, mission, missions)
+    return EncodedFiles(tuple(contents), tuple(findings))
+
+
+def _in_sortie(findings: Sequence[Finding], mission: Mission, missions: Sequence[Mission]) -> list[Finding]:
+    """Findings with the sortie in their place where there are several."""
+    if len(missions) == 1:
+        return list(findings)
+    prefix = f"sortie {mission.number}"
+    return [replace(found, place=f"{prefix}, {found.place}" if found.place else prefix) for found in findings]

@@ -1,0 +1,133 @@
+"""Every mission format behind one door: plans out, missions in.
+
+Writing checks what it wrote with the format's own checks and refuses to leave a file that an aircraft would refuse.
+Reading looks at the content, never only at the name of a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from missions.encode import DEFAULT_OPTIONS, ExportOptions, encode
+from missions.model import FileFormat, ReadMission
+from planning.errors import InputError, MissionError
+from planning.findings import Severity
+from planning.frames import Vec3
+from planning.json_file import write_atomically
+from planning.plan import Plan
+from planning.site import Origin
+
+HEAD_BYTES = 4096
+"""Enough of a file to see what it is."""
+
+
+def export(
+    plan: Plan,
+    origin: Origin | None,
+    home_enu_m: Vec3 | None,
+    file_format: FileFormat,
+    path: Path,
+    options: ExportOptions = DEFAULT_OPTIONS,
+) -> tuple[Path, ...]:
+    """Write a plan as mission files, all of them or none.
+
+    The first sortie gets exactly `path`, the next ones `<stem>-2<suffix>` and so on; KML and CSV hold all sorties.
+
+    Parameters
+    ----------
+    origin, home_enu_m
+        Of the site, for plans that do not carry them.
+
+    Returns
+    -------
+    paths
+        The files written.
+
+    Raises
+    ------
+    InputError
+        Something is missing from the plan, or the folder cannot be written.
+    MissionError
+        The plan cannot be flown as it stands, or not with this format; nothing is written.
+    """
+    encoded = encode(plan, origin, home_enu_m, file_format, options)
+    errors = [finding for finding in encoded.findings if finding.severity is Severity.ERROR]
+    if errors:
+        first = f"{errors[0].place}: {errors[0].message}".removeprefix(": ")
+        more = f" (and {len(errors) - 1} more errors)" if len(errors) > 1 else ""
+        raise MissionError(f"the mission would be refused: {first}{more}")
+    paths = tuple(sortie_path(path, number) for number in range(1, len(encoded.contents) + 1))
+    written: list[Path] = []
+    try:
+        for target, content in zip(paths, encoded.contents, strict=True):
+            write_atomically(target, content)
+            written.append(target)
+    except BaseException:
+        for target in written:
+            target.unlink(missing_ok=True)
+        raise
+    return paths
+
+
+def sortie_path(path: Path, number: int) -> Path:
+    """File of a sortie, counted from 1."""
+    return path if number == 1 else path.with_name(f"{path.stem}-{number}{path.suffix}")
+
+
+def read_missions(path: Path) -> tuple[ReadMission, ...]:
+    """The sorties of a mission file of any format, or of a folder with the two unpacked parts of a DJI mission.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable or of no format that is known.
+    MissionError
+        It is of a known format, but cannot be flown or understood; the message says why.
+    """
+    if path.is_dir():
+        from missions.dji.read import read_dji
+
+        return read_dji(path)
+    return _reader(path)(path)
+
+
+def _reader(path: Path) -> Callable[[Path], tuple[ReadMission, ...]]:
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD_BYTES)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    from missions.csv_table import is_csv_table, read_csv
+    from missions.dji.read import read_dji
+    from missions.kml_view import read_kml
+
+    text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if head.startswith(b"PK") or b"/wpmz/" in head:
+        return read_dji
+    if text.startswith(b"<"):
+        return read_kml
+    if text.startswith(b"{"):
+        return _read_plan_json
+    if text.startswith(b"QGC WPL"):
+        return _read_wpl
+    if is_csv_table(head):
+        return read_csv
+    raise InputError(
+        f"{path}: no mission file that is known; expected a DJI KMZ (or its unpacked folder), a QGroundControl .plan, "
+        "a QGC WPL .waypoints, or a KML or CSV that Reflight wrote"
+    )
+
+
+def _read_plan_json(path: Path) -> tuple[ReadMission, ...]:
+    from missions.mavlink.plan_json import read_plan_json
+    from missions.mavlink.read import read_mavlink
+
+    return (read_mavlink(path, read_plan_json(path), FileFormat.MAVLINK_PLAN),)
+
+
+def _read_wpl(path: Path) -> tuple[ReadMission, ...]:
+    from missions.mavlink.read import read_mavlink
+    from missions.mavlink.wpl import read_wpl
+
+    return (read_mavlink(path, read_wpl(path), FileFormat.MAVLINK_WPL),)

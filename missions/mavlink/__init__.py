@@ -1,0 +1,1 @@
+"""MAVLink missions: items as ArduPilot and PX4 run them, and the files of QGroundControl and Mission Planner."""

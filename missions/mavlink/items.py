@@ -1,0 +1,193 @@
+"""A mission as MAVLink items, in the order in which each autopilot really takes the photos.
+
+The order was flown in ArduCopter 4.5.6's simulation. What follows a waypoint in the list is done *while flying to the
+next navigation command*, and what is left of it when that is reached is dropped without a word. So everything that must
+happen before a photo stands before its waypoint, the trigger right behind the waypoint, and behind the trigger a
+NAV_DELAY, another navigation command, that keeps the aircraft in place while the shutter is open:
+
+- ArduPilot: DO_MOUNT_CONTROL, CONDITION_YAW, NAV_WAYPOINT (hold), DO_DIGICAM_CONTROL, NAV_DELAY
+- PX4: DO_GIMBAL_MANAGER_PITCHYAW, NAV_WAYPOINT (hold, yaw), IMAGE_START_CAPTURE, NAV_DELAY
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pymavlink.dialects.v20 import common as mavlink
+
+from missions.heights import altitude_amsl_m
+from missions.legs import leg_lengths_m
+from missions.mavlink.autopilots import Autopilot
+from missions.model import GeoPoint, HeightReference, Mission, Photo
+from planning.frames import wrap_heading_deg
+
+NAN = math.nan
+Params = tuple[float, float, float, float, float, float, float]
+
+MIN_HOLD_S = 2.0
+"""ArduPilot's position error at the shutter is 0.15 to 0.24 m with a hold of 2 s, and 1.0 to 1.4 m with none."""
+
+PASS_HOLD_S = 1
+"""Hold at a waypoint without a photo: with 0 both autopilots cut the corner, off the checked path."""
+
+SLEW_YAW_DEG_S = 60.0
+"""ArduPilot's default ATC_SLEW_YAW; it turned 180 degrees in 3.1 s from rest."""
+
+TURN_MARGIN_S = 1.0
+MIN_DELAY_S = 1.0
+"""Shortest wait behind a trigger: ArduPilot loses a second trigger within 0.1 s, cameras open some tenths late."""
+
+PX4_ACCEPTANCE_RADIUS_M = 0.5
+
+HOLD_HORIZON = float(mavlink.GIMBAL_MANAGER_FLAGS_ROLL_LOCK | mavlink.GIMBAL_MANAGER_FLAGS_PITCH_LOCK)
+"""The gimbal keeps pitch and roll to the horizon and follows the nose sideways."""
+
+
+@dataclass(frozen=True, slots=True)
+class MissionItem:
+    """One mission item: params 1 to 7, of which 5 to 7 are latitude, longitude and altitude where it has a position."""
+
+    command: int
+    frame: int
+    params: Params
+    viewpoint_id: str = ""
+
+
+Polygon = tuple[tuple[float, float], ...]
+"""Corners of a fence, latitude and longitude in degrees."""
+
+
+@dataclass(frozen=True, slots=True)
+class MavlinkFile:
+    """What a mission file holds: items in order, without the home position that some files put before them.
+
+    `autopilot` and `cruise_speed_m_s` are None where the file does not say; `fences` are polygons to stay out of.
+    """
+
+    items: tuple[MissionItem, ...]
+    home: GeoPoint | None
+    autopilot: Autopilot | None = None
+    cruise_speed_m_s: float | None = None
+    fences: tuple[Polygon, ...] = ()
+
+
+def mission_items(mission: Mission, autopilot: Autopilot, reference: HeightReference) -> tuple[MissionItem, ...]:
+    """Items of a mission, home not among them.
+
+    Raises
+    ------
+    ValueError
+        `reference` is the ellipsoid, which MAVLink has no frame for.
+    """
+    return tuple(_Sequence(mission, autopilot, reference).items())
+
+
+@dataclass(slots=True)
+class _Sequence:
+    """The items of one mission; remembers how the camera stands between photos (None: not known)."""
+
+    mission: Mission
+    autopilot: Autopilot
+    reference: HeightReference
+    nose_deg: float | None = None
+    pitch_deg: float | None = None
+    n_photos: int = 0
+
+    def __post_init__(self) -> None:
+        if self.reference is HeightReference.ELLIPSOID:
+            raise ValueError("MAVLink has no frame for heights above the ellipsoid")
+
+    def items(self) -> Iterator[MissionItem]:
+        mission = self.mission
+        points = [waypoint.position for waypoint in mission.waypoints]
+        legs_m = leg_lengths_m(
+            [p.lat_deg for p in points], [p.lon_deg for p in points], [p.height_ellipsoid_m for p in points]
+        )
+        yield self.take_off(points[0])
+        yield plain(mavlink.MAV_CMD_DO_CHANGE_SPEED, mavlink.SPEED_TYPE_GROUNDSPEED, mission.speed_m_s, -1.0)
+        if self.autopilot is Autopilot.PX4:
+            # PX4's gimbal obeys whoever configured it last: -2 makes that the autopilot itself.
+            yield plain(mavlink.MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE, -2.0, -2.0, -1.0, -1.0)
+        for waypoint, leg_m in zip(mission.waypoints, [0.0, *legs_m], strict=True):
+            leg_s = float(leg_m) / mission.speed_m_s
+            if not waypoint.photos:
+                yield self.passed(waypoint.position)
+            for photo in waypoint.photos:
+                yield from self.view(waypoint.position, photo, leg_s)
+                leg_s = 0.0
+        yield self.land()
+
+    def take_off(self, top: GeoPoint) -> MissionItem:
+        home = self.mission.takeoff
+        yaw = 0.0 if self.autopilot is Autopilot.ARDUPILOT else NAN
+        above_home = GeoPoint(home.lat_deg, home.lon_deg, top.height_ellipsoid_m)
+        return self.at(mavlink.MAV_CMD_NAV_TAKEOFF, above_home, 0.0, 0.0, 0.0, yaw)
+
+    def land(self) -> MissionItem:
+        """Landing at home, straight below the last waypoint; a return would first climb to the autopilot's height."""
+        yaw = 0.0 if self.autopilot is Autopilot.ARDUPILOT else NAN
+        return self.at(mavlink.MAV_CMD_NAV_LAND, self.mission.takeoff, 0.0, 0.0, 0.0, yaw)
+
+    def passed(self, point: GeoPoint) -> MissionItem:
+        # The nose may swing into the course on the way, so where it points afterwards is not known.
+        self.nose_deg = None
+        if self.autopilot is Autopilot.ARDUPILOT:
+            return self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, PASS_HOLD_S)
+        return self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, PASS_HOLD_S, PX4_ACCEPTANCE_RADIUS_M, 0.0, NAN)
+
+    def view(self, point: GeoPoint, photo: Photo, leg_s: float) -> Iterator[MissionItem]:
+        """Items of one photo."""
+        self.n_photos += 1
+        turn_s, tilt_s = self.turning_s(photo)
+        heading_deg, pitch_deg = round(photo.heading_deg, 2), round(photo.gimbal_pitch_deg, 2)
+        if self.autopilot is Autopilot.ARDUPILOT:
+            hold_s = self.ardupilot_hold_s(max(turn_s, tilt_s), leg_s)
+            # Before CONDITION_YAW: a gimbal without a pan axis makes the vehicle turn to param 3, to north. And not
+            # DO_GIMBAL_MANAGER_PITCHYAW: ArduPilot stores its angles in whole degrees.
+            mode = float(mavlink.MAV_MOUNT_MODE_MAVLINK_TARGETING)
+            yield plain(mavlink.MAV_CMD_DO_MOUNT_CONTROL, pitch_deg, 0.0, 0.0, 0.0, 0.0, 0.0, mode)
+            yield plain(mavlink.MAV_CMD_CONDITION_YAW, heading_deg % 360.0)
+            yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, hold_s)
+            yield plain(mavlink.MAV_CMD_DO_DIGICAM_CONTROL, 0.0, 0.0, 0.0, 0.0, 1.0, viewpoint_id=photo.viewpoint_id)
+        else:
+            # PX4 counts the hold from when position and yaw are reached; it does not wait for the gimbal.
+            hold_s = round(self.mission.rules.settle_s + max(0.0, tilt_s - leg_s), 2)
+            yield plain(mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW, pitch_deg, 0.0, NAN, NAN, HOLD_HORIZON)
+            yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, hold_s, PX4_ACCEPTANCE_RADIUS_M, 0.0, heading_deg)
+            number = float(self.n_photos)
+            yield plain(mavlink.MAV_CMD_IMAGE_START_CAPTURE, 0.0, 0.0, 1.0, number, viewpoint_id=photo.viewpoint_id)
+        yield plain(mavlink.MAV_CMD_NAV_DELAY, max(MIN_DELAY_S, self.mission.rules.photo_s), -1.0, -1.0, -1.0)
+        self.nose_deg, self.pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
+
+    def turning_s(self, photo: Photo) -> tuple[float, float]:
+        """Times that the aircraft and the gimbal need to turn to a photo, from the worst where that is not known."""
+        aircraft, (low, high) = self.mission.aircraft, self.mission.camera.gimbal_pitch_deg
+        turn_deg = 180.0 if self.nose_deg is None else abs(wrap_heading_deg(photo.heading_deg - self.nose_deg))
+        tilt_deg = high - low if self.pitch_deg is None else abs(photo.gimbal_pitch_deg - self.pitch_deg)
+        yaw_rate_deg_s = min(SLEW_YAW_DEG_S, aircraft.max_yaw_rate_deg_s)
+        return turn_deg / yaw_rate_deg_s, tilt_deg / aircraft.max_gimbal_rate_deg_s
+
+    def ardupilot_hold_s(self, turning_s: float, leg_s: float) -> float:
+        """Hold that ends after all turning and settling; whole seconds, because ArduPilot drops the rest."""
+        settled_s = max(0.0, turning_s - leg_s) + self.mission.rules.settle_s
+        return float(math.ceil(max(MIN_HOLD_S, settled_s, turning_s + TURN_MARGIN_S - leg_s) - 1e-9))
+
+    def at(
+        self, command: int, point: GeoPoint, p1: float, p2: float = 0.0, p3: float = 0.0, p4: float = 0.0
+    ) -> MissionItem:
+        """Item with a position, in the reference asked for."""
+        if self.reference is HeightReference.AMSL:
+            frame, altitude_m = mavlink.MAV_FRAME_GLOBAL, altitude_amsl_m(point)
+        else:
+            frame, altitude_m = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, self.mission.height_above_takeoff_m(point)
+        lat_deg, lon_deg = round(point.lat_deg, 9), round(point.lon_deg, 9)
+        return MissionItem(command, frame, (p1, p2, p3, p4, lat_deg, lon_deg, round(altitude_m, 4)))
+
+
+def plain(command: int, *params: float, viewpoint_id: str = "") -> MissionItem:
+    """Item without a position, in the frame that PX4 wants, and in which files keep params 5 and 6 as they are."""
+    filled = (*map(float, params), *(0.0,) * (7 - len(params)))
+    p1, p2, p3, p4, p5, p6, p7 = filled
+    return MissionItem(command, mavlink.MAV_FRAME_MISSION, (p1, p2, p3, p4, p5, p6, p7), viewpoint_id)

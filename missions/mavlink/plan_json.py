@@ -1,0 +1,178 @@
+"""QGroundControl's `.plan` files: simple items and fence polygons written, generated items of surveys read as well."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, TypeGuard
+
+from missions.heights import altitude_amsl_m, point_at_amsl
+from missions.mavlink.autopilots import Autopilot, facts
+from missions.mavlink.items import MavlinkFile, MissionItem, Params, Polygon
+from missions.model import GeoPoint, HeightReference
+from planning.errors import InputError, MissionError
+from planning.json_file import read_json
+
+PLAN_VERSION, MISSION_VERSION, FENCE_VERSION, RALLY_VERSION = 1, 2, 2, 2
+
+ALTITUDE_MODE = {HeightReference.ABOVE_TAKEOFF: 1, HeightReference.AMSL: 2}
+
+VEHICLE_MULTIROTOR = 2
+"""MAV_TYPE_QUADROTOR, which QGroundControl writes for any multirotor."""
+
+VIEWPOINT_KEY = "viewpointId"
+"""Our own key in the items that take a photo; other programs ignore it."""
+
+
+def plan_json_bytes(
+    items: Sequence[MissionItem],
+    home: GeoPoint,
+    autopilot: Autopilot,
+    speed_m_s: float,
+    reference: HeightReference,
+    fences: Sequence[Polygon] = (),
+) -> bytes:
+    """A mission as `.plan`; `fences` are polygons to stay out of."""
+    polygons = [{"inclusion": False, "polygon": [list(corner) for corner in fence], "version": 1} for fence in fences]
+    content = {
+        "fileType": "Plan",
+        "geoFence": {"circles": [], "polygons": polygons, "version": FENCE_VERSION},
+        "groundStation": "Reflight",
+        "mission": {
+            "cruiseSpeed": speed_m_s,
+            "firmwareType": facts(autopilot).firmware_type,
+            "globalPlanAltitudeMode": ALTITUDE_MODE[reference],
+            "hoverSpeed": speed_m_s,
+            "items": [_item_json(item, number) for number, item in enumerate(items, 1)],
+            "plannedHomePosition": [
+                round(home.lat_deg, 9),
+                round(home.lon_deg, 9),
+                round(altitude_amsl_m(home), 4),
+            ],
+            "vehicleType": VEHICLE_MULTIROTOR,
+            "version": MISSION_VERSION,
+        },
+        "rallyPoints": {"points": [], "version": RALLY_VERSION},
+        "version": PLAN_VERSION,
+    }
+    return (json.dumps(content, indent=4, allow_nan=False) + "\n").encode()
+
+
+def _item_json(item: MissionItem, number: int) -> dict[str, Any]:
+    """A SimpleItem; NaN, which JSON has not, is null there."""
+    content: dict[str, Any] = {
+        "autoContinue": True,
+        "command": item.command,
+        "doJumpId": number,
+        "frame": item.frame,
+        "params": [None if math.isnan(value) else value for value in item.params],
+        "type": "SimpleItem",
+    }
+    if item.frame in (0, 3):
+        mode = ALTITUDE_MODE[HeightReference.AMSL if item.frame == 0 else HeightReference.ABOVE_TAKEOFF]
+        content |= {"AMSLAltAboveTerrain": None, "Altitude": item.params[6], "AltitudeMode": mode}
+    if item.viewpoint_id:
+        content[VIEWPOINT_KEY] = item.viewpoint_id
+    return content
+
+
+def read_plan_json(path: Path) -> MavlinkFile:
+    """Items of a `.plan`.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, no JSON, or a plan of our own.
+    MissionError
+        It is no plan, of another version, or holds something whose items are not in the file.
+    """
+    content = read_json(path)
+    if isinstance(content, dict) and str(content.get("format", "")).startswith("reflight-plan/"):
+        raise InputError(f"{path}: this is a Reflight plan already; it needs no import")
+    if not isinstance(content, dict) or content.get("fileType") != "Plan":
+        raise MissionError(f"{path}: no QGroundControl plan; expected a JSON object with fileType 'Plan'")
+    mission = content.get("mission")
+    if not isinstance(mission, dict):
+        raise MissionError(f"{path}: the plan has no mission (it may hold a fence only); save it with its mission")
+    for name, found, expected in (
+        ("version", content.get("version"), PLAN_VERSION),
+        ("mission.version", mission.get("version"), MISSION_VERSION),
+    ):
+        if found != expected:
+            raise MissionError(f"{path}: {name} is {found}; expected {expected}; save it with a current QGroundControl")
+    home = _home(mission.get("plannedHomePosition"), path)
+    firmware = mission.get("firmwareType")
+    autopilot = next((a for a in Autopilot if facts(a).firmware_type == firmware), None)
+    speed = mission.get("hoverSpeed")
+    items: list[MissionItem] = []
+    for number, item in enumerate(_list(mission.get("items"), f"{path}: mission.items"), 1):
+        items += _read_item(item, f"{path}: mission.items, item {number}")
+    return MavlinkFile(
+        tuple(items),
+        home,
+        autopilot,
+        float(speed) if _is_number(speed) and speed > 0 else None,
+        tuple(_fences(content.get("geoFence"))),
+    )
+
+
+def _read_item(item: Any, place: str) -> list[MissionItem]:
+    """The items that a simple or complex item stands for."""
+    if not isinstance(item, dict):
+        raise MissionError(f"{place}: expected an object, got {type(item).__name__}")
+    if item.get("type") == "ComplexItem":
+        name = item.get("complexItemType", "unnamed")
+        transects = item.get("TransectStyleComplexItem")
+        generated = transects.get("Items") if isinstance(transects, dict) else None
+        if not generated:
+            raise MissionError(
+                f"{place}: the complex item '{name}' does not hold the items it generates, which only QGroundControl "
+                "can make; turn it into simple items there"
+            )
+        inner = _list(generated, place)
+        return [made for i, child in enumerate(inner, 1) for made in _read_item(child, f"{place} ({name} {i})")]
+    if item.get("type") != "SimpleItem":
+        raise MissionError(f"{place}: type is '{item.get('type')}'; expected SimpleItem or ComplexItem")
+    command, frame, params = item.get("command"), item.get("frame"), item.get("params")
+    if not _is_number(command) or not _is_number(frame):
+        raise MissionError(f"{place}: expected numbers for command and frame, got {command} and {frame}")
+    if not isinstance(params, list) or len(params) != 7 or not all(p is None or _is_number(p) for p in params):
+        raise MissionError(f"{place}: expected params to be 7 numbers or null, got {str(params)[:60]}")
+    values = [math.nan if value is None else float(value) for value in params]
+    viewpoint_id = item.get(VIEWPOINT_KEY)
+    filled: Params = (values[0], values[1], values[2], values[3], values[4], values[5], values[6])
+    return [MissionItem(int(command), int(frame), filled, viewpoint_id if isinstance(viewpoint_id, str) else "")]
+
+
+def _list(content: Any, place: str) -> list[Any]:
+    if not isinstance(content, list):
+        raise MissionError(f"{place}: expected a list, got {type(content).__name__}")
+    return content
+
+
+def _is_number(value: object) -> TypeGuard[int | float]:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _home(position: Any, path: Path) -> GeoPoint | None:
+    """Planned home; 0, 0 means that it was never set."""
+    if not isinstance(position, list) or len(position) < 2 or not all(map(_is_number, position)):
+        return None
+    lat_deg, lon_deg = float(position[0]), float(position[1])
+    if (lat_deg, lon_deg) == (0.0, 0.0) or len(position) < 3:
+        return None
+    if abs(lat_deg) > 90.0 or abs(lon_deg) > 180.0:
+        raise MissionError(f"{path}: plannedHomePosition {lat_deg:g}, {lon_deg:g} is not on the globe")
+    return point_at_amsl(lat_deg, lon_deg, float(position[2]))
+
+
+def _fences(fence: Any) -> Iterator[Polygon]:
+    """Exclusion polygons; inclusion areas and circles are of no use here."""
+    polygons = fence.get("polygons") if isinstance(fence, dict) else None
+    for polygon in polygons if isinstance(polygons, list) else ():
+        corners = polygon.get("polygon") if isinstance(polygon, dict) and not polygon.get("inclusion") else None
+        if isinstance(corners, list):
+            pairs = [c[:2] for c in corners if isinstance(c, list) and len(c) >= 2 and all(map(_is_number, c[:2]))]
+            yield tuple((float(lat), float(lon)) for lat, lon in pairs)

@@ -1,0 +1,52 @@
+"""A MAVLink mission file read back: the sortie it describes, with the photos that the vehicle would take."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from missions.mavlink.check import check_items
+from missions.mavlink.fly import MavlinkFlight
+from missions.mavlink.items import MavlinkFile
+from missions.model import FileFormat, HeightReference, ReadMission
+from planning.errors import MissionError
+from planning.findings import Finding, Severity
+
+
+def read_mavlink(path: Path, file: MavlinkFile, file_format: FileFormat) -> ReadMission:
+    """The sortie that the items of a file describe.
+
+    What an autopilot would refuse is a finding here and no reason to refuse: the file may be for another autopilot.
+    Only what keeps the flight from being known is refused.
+
+    Raises
+    ------
+    MissionError
+        There is no waypoint, or one whose place or height cannot be known.
+    """
+    flight = MavlinkFlight(file, f"{path}: ")
+    flight.fly()
+    if not flight.flown:
+        raise MissionError(f"{path}: the mission has no waypoint, so there is nothing to fly")
+    is_relative = any(point.height_above_takeoff_m is not None for point in flight.flown)
+    checks = check_items(file, flight.autopilot)
+    return ReadMission(
+        name=path.stem,
+        path=path,
+        format=file_format,
+        waypoints=tuple(flight.flown),
+        takeoff=file.home,
+        height_reference=HeightReference.ABOVE_TAKEOFF if is_relative else HeightReference.AMSL,
+        finish=flight.finish,
+        climb_above_takeoff_m=flight.climb_m,
+        speed_m_s=flight.speed_m_s,
+        findings=(*map(_as_remark, checks), *flight.findings),
+    )
+
+
+def _as_remark(finding: Finding) -> Finding:
+    """A check's error, which grounds the file but not the evaluation of its coverage, as a warning."""
+    if finding.severity is not Severity.ERROR:
+        return finding
+    message = f"the vehicle would refuse it: {finding.message}"
+    return replace(finding, severity=Severity.WARNING, message=message)

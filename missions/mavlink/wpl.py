@@ -1,0 +1,98 @@
+r"""`QGC WPL` files (`.waypoints`, `.txt`): one item a line, as Mission Planner and QGroundControl keep them.
+
+Line 0 of version 110 is the home position: QGroundControl, Mission Planner and pymavlink all take it for that, whatever
+the autopilot. Lines end in \n, because MAVSDK reads no others; Mission Planner's own end in \r\n and are read as well.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from pymavlink.dialects.v20 import common as mavlink
+
+from missions.heights import altitude_amsl_m, point_at_amsl
+from missions.mavlink.items import MavlinkFile, MissionItem
+from missions.model import GeoPoint
+from missions.safe_files import read_limited
+from planning.errors import MissionError
+
+N_COLUMNS = 12
+HOME_IN_LINE_0, NO_HOME = "110", "120"
+
+_HEADER = re.compile(r"QGC WPL (\d+)")
+
+
+def wpl_bytes(items: tuple[MissionItem, ...], home: GeoPoint) -> bytes:
+    """Items behind the home position, tab-separated."""
+    home_params = (0.0, 0.0, 0.0, 0.0, round(home.lat_deg, 9), round(home.lon_deg, 9), round(altitude_amsl_m(home), 4))
+    with_home = (MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL, home_params), *items)
+    lines = ["QGC WPL 110"]
+    for seq, item in enumerate(with_home):
+        current = "1" if seq == 0 else "0"
+        numbers = [_number(value) for value in item.params]
+        lines.append("\t".join([str(seq), current, str(item.frame), str(item.command), *numbers, "1"]))
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _number(value: float) -> str:
+    """At most 9 decimals, "nan" as QGroundControl spells it, never an exponent or "-0"."""
+    text = f"{value:.9f}"
+    if "." in text:
+        text = text.rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def read_wpl(path: Path) -> MavlinkFile:
+    """Items and home of a file.
+
+    Raises
+    ------
+    InputError
+        The file is missing or unreadable.
+    MissionError
+        It is no such file, or a line is wrong; the message names the line.
+    """
+    try:
+        lines = read_limited(path).decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise MissionError(f"{path}: expected text, found other bytes at offset {error.start}") from error
+    header = _HEADER.fullmatch(lines[0].strip()) if lines else None
+    if header is None or header[1] not in (HOME_IN_LINE_0, NO_HOME):
+        found = lines[0].strip()[:40] if lines else ""
+        raise MissionError(f"{path}: expected 'QGC WPL 110' in the first line, found '{found}'")
+    items = [
+        _read_line(line, f"{path}, line {number}")
+        for number, line in enumerate(lines[1:], 2)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    for place, (seq, _) in enumerate(items):
+        if seq != place:
+            raise MissionError(f"{path}: expected the items numbered from 0 in order, found {seq} in place {place}")
+    home = None
+    kept = [item for _, item in items]
+    # Mission Planner writes command 0 where home was never set. A file that begins with a take-off has no home.
+    if kept and header[1] == HOME_IN_LINE_0 and kept[0].command in (0, mavlink.MAV_CMD_NAV_WAYPOINT):
+        home = _home(kept.pop(0), path)
+    return MavlinkFile(tuple(kept), home)
+
+
+def _read_line(line: str, place: str) -> tuple[int, MissionItem]:
+    columns = line.split()
+    if len(columns) != N_COLUMNS:
+        raise MissionError(f"{place}: expected {N_COLUMNS} columns, found {len(columns)}")
+    try:
+        seq, frame, command = int(columns[0]), int(columns[2]), int(columns[3])
+        p1, p2, p3, p4, p5, p6, p7 = (float(column) for column in columns[4:11])
+    except ValueError as error:
+        raise MissionError(f"{place}: expected numbers with a decimal point ({error})") from error
+    return seq, MissionItem(command, frame, (p1, p2, p3, p4, p5, p6, p7))
+
+
+def _home(item: MissionItem, path: Path) -> GeoPoint | None:
+    lat_deg, lon_deg, altitude_m = item.params[4:]
+    if (lat_deg, lon_deg) == (0.0, 0.0):
+        return None
+    if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and abs(altitude_m) < 1e5):
+        raise MissionError(f"{path}: the home position {lat_deg:g}, {lon_deg:g}, {altitude_m:g} m is not on the globe")
+    return point_at_amsl(lat_deg, lon_deg, altitude_m)

@@ -1,0 +1,196 @@
+"""The mission: one sortie as an aircraft is told it, before any file format, and what is read back from a file.
+
+Two families of records. `Mission` is complete and is written: every height is known, every photo has its angles.
+`ReadMission` is what a file says, no more: heights in the file's own reference, angles that may be missing.
+
+Heights have three references and three names, never mixed:
+
+- `height_ellipsoid_m`: above the WGS 84 ellipsoid (GNSS receivers, RTK, photogrammetry);
+- `altitude_amsl_m`: above the EGM96 geoid ("mean sea level"; MAVLink's absolute altitude, DJI's EGM96, KML);
+- `height_above_takeoff_m`: above the point where this sortie takes off, as a difference of ellipsoid heights.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from planning.findings import Finding
+from planning.plan import Aircraft, Camera, FlightRules
+from planning.site import Origin
+
+
+class HeightReference(StrEnum):
+    """What the heights of a mission file are measured from."""
+
+    ABOVE_TAKEOFF = "above-takeoff"
+    AMSL = "amsl"
+    ELLIPSOID = "ellipsoid"
+
+
+class FileFormat(StrEnum):
+    """Mission file formats, by the names of the command line."""
+
+    DJI_KMZ = "dji-kmz"
+    MAVLINK_PLAN = "mavlink-plan"
+    MAVLINK_WPL = "mavlink-wpl"
+    KML = "kml"
+    CSV = "csv"
+
+
+@dataclass(frozen=True, slots=True)
+class GeoPoint:
+    """A point on WGS 84: degrees, and metres above the ellipsoid."""
+
+    lat_deg: float
+    lon_deg: float
+    height_ellipsoid_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Photo:
+    """One photo taken at a waypoint: heading clockwise from true north in (-180, 180], gimbal pitch 0 level."""
+
+    viewpoint_id: str
+    heading_deg: float
+    gimbal_pitch_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoint:
+    """A vertex of the flown path; without photos it is only passed, to stay on the checked path."""
+
+    position: GeoPoint
+    photos: tuple[Photo, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Mission:
+    """One sortie, ready to be written in any format.
+
+    The aircraft climbs vertically from `takeoff` to the height of the first waypoint, which is straight above it,
+    flies straight lines through the waypoints, and from the last one, again above `takeoff`, descends vertically.
+
+    Parameters
+    ----------
+    number
+        Of the sortie in its plan, from 1.
+    profile
+        Identifier in the aircraft catalogue; empty when the plan's aircraft is in none.
+    speed_m_s
+        Cruise speed of all legs.
+    length_m, duration_s
+        Of the whole sortie, take-off and landing included, by the plan's own time model.
+    origin
+        Of the plan's local frame, which tables of local coordinates use.
+    """
+
+    name: str
+    number: int
+    takeoff: GeoPoint
+    waypoints: tuple[Waypoint, ...]
+    aircraft: Aircraft
+    camera: Camera
+    profile: str
+    rules: FlightRules
+    speed_m_s: float
+    length_m: float
+    duration_s: float
+    origin: Origin
+
+    @property
+    def n_photos(self) -> int:
+        """Number of photos."""
+        return sum(len(waypoint.photos) for waypoint in self.waypoints)
+
+    def height_above_takeoff_m(self, point: GeoPoint) -> float:
+        """Height of `point` above the take-off point, as a difference of ellipsoid heights."""
+        return point.height_ellipsoid_m - self.takeoff.height_ellipsoid_m
+
+
+@dataclass(frozen=True, slots=True)
+class ReadPhoto:
+    """One photo that a file tells the aircraft to take; an angle is None where the file leaves it open.
+
+    `viewpoint_id` is empty where the file names none.
+    """
+
+    heading_deg: float | None
+    gimbal_pitch_deg: float | None
+    viewpoint_id: str = ""
+
+    def __post_init__(self) -> None:
+        if self.heading_deg is not None and not -180.0 <= self.heading_deg <= 360.0:
+            raise ValueError(f"heading_deg: expected -180 to 360, got {self.heading_deg}")
+        if self.gimbal_pitch_deg is not None and not -180.0 <= self.gimbal_pitch_deg <= 90.0:
+            raise ValueError(f"gimbal_pitch_deg: expected -180 to 90, got {self.gimbal_pitch_deg}")
+
+
+@dataclass(frozen=True, slots=True)
+class ReadWaypoint:
+    """A point of a mission that was read; exactly one of the two heights is known."""
+
+    lat_deg: float
+    lon_deg: float
+    height_ellipsoid_m: float | None = None
+    height_above_takeoff_m: float | None = None
+    photos: tuple[ReadPhoto, ...] = ()
+
+    def __post_init__(self) -> None:
+        if (self.height_ellipsoid_m is None) == (self.height_above_takeoff_m is None):
+            raise ValueError("expected one of height_ellipsoid_m and height_above_takeoff_m, got both or neither")
+        if not (abs(self.lat_deg) <= 90.0 and abs(self.lon_deg) <= 180.0):
+            raise ValueError(f"expected a position on the globe, got {self.lat_deg}, {self.lon_deg}")
+        height_m = self.height_above_takeoff_m if self.height_ellipsoid_m is None else self.height_ellipsoid_m
+        if height_m is None or not math.isfinite(height_m):
+            raise ValueError(f"expected a finite height, got {height_m}")
+
+
+class Finish(StrEnum):
+    """What the aircraft does after the last waypoint of a mission that was read."""
+
+    RETURN = "return"
+    """It flies straight home and lands there."""
+    LAND = "land"
+    """It lands where it is."""
+    HOVER = "hover"
+    """It waits for the pilot."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReadMission:
+    """One sortie as a file describes it.
+
+    Parameters
+    ----------
+    takeoff
+        Where the file expects the take-off; None where it does not say.
+    height_reference
+        Of the heights in the file.
+    climb_above_takeoff_m, return_above_takeoff_m
+        Heights above take-off to which the aircraft climbs at least before it leaves the take-off column, and before
+        it flies home after the last waypoint; 0 where the file does not say.
+    speed_m_s
+        Cruise speed; None where the file does not say.
+    findings
+        What the file's checks found and what had to be assumed; never an error, a file with errors is not read.
+    """
+
+    name: str
+    path: Path
+    format: FileFormat
+    waypoints: tuple[ReadWaypoint, ...]
+    takeoff: GeoPoint | None
+    height_reference: HeightReference
+    finish: Finish = Finish.RETURN
+    climb_above_takeoff_m: float = 0.0
+    return_above_takeoff_m: float = 0.0
+    speed_m_s: float | None = None
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def n_photos(self) -> int:
+        """Number of photos."""
+        return sum(len(waypoint.photos) for waypoint in self.waypoints)

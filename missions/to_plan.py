@@ -1,0 +1,228 @@
+"""Missions that were read, as viewpoints and sorties of a site, so that their coverage can be evaluated.
+
+What the file leaves open is filled in by what the aircraft does then, and each time a finding says so: heights above
+take-off count from the site's home, a gimbal that was never told anything stands level, the pieces that the autopilot
+flies by itself (climb, approach, return, landing) become part of the path.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from missions.build import COLUMN_RADIUS_M
+from missions.legs import distance_m
+from missions.model import Finish, HeightReference, ReadMission, ReadPhoto
+from planning.errors import InputError
+from planning.findings import Finding, Severity
+from planning.frames import Vec3
+from planning.mesh import MAX_COORDINATE_M
+from planning.plan import FlightRules, Sortie, Viewpoint
+from planning.site import Origin
+
+MAX_DISTANCE_M = 5000.0
+"""A mission that never comes this close to home belongs to another site."""
+
+TAKEOFF_MOVED_M = 20.0
+"""A take-off point of the file this far from the site's home is worth a warning; a launch area is smaller."""
+
+TAKEOFF_LIFTED_M = 2.0
+"""Likewise for its height, which shifts all heights above take-off; GNSS without RTK is good to about 2 m."""
+
+RTH_NEAR_M = 5.0
+"""DJI aircraft that are told to return within this distance of home land at once (DJI Mavic 3 user manual)."""
+
+ASSUMED_SPEED_M_S = 5.0
+"""Cruise speed of missions that name none: QGroundControl's and PX4's default."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlanParts:
+    """Viewpoints and sorties in a site's local frame, and what had to be assumed to get them."""
+
+    viewpoints: tuple[Viewpoint, ...]
+    sorties: tuple[Sortie, ...]
+    findings: tuple[Finding, ...]
+
+
+def viewpoints_and_sorties(
+    missions: Sequence[ReadMission], origin: Origin, home_enu_m: Vec3, rules: FlightRules | None = None
+) -> PlanParts:
+    """One sortie per mission, and a viewpoint per photo.
+
+    Parameters
+    ----------
+    rules
+        For durations, which are estimated by distance over speed and the time each photo takes.
+
+    Raises
+    ------
+    InputError
+        A mission stays more than `MAX_DISTANCE_M` from home, or goes further than the local frame reaches.
+    """
+    from planning.geodesy.enu import geodetic_from_enu
+
+    rules = rules or FlightRules()
+    lat, lon, height_m = geodetic_from_enu(origin, [home_enu_m])
+    home = (float(lat[0]), float(lon[0]), float(height_m[0]))
+    ids = _Ids()
+    viewpoints: list[Viewpoint] = []
+    sorties: list[Sortie] = []
+    findings: list[Finding] = []
+    for mission in missions:
+        _check_is_near(mission, home)
+        findings += mission.findings
+        findings += _takeoff_findings(mission, home)
+        points = _points_enu_m(mission, origin, home[2])
+        path = _flown_path(mission, points, home_enu_m)
+        _check_is_local(mission, path)
+        views = []
+        unaimed = _Unaimed()
+        for waypoint, point in zip(mission.waypoints, points, strict=True):
+            for photo in waypoint.photos:
+                if unaimed.count(photo) and photo.heading_deg is not None:
+                    pitch_deg = 0.0 if photo.gimbal_pitch_deg is None else photo.gimbal_pitch_deg
+                    views.append(Viewpoint(ids.next(photo.viewpoint_id), point, photo.heading_deg, pitch_deg))
+        findings += unaimed.findings(mission.name)
+        findings += _end_findings(mission)
+        sorties.append(_sortie(path, views, mission, rules))
+        viewpoints += views
+    return PlanParts(tuple(viewpoints), tuple(sorties), tuple(findings))
+
+
+@dataclass(slots=True)
+class _Ids:
+    """Viewpoint ids: the file's own where it has them, else v0000, v0001, ... in the order of flight."""
+
+    used: set[str] = field(default_factory=set)
+    count: int = 0
+
+    def next(self, wanted: str) -> str:
+        identifier = wanted
+        while not identifier or identifier in self.used:
+            identifier = f"v{self.count:04d}"
+            self.count += 1
+        self.used.add(identifier)
+        return identifier
+
+
+@dataclass(slots=True)
+class _Unaimed:
+    """Photos whose angles the file leaves open."""
+
+    n_without_heading: int = 0
+    n_without_pitch: int = 0
+
+    def count(self, photo: ReadPhoto) -> bool:
+        """Whether the photo can be used."""
+        if photo.heading_deg is None:
+            self.n_without_heading += 1
+            return False
+        self.n_without_pitch += photo.gimbal_pitch_deg is None
+        return True
+
+    def findings(self, name: str) -> Iterator[Finding]:
+        if self.n_without_heading:
+            text = f"{self.n_without_heading} photos are left out: the pilot turns the aircraft by hand there"
+            yield Finding(Severity.WARNING, "no-heading", text, name, self.n_without_heading)
+        if self.n_without_pitch:
+            text = (
+                f"{self.n_without_pitch} photos have no gimbal pitch in the file; a gimbal starts level: 0 deg assumed"
+            )
+            yield Finding(Severity.WARNING, "no-gimbal-pitch", text, name, self.n_without_pitch)
+
+
+def _check_is_near(mission: ReadMission, home: tuple[float, float, float]) -> None:
+    if not mission.waypoints:
+        raise InputError(f"{mission.path}: the mission has no waypoints")
+    nearest_m = min(distance_m(w.lat_deg, w.lon_deg, home[0], home[1]) for w in mission.waypoints)
+    if nearest_m > MAX_DISTANCE_M:
+        raise InputError(
+            f"{mission.path}: the mission '{mission.name}' is {nearest_m / 1000.0:.1f} km from the site's home; "
+            f"expected at most {MAX_DISTANCE_M / 1000.0:g} km; is it the right site?"
+        )
+
+
+def _check_is_local(mission: ReadMission, path: Sequence[Vec3]) -> None:
+    for point in path:
+        away_m = max(map(abs, point))
+        if away_m > MAX_COORDINATE_M:
+            raise InputError(
+                f"{mission.path}: the mission '{mission.name}' reaches {away_m / 1000.0:.0f} km from the origin of the "
+                f"site; expected at most {MAX_COORDINATE_M / 1000.0:g} km; a coordinate or a height in it is wrong"
+            )
+
+
+def _takeoff_findings(mission: ReadMission, home: tuple[float, float, float]) -> Iterator[Finding]:
+    is_relative = mission.height_reference is HeightReference.ABOVE_TAKEOFF
+    if is_relative:
+        text = "its heights are above take-off and were counted from the site's home"
+        yield Finding(Severity.NOTE, "height-reference", text, mission.name)
+    elif mission.height_reference is HeightReference.AMSL:
+        text = "its heights are above sea level and were brought to the ellipsoid with EGM96"
+        yield Finding(Severity.NOTE, "height-reference", text, mission.name)
+    if mission.takeoff is None:
+        return
+    away_m = distance_m(mission.takeoff.lat_deg, mission.takeoff.lon_deg, home[0], home[1])
+    if away_m > TAKEOFF_MOVED_M:
+        text = (
+            f"it was planned for a take-off {away_m:.0f} m from the site's home; the way there is not the planned one"
+        )
+        yield Finding(Severity.WARNING, "takeoff-moved", text, mission.name, away_m, TAKEOFF_MOVED_M, "m")
+    lifted_m = mission.takeoff.height_ellipsoid_m - home[2]
+    if is_relative and abs(lifted_m) > TAKEOFF_LIFTED_M:
+        text = (
+            f"its take-off point lies {abs(lifted_m):.1f} m {'above' if lifted_m > 0 else 'below'} the site's home, "
+            "so counted from home all its heights are off by that"
+        )
+        yield Finding(Severity.WARNING, "takeoff-lifted", text, mission.name, lifted_m, TAKEOFF_LIFTED_M, "m")
+
+
+def _end_findings(mission: ReadMission) -> Iterator[Finding]:
+    if mission.finish is Finish.HOVER:
+        text = "the mission ends hovering at its last waypoint; the way home is the pilot's and not in the path"
+        yield Finding(Severity.NOTE, "finish", text, mission.name)
+
+
+def _points_enu_m(mission: ReadMission, origin: Origin, home_height_ellipsoid_m: float) -> list[Vec3]:
+    from planning.geodesy.enu import enu_from_geodetic
+
+    heights_m = [
+        w.height_ellipsoid_m if w.height_above_takeoff_m is None else home_height_ellipsoid_m + w.height_above_takeoff_m
+        for w in mission.waypoints
+    ]
+    lat, lon = [w.lat_deg for w in mission.waypoints], [w.lon_deg for w in mission.waypoints]
+    points = enu_from_geodetic(origin, lat, lon, np.array(heights_m, np.float64))
+    # Rounded to 0.1 mm, so that a place that is visited twice is one point.
+    return [(round(float(x), 4), round(float(y), 4), round(float(z), 4)) for x, y, z in points]
+
+
+def _flown_path(mission: ReadMission, points: Sequence[Vec3], home: Vec3) -> list[Vec3]:
+    """From take-off to landing: the waypoints and the pieces that the autopilot flies by itself."""
+    first, last = points[0], points[-1]
+    climb_z = max(first[2], home[2] + mission.climb_above_takeoff_m)
+    path = [home]
+    if math.dist(first[:2], home[:2]) > COLUMN_RADIUS_M:
+        path += [(home[0], home[1], climb_z), (first[0], first[1], climb_z)]
+    path += points
+    home_m = math.dist(last[:2], home[:2])
+    if home_m <= COLUMN_RADIUS_M and mission.finish is not Finish.HOVER:
+        path.append(home)
+    elif mission.finish is Finish.RETURN:
+        climbs = home_m > RTH_NEAR_M
+        return_z = max(last[2], home[2] + mission.return_above_takeoff_m) if climbs else last[2]
+        path += [(last[0], last[1], return_z), (home[0], home[1], return_z), home]
+    elif mission.finish is Finish.LAND:
+        path.append((last[0], last[1], home[2]))
+    return [point for point, _ in itertools.groupby(path)]
+
+
+def _sortie(path: Sequence[Vec3], views: Sequence[Viewpoint], mission: ReadMission, rules: FlightRules) -> Sortie:
+    length_m = float(sum(math.dist(a, b) for a, b in itertools.pairwise(path)))
+    speed_m_s = mission.speed_m_s or ASSUMED_SPEED_M_S
+    duration_s = rules.takeoff_landing_s + length_m / speed_m_s + len(views) * (rules.settle_s + rules.photo_s)
+    return Sortie(tuple(view.id for view in views), tuple(path), length_m, duration_s)
