@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from missions.encode import DEFAULT_OPTIONS, ExportOptions, encode
+from missions.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, encode
 from missions.model import FileFormat, ReadMission
 from planning.errors import InputError, MissionError
 from planning.findings import Severity
@@ -51,7 +51,11 @@ def export(
     MissionError
         The plan cannot be flown as it stands, or not with this format; nothing is written.
     """
-    encoded = encode(plan, origin, home_enu_m, file_format, options)
+    return write_files(encode(plan, origin, home_enu_m, file_format, options), path)
+
+
+def write_files(encoded: EncodedFiles, path: Path) -> tuple[Path, ...]:
+    """Write encoded missions, all of them or none; see `export`."""
     errors = [finding for finding in encoded.findings if finding.severity is Severity.ERROR]
     if errors:
         first = f"{errors[0].place}: {errors[0].message}".removeprefix(": ")

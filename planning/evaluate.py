@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from planning.coverage.model import CoverageModel, exact_coverage, exact_sections
 from planning.coverage.sections import NOT_SEEN
 from planning.plan import Coverage, Viewpoint, viewpoint_arrays
+from planning.reach_kernel import UNREACHABLE
+from planning.reachability import Reachability
 
 POSITION_DECIMALS = 4
 ANGLE_DECIMALS = 3
@@ -32,9 +34,15 @@ def coverage_counts(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> ND
     return exact_coverage(model, viewpoint_arrays(tuple(viewpoints)))
 
 
-def coverage(model: CoverageModel, viewpoints: Sequence[Viewpoint], upper_bound: int) -> Coverage:
-    """Covered sections beside the bound on what is reachable."""
-    return Coverage(int(np.count_nonzero(coverage_counts(model, viewpoints))), model.n_elements, upper_bound)
+def coverage(model: CoverageModel, viewpoints: Sequence[Viewpoint], reachability: Reachability) -> Coverage:
+    """Covered sections beside the bound on what is reachable.
+
+    Viewpoints of other programs may break the rules that the bound rests on (stand too close, leave the airspace);
+    sections that such a viewpoint covers count as reachable.
+    """
+    covered = coverage_counts(model, viewpoints) > 0
+    bound = covered | (reachability.verdicts != UNREACHABLE)
+    return Coverage(int(covered.sum()), model.n_elements, int(bound.sum()))
 
 
 def depth(model: CoverageModel, viewpoints: Sequence[Viewpoint], max_views: int = 4) -> tuple[DepthCount, ...]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.coverage.sections import PanelFrames
-from planning.frames import aim
+from planning.frames import aim, camera_axes
 from planning.plan import Camera, ViewpointArrays
 from planning.space import SAFETY_MARGIN_M, FreeSpace
 
@@ -60,3 +60,12 @@ def sobol(n: int, rng: np.random.Generator) -> Array:
     if n == 0:
         return np.zeros((0, 3))
     return qmc.Sobol(3, rng=rng).random_base2(int(np.ceil(np.log2(n))))[:n]
+
+
+def picture_corners(views: ViewpointArrays, camera: Camera, depth_m: float) -> Array:
+    """Corners of each view's picture at a depth, shape (n, 4, 3): lower left, lower right, upper right, upper left."""
+    forward, right, up = camera_axes(views.heading_rad, views.pitch_rad)
+    x = camera.half_width * np.array([-1.0, 1.0, 1.0, -1.0])
+    y = camera.half_height * np.array([-1.0, -1.0, 1.0, 1.0])
+    rays = forward[:, None] + x[:, None] * right[:, None] + y[:, None] * up[:, None]
+    return np.asarray(views.positions_enu_m[:, None] + depth_m * rays)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 
 SAFETY_MARGIN_M = 0.002
 """Kept on top of every distance, so that coordinates rounded to 0.1 mm and readers in float32 still find it kept."""
+
+TAKEOFF_CLIMB_M = 2.0
+"""Aircraft climb at least this far before they fly sideways, wherever the airspace begins."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,8 +51,9 @@ class FreeSpace:
 
     @property
     def column_top_enu_m(self) -> Array:
-        """Lowest point above home that lies in the airspace, shape (3,)."""
-        return np.array([*self.home_enu_m[:2], max(self.home_enu_m[2], self.low_enu_m[2] + SAFETY_MARGIN_M)])
+        """Where sideways flight may begin: in the airspace, `TAKEOFF_CLIMB_M` or more above home; shape (3,)."""
+        lowest = max(self.home_enu_m[2] + TAKEOFF_CLIMB_M, self.low_enu_m[2] + SAFETY_MARGIN_M)
+        return np.array([*self.home_enu_m[:2], lowest])
 
     def is_allowed(self, points_enu_m: Array) -> NDArray[np.bool_]:
         """Whether viewpoints may lie at points of shape (n, 3)."""
@@ -76,8 +80,19 @@ class FreeSpace:
         return kept
 
 
+def unchecked_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
+    """Space of a site as it is, whether or not its home can be used: for measuring plans."""
+    site = model.site
+    solids = Solids.of(
+        np.concatenate([panel_triangles(panel_corners(site)), join([model.building, *model.obstacles]).corners_enu_m])
+    )
+    no_fly = Solids.of(join([zone.prism() for zone in site.airspace.no_fly]).corners_enu_m)
+    low, high, home = (np.array(p) for p in (site.airspace.min_enu_m, site.airspace.max_enu_m, site.home_enu_m))
+    return FreeSpace(low, high, solids, no_fly, min_distance_m, min_distance_m, home)
+
+
 def free_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
-    """Allowed space of a site.
+    """Allowed space of a site from whose home one can take off.
 
     Raises
     ------
@@ -85,27 +100,12 @@ def free_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
         Home, or the column above it, is outside the airspace, too close to something, inside a solid or in a no-fly
         volume; the message gives the measured distance.
     """
-    site = model.site
-    airspace = site.airspace
-    solids = Solids.of(
-        np.concatenate([panel_triangles(panel_corners(site)), join([model.building, *model.obstacles]).corners_enu_m])
-    )
-    no_fly = Solids.of(join([zone.prism() for zone in airspace.no_fly]).corners_enu_m)
-    home = np.array(site.home_enu_m)
-    space = FreeSpace(
-        np.array(airspace.min_enu_m), np.array(airspace.max_enu_m), solids, no_fly, min_distance_m, min_distance_m, home
-    )
+    space = unchecked_space(model, min_distance_m)
     _check_home(space)
-    column = no_fly.segment_distances_m(home[None], space.column_top_enu_m[None], 2.0 * min_distance_m + 1.0)[0]
-    return FreeSpace(
-        space.low_enu_m,
-        space.high_enu_m,
-        solids,
-        no_fly,
-        min_distance_m,
-        min(min_distance_m, max(0.0, float(column) - 2.0 * SAFETY_MARGIN_M)),
-        home,
-    )
+    home, top = space.home_enu_m[None], space.column_top_enu_m[None]
+    from_column = float(space.no_fly.segment_distances_m(home, top, 2.0 * min_distance_m + 1.0)[0])
+    kept = min(min_distance_m, max(0.0, from_column - 2.0 * SAFETY_MARGIN_M))
+    return replace(space, no_fly_distance_m=kept)
 
 
 def _check_home(space: FreeSpace) -> None:

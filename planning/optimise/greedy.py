@@ -134,7 +134,7 @@ def _fewest_views(
                 break
             chosen = exchange.chosen.copy()
             trace.record(exchange.n_covered())
-    return ViewSet(take(pool.views, chosen), float(weights.sum()))
+    return ViewSet(take(pool.views, chosen))
 
 
 def element_weights(model: CoverageModel, by_solid_angle: bool) -> Array:

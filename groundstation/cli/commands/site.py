@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import re
 import sys
 import time
@@ -47,22 +48,32 @@ def add_parser(subparsers: Any) -> None:
     add("-o", "--out", type=Path, required=True, metavar="SITE", help="site file to write; its meshes go beside it")
     add("--name", help="name of the site (default: the building's, else the file's)")
     add("--json", action="store_true", help="print one JSON object instead of text")
+    _add_place_and_content(command)
+    _add_panels_and_flight(command)
+
+
+def _add_place_and_content(command: argparse.ArgumentParser) -> None:
     place = command.add_argument_group("where it is (instead of what the file says)").add_argument
-    place("--origin", type=_point, metavar="LAT,LON,H", help="place of the file's zero point; H above the ellipsoid")
+    place("--origin", type=_point, metavar="LAT,LON,H", help="place of the file's zero point (H: --height-reference)")
     place("--crs", help="coordinate reference system of the file's coordinates, such as EPSG:25832+7837")
     place("--axis-order", choices=("auto", "xy", "yx"), default="auto", help="xy: east first, yx: north first")
     place(
         "--height-reference",
         choices=("auto", "orthometric", "ellipsoid"),
         default="auto",
-        help="what heights are above: sea level, the ellipsoid, or as the system says (default)",
+        help="heights are above sea level, the ellipsoid, or what the system says (auto; for --origin the ellipsoid)",
     )
-    place("--ground", type=float, metavar="Z", help="the ground's third coordinate in the file (default: lowest point)")
+    place(
+        "--ground", type=_number, metavar="Z", help="the ground's third coordinate in the file (default: lowest point)"
+    )
     content = command.add_argument_group("what is in the file").add_argument
     content("--building", metavar="ID", help="the building wanted, in a file with many")
     content("--units", default="m", choices=("m", "cm", "mm", "ft", "in", "us-ft"), help="of a mesh file (default m)")
     content("--up", choices=("y", "z"), help="axis that points up in a mesh file (default: y for GLB, else z)")
-    content("--deflection", type=float, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")
+    content("--deflection", type=_number, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")
+
+
+def _add_panels_and_flight(command: argparse.ArgumentParser) -> None:
     grid = command.add_argument_group("panels that you state").add_argument
     grid(
         "--panel-grid",
@@ -73,22 +84,32 @@ def add_parser(subparsers: Any) -> None:
     )
     grid("--rows", type=int, action="append", metavar="N", help="panels upwards, once for all grids or one for each")
     grid("--columns", type=int, action="append", metavar="N", help="panels side by side, likewise")
-    grid("--gap", type=float, default=0.0, metavar="M", help="width of the mullions between panels (default 0)")
-    grid("--grid-tolerance", type=float, default=2.0, metavar="M", help="allowed distance from the mesh (default 2 m)")
+    grid("--gap", type=_number, default=0.0, metavar="M", help="width of the mullions between panels (default 0)")
+    grid(
+        "--grid-tolerance", type=_number, default=2.0, metavar="M", help="allowed distance from the mesh (default 2 m)"
+    )
     flight = command.add_argument_group("airspace and home (local metres east, north, up)").add_argument
     flight("--home", type=_point, metavar="E,N,U", help="take-off place (default: in front of the largest facade)")
-    flight("--airspace-margin", type=float, default=40.0, metavar="M", help="around the building (default 40 m)")
-    flight("--floor", type=float, metavar="U", help="of the airspace (default: 2 m above ground)")
-    flight("--ceiling", type=float, metavar="U", help="of the airspace (default: 30 m above the building)")
+    flight("--airspace-margin", type=_number, default=40.0, metavar="M", help="around the building (default 40 m)")
+    flight("--floor", type=_number, metavar="U", help="of the airspace (default: 2 m above ground)")
+    flight("--ceiling", type=_number, metavar="U", help="of the airspace (default: 30 m above the building)")
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a number, got '{text}'")
+    return value
 
 
 def _point(text: str) -> Number3:
     parts = text.split(",")
-    try:
-        x, y, z = (float(part) for part in parts)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"expected three numbers with commas between them, got '{text}'") from None
-    return x, y, z
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f"expected three numbers with commas between them, got '{text}'")
+    return _number(parts[0]), _number(parts[1]), _number(parts[2])
 
 
 def _triple(text: str) -> tuple[Number3, Number3, Number3]:
@@ -102,6 +123,8 @@ def run(options: argparse.Namespace) -> int:
     """Import a site; returns the exit status."""
     from planning.site_import.importer import import_site, write_imported_site
 
+    if not options.out.parent.is_dir():
+        raise InputError(f"{options.out}: there is no folder '{options.out.parent}' to write it into")
     started = time.perf_counter()
     imported = import_site(options.file, _import_options(options))
     model = write_imported_site(options.out, imported, options.file)

@@ -1,0 +1,38 @@
+"""`check`: every pre-flight rule with its measured value."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "check",
+        help="check a plan against its site before flight",
+        description="Measure every pre-flight rule. Exit status 1 where one is broken.",
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("plan", type=Path, metavar="PLAN", help="plan file")
+    parser.add_argument("site", type=Path, metavar="SITE", help="site file")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Check and print; returns the exit status."""
+    from groundstation.cli.console import MARKS, print_json, run_job
+    from groundstation.services.planning import check_files, finding_summary
+    from planning.findings import is_flyable
+
+    findings = run_job("check", lambda context: check_files(options.plan, options.site, context))
+    flyable = is_flyable(findings)
+    if options.json:
+        print_json({"flyable": flyable, "findings": [finding_summary(finding) for finding in findings]})
+    else:
+        for finding in findings:
+            place = f" [{finding.place}]" if finding.place else ""
+            print(f"{MARKS[finding.severity]:>7}  {finding.code}{place}: {finding.message}")
+        print("ready to fly" if flyable else "not ready to fly: see the errors above")
+    return 0 if flyable else 1

@@ -1,0 +1,50 @@
+"""`demo`: the main job on a bundled site."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+from typing import Any
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "demo",
+        help="plan, check and export the bundled site",
+        description="Do the main job on a site that the program makes itself: plan, check, export.",
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("--out", type=Path, default=Path("demo-out"), metavar="DIR", help="default: demo-out")
+    parser.add_argument("--scene", default="office", metavar="NAME", help="office (default), library, court, tower ...")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Demonstrate; returns the exit status."""
+    from groundstation.cli.commands.plan import print_summary
+    from groundstation.cli.console import print_findings, print_json, run_job
+    from groundstation.services.demo import demonstrate
+    from groundstation.services.planning import planned_summary
+    from planning.findings import Severity, is_flyable
+
+    started = time.perf_counter()
+    made = run_job("demo", lambda context: demonstrate(options.out, options.scene, monitor=context))
+    seconds = time.perf_counter() - started
+    if options.json:
+        content = planned_summary(made.planned, seconds)
+        content["site"], content["plan"] = str(made.site_path), str(made.plan_path)
+        content["missions"] = [str(path) for path in made.mission_paths]
+        content["flyable"] = is_flyable(made.findings)
+        print_json(content)
+        return 0
+    print(f"site:     {made.site_path}")
+    print_summary(made.planned, made.plan_path, seconds)
+    kept = sum(finding.severity is Severity.OK for finding in made.findings)
+    print(
+        f"check:    {kept} of {len(made.findings)} rules kept, {'ready' if is_flyable(made.findings) else 'NOT ready'}"
+    )
+    print_findings(finding for finding in made.findings if finding.severity is not Severity.OK)
+    print("missions: " + ", ".join(str(path) for path in made.mission_paths))
+    return 0

@@ -1,0 +1,66 @@
+"""`import`: mission files back to a plan, with the coverage they bring."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "import",
+        help="read a mission file as a plan and see what it covers",
+        description="Read a DJI KMZ (or its unpacked folder), a QGroundControl .plan, a .waypoints file, or a KML or "
+        "CSV that Reflight wrote; several files are the sorties of one plan.",
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("file", type=Path, nargs="+", metavar="FILE", help="mission file")
+    add("--site", type=Path, required=True, metavar="SITE", help="site file the mission is flown at")
+    add("-o", "--out", type=Path, required=True, metavar="PLAN", help="plan file to write")
+    add("--profile", default="m3e", metavar="ID", help="aircraft and camera (default m3e)")
+    add("--min-distance", type=float, default=10.0, metavar="M", help="for the reachable bound (default 10 m)")
+    add("--step", type=float, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
+    add("--occlusion", choices=("auto", "on", "off"), default="auto", help="default: as the scene calls for")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Import and print; returns the exit status."""
+    from groundstation.cli.console import print_findings, print_json, run_job
+    from groundstation.services.missions import import_missions
+    from groundstation.services.planning import finding_summary
+    from planning.errors import InputError
+    from planning.plan import Constraints
+
+    try:
+        constraints = Constraints(options.min_distance, options.step, options.occlusion)
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    plan, findings = run_job(
+        "import",
+        lambda context: import_missions(options.file, options.site, options.out, options.profile, constraints, context),
+    )
+    coverage = plan.coverage
+    if options.json:
+        print_json(
+            {
+                "plan": str(options.out),
+                "views": len(plan.viewpoints),
+                "sorties": len(plan.sorties),
+                "covered": coverage.covered,
+                "total": coverage.total,
+                "reachable_upper_bound": coverage.reachable_upper_bound,
+                "occlusion": plan.constraints.occlusion,
+                "findings": [finding_summary(finding) for finding in findings],
+            }
+        )
+    else:
+        print(
+            f"{options.out}: {len(plan.viewpoints)} views in {len(plan.sorties)} sorties cover {coverage.covered} of "
+            f"{coverage.total} sections ({coverage.reachable_upper_bound} reachable at most)"
+        )
+        print_findings(findings)
+    return 0

@@ -1,0 +1,100 @@
+"""`route`: a short tour through a TSPLIB instance, for comparison with known optima."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from pathlib import Path
+from typing import Any
+
+METHODS = ("local-search", "pyvrp", "nearest-neighbour")
+DEFAULT_BUDGET_S = 10.0
+
+START_AND_END_S = 0.3
+"""Part of the budget for starting Python before `run` and for leaving it afterwards."""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "route",
+        help="find a short tour through a TSPLIB instance",
+        description="Find a short closed tour through the points of a TSPLIB file (TSP, or ATSP with pyvrp), print its "
+        "length in TSPLIB's own rounding, and prove how far from the shortest it can be.",
+    )
+    parser.add_argument("file", type=Path, metavar="FILE.tsp", help="TSPLIB instance")
+    parser.add_argument(
+        "--time-budget",
+        type=_seconds,
+        default=DEFAULT_BUDGET_S,
+        metavar="S",
+        help="longest time to take, seconds (default %(default)g); a proven shortest tour ends it sooner",
+    )
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the search (default 0)")
+    parser.add_argument(
+        "--method",
+        choices=METHODS,
+        default=METHODS[0],
+        help="local-search (default): iterated 3-opt; pyvrp; nearest-neighbour: the paper's greedy",
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+    parser.set_defaults(run=run)
+
+
+def _seconds(text: str) -> float:
+    seconds = float(text)
+    if not (math.isfinite(seconds) and seconds > 0.0):
+        raise argparse.ArgumentTypeError(f"expected a positive number of seconds, got {text}")
+    return seconds
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read, solve, print."""
+    begin = time.perf_counter()
+    from planning.errors import InputError
+    from planning.progress import TimeLimit, Trace
+    from planning.routing.methods import solve_tour
+    from planning.routing.tour import nearest_neighbour, tour_length
+    from planning.routing.tsplib import read_instance
+
+    instance = read_instance(options.file)
+    if instance.kind == "CVRP":
+        raise InputError(f"{options.file}: a CVRP needs several routes; expected a TSP or ATSP")
+    if instance.kind == "ATSP" and options.method == "local-search":
+        raise InputError(f"{options.file}: local-search needs a symmetric instance; add --method pyvrp")
+    left_s = options.time_budget - (time.perf_counter() - begin) - START_AND_END_S
+    trace = Trace()
+    result = solve_tour(instance.cost, options.method, TimeLimit(left_s), seed=options.seed, trace=trace)
+    greedy = tour_length(instance.cost, nearest_neighbour(instance.cost))
+    answer = {
+        "name": instance.name,
+        "points": len(instance.ids),
+        "length": _number(result.length),
+        "method": options.method,
+        "seed": options.seed,
+        "lower_bound": _number(result.lower_bound),
+        "gap": result.gap,
+        "nearest_neighbour_length": _number(greedy),
+        "seconds": time.perf_counter() - begin,
+        "tour": [instance.ids[point] for point in result.order],
+        "history": [{"t_s": point.t_s, "length": _number(point.value)} for point in trace.points],
+    }
+    if options.json:
+        print(json.dumps(answer, allow_nan=False))
+        return 0
+    proof = "the shortest there is" if result.gap == 0.0 else f"at most {result.gap:.2%} longer than the shortest"
+    print(
+        f"{instance.name}: {answer['length']} through {answer['points']} points, proven to be {proof}\n"
+        f"{answer['method']}, {answer['seconds']:.1f} s; the nearest neighbour gives "
+        f"{answer['nearest_neighbour_length']} ({greedy / result.length - 1.0:+.1%})"
+    )
+    return 0
+
+
+def _number(value: float) -> float | None:
+    """As a whole number where it is one; null where a greedy tour needs a leg that does not exist."""
+    if math.isinf(value):
+        return None
+    return int(value) if value == int(value) else value

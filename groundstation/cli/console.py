@@ -1,0 +1,67 @@
+"""What all commands share: running a job with progress on stderr, one JSON object on stdout, lists of findings."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
+
+from groundstation.services.jobs import JobContext, JobEvent, JobProgress, JobRunner
+from planning.findings import Finding, Severity
+
+Result = TypeVar("Result")
+
+MARKS = {Severity.ERROR: "ERROR", Severity.WARNING: "warning", Severity.NOTE: "note", Severity.OK: "ok"}
+
+
+def run_job(name: str, work: Callable[[JobContext], Result]) -> Result:
+    """Result of `work`, run as a job; progress goes to stderr when that is a terminal, Ctrl-C cancels."""
+    runner = JobRunner()
+    line = _ProgressLine()
+    runner.subscribe(line.show)
+    job = runner.submit(name, work)
+    try:
+        while not job.wait(0.2):
+            pass
+    except KeyboardInterrupt:
+        runner.cancel(job)
+        job.wait()
+        raise
+    finally:
+        line.clear()
+        runner.shutdown()
+    return job.result()
+
+
+class _ProgressLine:
+    """One line on the terminal that is written over and over."""
+
+    def __init__(self) -> None:
+        self._shown = False
+        self._enabled = sys.stderr.isatty()
+
+    def show(self, event: JobEvent) -> None:
+        """Show where a job stands."""
+        if not self._enabled or not isinstance(event, JobProgress):
+            return
+        share = f" {100 * event.done / event.total:3.0f} %" if event.total > 0 else ""
+        left = f", {event.remaining_s:.0f} s left" if event.remaining_s is not None else ""
+        print(f"\r\033[K{event.elapsed_s:5.1f} s  {event.stage}{share}{left}", end="", file=sys.stderr, flush=True)
+        self._shown = True
+
+    def clear(self) -> None:
+        """Take the line away."""
+        if self._shown:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def print_json(content: dict[str, Any]) -> None:
+    """One JSON object on stdout."""
+    print(json.dumps(content, indent=1, allow_nan=False))
+
+
+def print_findings(findings: Iterable[Finding]) -> None:
+    """Findings on stderr, one a line."""
+    for finding in findings:
+        print(f"{MARKS[finding.severity]}: {finding.message}", file=sys.stderr)

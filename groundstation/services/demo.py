@@ -1,0 +1,62 @@
+"""The demonstration: the whole main job on the bundled sites, from site file to mission files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from groundstation.services.missions import export_plan
+from groundstation.services.planning import plan_site
+from missions.model import FileFormat
+from planning.checks import check_plan
+from planning.errors import InputError
+from planning.findings import Finding
+from planning.plan_file import read_plan
+from planning.planner import Planned, PlanRequest
+from planning.progress import QUIET, Monitor
+from planning.scenes import write_scene
+from planning.site_file import read_site
+
+EXPORTS = (
+    (FileFormat.DJI_KMZ, ".kmz"),
+    (FileFormat.MAVLINK_PLAN, ".plan"),
+    (FileFormat.MAVLINK_WPL, ".waypoints"),
+    (FileFormat.KML, ".kml"),
+    (FileFormat.CSV, ".csv"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Demonstration:
+    """What the demonstration made."""
+
+    site_path: Path
+    plan_path: Path
+    planned: Planned
+    findings: tuple[Finding, ...]
+    mission_paths: tuple[Path, ...]
+
+
+def demonstrate(
+    folder: Path, scene: str = "office", request: PlanRequest = PlanRequest(), monitor: Monitor = QUIET
+) -> Demonstration:
+    """Make a bundled site, plan, check and export it into `folder`.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: this folder cannot be made ({error.strerror or error})") from error
+    site_path = write_scene(scene, folder)
+    plan_path = folder / f"{scene}.plan.json"
+    planned = plan_site(site_path, request, plan_path, monitor=monitor)
+    findings = check_plan(read_plan(plan_path), read_site(site_path), monitor)
+    missions: list[Path] = []
+    for file_format, suffix in EXPORTS:
+        monitor.report("exporting", len(missions), 0)
+        missions += export_plan(plan_path, file_format, folder / f"{scene}{suffix}", site_path)[0]
+    return Demonstration(site_path, plan_path, planned, findings, tuple(missions))

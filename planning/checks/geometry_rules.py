@@ -1,0 +1,122 @@
+"""Rules about where the aircraft is: airspace, distances, no-fly volumes, altitude, leg lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from planning.checks.case import ROUNDING_M, SAME_PLACE_M, Case, Rule, judge
+from planning.findings import Finding, Severity
+from planning.plan import viewpoint_arrays
+
+MAX_ALTITUDE_M = 120.0
+"""Height above ground that most civil aviation rules allow without a permit (EASA open category, FAA part 107)."""
+
+MIN_SPACING_M, LONG_LEG_M, MAX_LEG_M = 0.5, 2000.0, 5000.0
+"""Waypoint spacing: DJI firmware refuses under 0.5 m and over 5 km, older ones over 2 km."""
+
+
+def viewpoints_in_airspace(case: Case) -> Iterator[Finding]:
+    """Viewpoints lie in the airspace box."""
+    low, high = case.space.low_enu_m, case.space.high_enu_m
+    worst, where = 0.0, ""
+    for viewpoint in case.plan.viewpoints:
+        p = np.array(viewpoint.position_enu_m)
+        worst, where = max((worst, where), (float(np.maximum(low - p, p - high).max()), viewpoint.id))
+    advice = "move them inside or widen the airspace"
+    yield judge(worst <= ROUNDING_M, "airspace", "viewpoints outside the airspace by", worst, 0.0, "m", where, advice)
+
+
+def paths_in_airspace(case: Case) -> Iterator[Finding]:
+    """Paths lie in the airspace box; only legs straight above home may be below its floor."""
+    low, high = case.space.low_enu_m, case.space.high_enu_m
+    home = np.array(case.site_model.site.home_enu_m)
+    worst, where = 0.0, ""
+    for place, path in case.paths():
+        outside = np.maximum(np.maximum(low - path, path - high)[:, :2].max(axis=1), path[:, 2] - high[2])
+        in_column = np.linalg.norm(path[:, :2] - home[:2], axis=1) <= SAME_PLACE_M
+        below = low[2] - np.minimum(path[:-1, 2], path[1:, 2])
+        below[in_column[:-1] & in_column[1:]] = 0.0
+        worst, where = max((worst, where), (float(max(outside.max(), below.max())), place))
+    advice = "only the column above home may lie below the airspace"
+    yield judge(worst <= ROUNDING_M, "airspace", "paths outside the airspace by", worst, 0.0, "m", where, advice)
+
+
+def distances_at_viewpoints(case: Case) -> Iterator[Finding]:
+    """Viewpoints keep the minimum distance."""
+    if not case.plan.viewpoints:
+        return
+    limit = case.plan.constraints.min_distance_m
+    clearance = case.space.solids.clearance_m(viewpoint_arrays(case.plan.viewpoints).positions_enu_m)
+    nearest = int(np.argmin(clearance))
+    value, place = float(clearance[nearest]), case.plan.viewpoints[nearest].id
+    subject = "smallest distance at a viewpoint (negative: inside a solid)"
+    yield judge(value >= limit - ROUNDING_M, "distance", subject, value, limit, "m", place, "move it away")
+
+
+def distances_along_paths(case: Case) -> Iterator[Finding]:
+    """Every point of every leg keeps the minimum distance."""
+    limit = case.plan.constraints.min_distance_m
+    for place, path in case.paths():
+        along = case.space.solids.segment_distances_m(path[:-1], path[1:])
+        leg = int(np.argmin(along))
+        inside = bool((case.space.solids.clearance_m(path, limit + 1.0) < 0).any())
+        value = -1.0 if inside else float(along[leg])
+        advice = "the path runs inside a solid" if inside else "plan the route again"
+        where = f"{place}, leg {leg + 1}"
+        subject = "smallest distance along the path"
+        yield judge(value >= limit - ROUNDING_M, "leg-distance", subject, value, limit, "m", where, advice)
+
+
+def no_fly_volumes(case: Case) -> Iterator[Finding]:
+    """No leg enters a no-fly volume."""
+    if not case.site_model.site.airspace.no_fly:
+        yield Finding(Severity.OK, "no-fly", "the site has no no-fly volumes")
+        return
+    solids = case.space.no_fly
+    for place, path in case.paths():
+        along = solids.segment_distances_m(path[:-1], path[1:])
+        leg = int(np.argmin(along))
+        inside = bool((solids.clearance_m(path, 1.0) < 0).any())
+        value = -1.0 if inside else float(along[leg])
+        where, subject = f"{place}, leg {leg + 1}", "smallest distance to a no-fly volume (negative: inside)"
+        yield judge(value > 0.0, "no-fly", subject, value, 0.0, "m", where, "the path enters a no-fly volume")
+
+
+def altitude(case: Case) -> Iterator[Finding]:
+    """Height above ground stays below what needs a permit."""
+    ground = case.site_model.site.airspace.ground_z_m
+    heights = [(float(path[:, 2].max()) - ground, place) for place, path in case.paths()]
+    if heights:
+        value, place = max(heights)
+        advice = "most rules ask for a permit above it"
+        subject, kept = "greatest height above ground", value <= MAX_ALTITUDE_M
+        yield judge(kept, "altitude", subject, value, MAX_ALTITUDE_M, "m", place, advice, Severity.WARNING)
+
+
+def leg_lengths(case: Case) -> Iterator[Finding]:
+    """Waypoints are neither too close together nor too far apart for autopilots."""
+    for place, path in case.paths():
+        lengths = np.linalg.norm(np.diff(path, axis=0), axis=1)
+        flown = lengths[lengths > SAME_PLACE_M]
+        if len(flown) == 0:
+            continue
+        shortest, longest = float(flown.min()), float(flown.max())
+        advice = f"{int((flown < MIN_SPACING_M).sum())} legs are shorter than DJI firmware likes"
+        kept = shortest >= MIN_SPACING_M
+        yield judge(kept, "leg-spacing", "shortest leg", shortest, MIN_SPACING_M, "m", place, advice, Severity.WARNING)
+        severity = Severity.ERROR if longest > MAX_LEG_M else Severity.WARNING
+        kept, advice = longest <= LONG_LEG_M, "autopilots refuse it"
+        yield judge(kept, "leg-spacing", "longest leg", longest, LONG_LEG_M, "m", place, advice, severity)
+
+
+GEOMETRY_RULES: tuple[Rule, ...] = (
+    viewpoints_in_airspace,
+    paths_in_airspace,
+    distances_at_viewpoints,
+    distances_along_paths,
+    no_fly_volumes,
+    altitude,
+    leg_lengths,
+)

@@ -1,0 +1,116 @@
+"""Best coverage within a number of batteries: views and route chosen together.
+
+Which views to take depends on what flying to them costs, so candidates are chosen by worth per time on the routes
+(`planning.routing.orienteering`, worth being the sections covered). The candidates are those that greedy would take
+first, many times more than fit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InfeasibleError
+from planning.optimise import cover_kernel as kernel
+from planning.optimise.candidates import Pool, candidate_pool, keep
+from planning.optimise.greedy import GreedyParameters, element_weights
+from planning.optimise.improve import cover_state
+from planning.optimise.problem import ViewProblem, take
+from planning.plan import Aircraft, FlightRules, ViewpointArrays
+from planning.progress import Monitor, Stop, Trace
+from planning.routing.flights import flight_times
+from planning.routing.orienteering import solve_orienteering
+
+Array = NDArray[np.float64]
+
+MAX_CANDIDATES = 700
+"""Candidates whose routes are compared: their leg table takes about a second."""
+
+CHOICE_DEPTHS = (1, 2, 3)
+"""Candidates are the greedy choices for covering each section once, then twice and so on: variety to route by."""
+
+
+class CoverGain:
+    """Worth of a set of candidates: the weight of the elements they cover (`CoverageGain` of the routing)."""
+
+    def __init__(self, pool: Pool, weights: Array) -> None:
+        self._elements = pool.elements
+        self._state = cover_state(pool.elements, weights)
+
+    @property
+    def value(self) -> float:
+        """Weight covered."""
+        return float(kernel.objective(self._state))
+
+    def marginals(self) -> Array:
+        """What each candidate would add, shape (n,)."""
+        return self._state.gains
+
+    def add(self, candidate: int) -> None:
+        """Put a candidate into the set."""
+        kernel.add_elements(self._state, self._elements.of(candidate))
+
+    def remove(self, candidate: int) -> None:
+        """Take a candidate out of the set."""
+        kernel.remove_elements(self._state, self._elements.of(candidate))
+
+
+def views_within_budget(
+    problem: ViewProblem,
+    aircraft: Aircraft,
+    rules: FlightRules,
+    n_batteries: int,
+    parameters: GreedyParameters,
+    *,
+    seed: int,
+    stop: Stop,
+    trace: Trace,
+    monitor: Monitor,
+) -> tuple[ViewpointArrays, float]:
+    """Views that fit into `n_batteries` sorties and cover as much as could be found, and an upper bound on that.
+
+    The bound holds for the candidates that were compared.
+
+    Raises
+    ------
+    InfeasibleError
+        Nothing can be seen within one battery.
+    """
+    monitor.report("trying viewpoints", 0, 1)
+    weights = element_weights(problem.model, parameters.solid_angle_weights)
+    pool = _shortlist(candidate_pool(problem, seed, parameters.n_candidates), weights)
+    times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
+    gain = CoverGain(pool, weights)
+    selection = solve_orienteering(
+        times.travel_s,
+        times.service_s,
+        times.budget_s,
+        n_batteries,
+        gain,
+        max_stops=max(1, aircraft.max_waypoints - 2),
+        seed=seed,
+        stop=stop,
+        trace=trace,
+        monitor=monitor,
+    )
+    chosen = np.array([stop_number for sortie in selection.sorties for stop_number in sortie], np.int64)
+    if len(chosen) == 0:
+        raise InfeasibleError(
+            f"no viewpoint that sees a panel can be reached and left again within {times.budget_s:.0f} s of one battery"
+        )
+    return take(pool.views, chosen), min(selection.bound, float(weights.sum()))
+
+
+def _shortlist(pool: Pool, weights: Array) -> Pool:
+    """The candidates that greedy takes first, for several depths."""
+    state = cover_state(pool.elements, weights)
+    chosen = np.zeros(min(MAX_CANDIDATES, len(state.gains)), np.int64)
+    n_chosen = 0
+    for depth in CHOICE_DEPTHS:
+        state.depth[0] = depth
+        kernel.refresh_gains(state)
+        state.gains[chosen[:n_chosen]] = -np.inf
+        n_chosen = int(kernel.greedy_steps(state, chosen, n_chosen, len(chosen), np.inf))
+    kept = np.zeros(len(state.gains), np.bool_)
+    kept[chosen[:n_chosen]] = True
+    return keep(pool, kept)

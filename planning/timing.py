@@ -1,0 +1,307 @@
+"""How long flying takes: legs from rest to rest, turns, photos, and what a battery allows. All in closed form.
+
+The aircraft accelerates at one rate up to the highest speed that the leg's direction allows, holds it, and brakes at
+the same rate. Horizontal and vertical speed have limits of their own, as autopilots have them. Wind is taken from the
+worst direction on every leg: it is subtracted from the horizontal airspeed, never added.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from planning.errors import InfeasibleError
+from planning.frames import heading_difference_rad
+from planning.plan import Aircraft, FlightRules
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+UNKNOWN_TURN_RAD = math.pi
+"""Turn charged before the first photo of a sortie: the heading after take-off is not known."""
+
+
+@dataclass(frozen=True, slots=True)
+class MotionLimits:
+    """How fast an aircraft moves over the ground and turns, under given rules and wind; all positive."""
+
+    horizontal_m_s: float
+    ascent_m_s: float
+    descent_m_s: float
+    acceleration_m_s2: float
+    yaw_rate_rad_s: float
+    gimbal_rate_rad_s: float
+
+    def __post_init__(self) -> None:
+        for field in self.__slots__:
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ValueError(f"{field}: expected a positive number, got {value}")
+
+
+def motion_limits(aircraft: Aircraft, rules: FlightRules) -> MotionLimits:
+    """Limits of an aircraft in the wind that the rules expect.
+
+    Raises
+    ------
+    InfeasibleError
+        The wind reaches the aircraft's limit, or leaves no speed over the ground.
+    """
+    if rules.wind_m_s >= aircraft.max_wind_m_s:
+        raise InfeasibleError(
+            f"{aircraft.name} may fly in wind below {aircraft.max_wind_m_s:g} m/s, but {rules.wind_m_s:g} m/s are "
+            "expected; wait for less wind or take another aircraft"
+        )
+    upwind_m_s = aircraft.max_speed_m_s - rules.wind_m_s
+    if upwind_m_s <= 0.0:
+        raise InfeasibleError(
+            f"{aircraft.name} flies {aircraft.max_speed_m_s:g} m/s and makes no headway against {rules.wind_m_s:g} m/s "
+            "of wind; wait for less wind or take another aircraft"
+        )
+    return MotionLimits(
+        horizontal_m_s=min(upwind_m_s, rules.max_speed_m_s or math.inf),
+        ascent_m_s=min(aircraft.max_ascent_m_s, rules.max_speed_m_s or math.inf),
+        descent_m_s=min(aircraft.max_descent_m_s, rules.max_speed_m_s or math.inf),
+        acceleration_m_s2=aircraft.max_acceleration_m_s2,
+        yaw_rate_rad_s=math.radians(aircraft.max_yaw_rate_deg_s),
+        gimbal_rate_rad_s=math.radians(aircraft.max_gimbal_rate_deg_s),
+    )
+
+
+def usable_battery_s(aircraft: Aircraft, rules: FlightRules) -> float:
+    """Time that a sortie may take from the start of its first leg to the end of its last, seconds.
+
+    The endurance less the reserve, less what take-off and landing take. Makers state endurance for flight without wind
+    at a moderate speed; hovering takes about as much power, so time is what counts, not distance.
+
+    Raises
+    ------
+    InfeasibleError
+        Nothing is left.
+    """
+    usable_s = aircraft.endurance_s * (1.0 - rules.battery_reserve) - rules.takeoff_landing_s
+    if usable_s <= 0.0:
+        raise InfeasibleError(
+            f"a battery of {aircraft.name} lasts {aircraft.endurance_s:g} s; a reserve of {rules.battery_reserve:.0%} "
+            f"and {rules.takeoff_landing_s:g} s for take-off and landing leave nothing; lower the reserve"
+        )
+    return usable_s
+
+
+def photo_stop_s(aircraft: Aircraft, rules: FlightRules) -> float:
+    """Hover at a viewpoint apart from turning, seconds; no shorter than the camera's shortest interval."""
+    return max(rules.settle_s + rules.photo_s, aircraft.min_photo_interval_s)
+
+
+def speed_limits_m_s(delta_enu_m: Floats, limits: MotionLimits) -> Floats:
+    """Highest speed along straight legs.
+
+    Parameters
+    ----------
+    delta_enu_m
+        Shape (n, 3), leg vectors; a leg of length zero is taken as horizontal.
+
+    Returns
+    -------
+    speed_m_s
+        Shape (n,): the speed at which the horizontal or the vertical part reaches its limit first.
+    """
+    delta = np.asarray(delta_enu_m, float)
+    horizontal = np.hypot(delta[..., 0], delta[..., 1])
+    length = np.hypot(horizontal, delta[..., 2])
+    vertical_m_s = np.where(delta[..., 2] > 0.0, limits.ascent_m_s, limits.descent_m_s)
+    # The slowness that each part asks for, relative to the length: no division by a part that is zero.
+    slowness = np.maximum(horizontal / limits.horizontal_m_s, np.abs(delta[..., 2]) / vertical_m_s)
+    is_leg = slowness > 0.0
+    return np.where(is_leg, length / np.where(is_leg, slowness, 1.0), limits.horizontal_m_s)
+
+
+def rest_to_rest_s(length_m: ArrayLike, speed_m_s: ArrayLike, acceleration_m_s2: float) -> Floats:
+    """Shortest time over a straight leg from rest to rest, broadcast shape.
+
+    With d the length, v the highest speed and a the acceleration: 2 sqrt(d / a) where v is not reached (d < v^2 / a),
+    otherwise d / v + v / a.
+    """
+    length, speed = np.asarray(length_m, float), np.asarray(speed_m_s, float)
+    triangle_s = 2.0 * np.sqrt(length / acceleration_m_s2)
+    trapezoid_s = length / speed + speed / acceleration_m_s2
+    return np.where(length * acceleration_m_s2 < speed**2, triangle_s, trapezoid_s)
+
+
+def leg_times_s(delta_enu_m: Floats, limits: MotionLimits) -> Floats:
+    """Times of straight legs from rest to rest, shape (n,), from their vectors, shape (n, 3)."""
+    length = np.linalg.norm(np.asarray(delta_enu_m, float), axis=-1)
+    return rest_to_rest_s(length, speed_limits_m_s(delta_enu_m, limits), limits.acceleration_m_s2)
+
+
+def round_trip_metric(limits: MotionLimits) -> Callable[[Floats], Floats]:
+    """Leg times for tables that need the same cost in both directions: the mean of the two.
+
+    Climbing and descending differ; over a flight that ends where it began the means add up to what is flown, but for
+    legs that are both steep and sloped differently up and down.
+    """
+
+    def mean_times_s(delta_enu_m: Floats) -> Floats:
+        return np.asarray((leg_times_s(delta_enu_m, limits) + leg_times_s(-delta_enu_m, limits)) / 2.0)
+
+    return mean_times_s
+
+
+def turn_times_s(heading_change_rad: ArrayLike, pitch_change_rad: ArrayLike, limits: MotionLimits) -> Floats:
+    """Time to turn heading and gimbal together, broadcast shape.
+
+    Both turn at their full rate from the start; what they take to reach it is part of the settling time that follows.
+    """
+    heading = np.abs(np.asarray(heading_change_rad, float)) / limits.yaw_rate_rad_s
+    pitch = np.abs(np.asarray(pitch_change_rad, float)) / limits.gimbal_rate_rad_s
+    return np.asarray(np.maximum(heading, pitch))
+
+
+def with_turns_s(
+    leg_s: Floats, heading_rad: Floats, pitch_rad: Floats, limits: MotionLimits, *, turn_in_flight: bool
+) -> Floats:
+    """Travel times between photos: flying and turning.
+
+    Parameters
+    ----------
+    leg_s
+        Shape (n + 1, n + 1), leg times from rest to rest; row and column 0 are home.
+    heading_rad, pitch_rad
+        Shape (n,), of the photos.
+    turn_in_flight
+        Turn evenly along the leg instead of after it.
+
+    Returns
+    -------
+    travel_s
+        Shape (n + 1, n + 1). From home `UNKNOWN_TURN_RAD` is turned, towards home nothing. In flight a leg is slowed
+        down until the turn keeps pace, L / v <= turn: t + leg^2 / (4 t) for a turn of t > leg / 2. That is exact for a
+        leg that does not reach its highest speed, and a little long (never short) for one that does; for legs around
+        obstacles see `flight_path`.
+    """
+    n = len(heading_rad)
+    if leg_s.shape != (n + 1, n + 1):
+        raise ValueError(f"leg_s: expected shape {(n + 1, n + 1)}, got {leg_s.shape}")
+    turn_s = np.zeros((n + 1, n + 1))
+    change = heading_difference_rad(heading_rad[:, None], heading_rad[None, :])
+    turn_s[1:, 1:] = turn_times_s(change, pitch_rad[:, None] - pitch_rad[None, :], limits)
+    turn_s[0, 1:] = turn_times_s(UNKNOWN_TURN_RAD, pitch_rad, limits)
+    if not turn_in_flight:
+        return leg_s + turn_s
+    is_slowed = turn_s > leg_s / 2.0
+    return np.where(is_slowed, turn_s + leg_s**2 / (4.0 * np.where(is_slowed, turn_s, 1.0)), leg_s)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlightPath:
+    """A polyline to be flown, where it pauses, and how much is turned on the way.
+
+    Parameters
+    ----------
+    vertices_enu_m
+        Shape (k, 3), k >= 1.
+    is_stop
+        Shape (k,), whether the aircraft comes to rest there; always at both ends.
+    hover_s
+        Shape (k,), time at rest; 0 where it does not stop.
+    turn_s
+        Shape (k - 1,): what turning heading and gimbal at their full rates takes of each leg's turn. The turn is
+        spread evenly along the leg, so the leg takes no less at any part of it.
+    """
+
+    vertices_enu_m: Floats
+    is_stop: NDArray[np.bool_]
+    hover_s: Floats
+    turn_s: Floats
+
+    def __post_init__(self) -> None:
+        k = len(self.vertices_enu_m)
+        if self.vertices_enu_m.shape != (k, 3) or k < 1 or not np.isfinite(self.vertices_enu_m).all():
+            raise ValueError(f"vertices_enu_m: expected finite, shape (k, 3), k >= 1, got {self.vertices_enu_m!r}")
+        for name, size in (("is_stop", k), ("hover_s", k), ("turn_s", k - 1)):
+            if getattr(self, name).shape != (size,):
+                raise ValueError(f"{name}: expected shape ({size},), got {getattr(self, name).shape}")
+        if not (self.is_stop[0] and self.is_stop[-1]):
+            raise ValueError("is_stop: expected a stop at both ends")
+        if not (np.isfinite(self.turn_s).all() and (self.turn_s >= 0.0).all()):
+            raise ValueError("turn_s: expected finite times, none negative")
+        if not (np.isfinite(self.hover_s).all() and (self.hover_s >= 0.0).all()):
+            raise ValueError("hover_s: expected finite times, none negative")
+        if (self.hover_s[~self.is_stop] > 0.0).any():
+            raise ValueError("hover_s: expected no hover where the aircraft does not stop")
+
+    @property
+    def deltas_enu_m(self) -> Floats:
+        """Leg vectors, shape (k - 1, 3)."""
+        return np.diff(self.vertices_enu_m, axis=0)
+
+
+def flight_path(
+    vertices_enu_m: Floats,
+    photo_vertices: Ints,
+    heading_rad: Floats,
+    pitch_rad: Floats,
+    aircraft: Aircraft,
+    rules: FlightRules,
+    *,
+    stop_at_corners: bool = True,
+) -> FlightPath:
+    """Flight path of a sortie: pauses and turns of its photos, laid onto its polyline.
+
+    Parameters
+    ----------
+    vertices_enu_m
+        Shape (k, 3), from take-off to landing.
+    photo_vertices
+        Shape (m,), rising: the vertices at which photos are taken.
+    heading_rad, pitch_rad
+        Shape (m,), of the photos.
+    stop_at_corners
+        Come to rest at vertices without a photo, too, as waypoint missions of the formats written here do.
+    """
+    limits = motion_limits(aircraft, rules)
+    k, m = len(vertices_enu_m), len(photo_vertices)
+    if not (heading_rad.shape == pitch_rad.shape == (m,) and (np.diff(photo_vertices) > 0).all()):
+        raise ValueError("expected as many headings and pitches as photos, and photo vertices in rising order")
+    is_photo = np.zeros(k, np.bool_)
+    is_photo[photo_vertices] = True
+    hover_s = np.where(is_photo, photo_stop_s(aircraft, rules), 0.0)
+    turn_s = np.zeros(k - 1)
+    length_m = np.linalg.norm(np.diff(vertices_enu_m, axis=0), axis=1)
+    for i, vertex in enumerate(photo_vertices):
+        heading_change = UNKNOWN_TURN_RAD if i == 0 else heading_difference_rad(heading_rad[i - 1], heading_rad[i])
+        pitch_change = pitch_rad[i] - (0.0 if i == 0 else pitch_rad[i - 1])
+        needed_s = float(turn_times_s(heading_change, pitch_change, limits))
+        legs = slice(0 if i == 0 else int(photo_vertices[i - 1]), int(vertex))
+        stretch_m = float(length_m[legs].sum())
+        if rules.turn_in_flight and stretch_m > 0.0:
+            turn_s[legs] = needed_s * length_m[legs] / stretch_m
+        else:
+            hover_s[vertex] += needed_s
+    ends = np.isin(np.arange(k), [0, k - 1])
+    return FlightPath(np.asarray(vertices_enu_m, float), is_photo | ends | stop_at_corners, hover_s, turn_s)
+
+
+def slowed_by_turns_m_s(path: FlightPath, limits: MotionLimits) -> Floats:
+    """Highest speed on each leg, shape (k - 1,): by its direction, and so that the turn on it keeps pace."""
+    length = np.linalg.norm(path.deltas_enu_m, axis=1)
+    turning_m_s = np.where(path.turn_s > 0.0, length / np.where(path.turn_s > 0.0, path.turn_s, 1.0), math.inf)
+    return np.minimum(speed_limits_m_s(path.deltas_enu_m, limits), turning_m_s)
+
+
+def stopping_times_s(path: FlightPath, limits: MotionLimits) -> Floats:
+    """Arrival at every vertex when the aircraft comes to rest at each, shape (k,), seconds from the first departure.
+
+    The sortie is over `path.hover_s[-1]` after the last arrival; the hover at the first vertex counts before it leaves.
+    """
+    length = np.linalg.norm(path.deltas_enu_m, axis=1)
+    speed = slowed_by_turns_m_s(path, limits)
+    leg_s = np.where(
+        length > 0.0, rest_to_rest_s(length, np.where(length > 0.0, speed, 1.0), limits.acceleration_m_s2), 0
+    )
+    leg_s = np.maximum(leg_s, path.turn_s)
+    return np.concatenate([[0.0], np.cumsum(path.hover_s[:-1] + leg_s)])
