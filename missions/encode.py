@@ -124,6 +124,11 @@ def _return_height(missions: Sequence[Mission], options: ExportOptions) -> tuple
     return options.rth_height_m, []
 
 
+def default_autopilot(profile_id: str) -> Autopilot:
+    """Whose rules MAVLink files follow when nobody says."""
+    return Autopilot.PX4 if profile_id == Autopilot.PX4 else Autopilot.ARDUPILOT
+
+
 def _encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
     from missions.mavlink.check import check_items
     from missions.mavlink.fence import fence_polygons
@@ -139,8 +144,7 @@ def _encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, option
     contents: list[bytes] = []
     findings: list[Finding] = []
     for mission in missions:
-        default = Autopilot.PX4 if mission.profile == Autopilot.PX4 else Autopilot.ARDUPILOT
-        autopilot = options.autopilot or default
+        autopilot = options.autopilot or default_autopilot(mission.profile)
         items = mission_items(mission, autopilot, reference)
         found = list(check_items(MavlinkFile(items, mission.takeoff, autopilot), autopilot))
         if file_format is FileFormat.MAVLINK_WPL:

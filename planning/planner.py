@@ -7,7 +7,7 @@ Three ways to say how much is wanted: a number of views; a share of what can be 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -32,11 +32,14 @@ from planning.plan import (
     Sortie,
     Viewpoint,
     ViewpointArrays,
+    viewpoint_arrays,
 )
 from planning.prepare import Prepared, prepare
 from planning.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
 from planning.routing.flights import Flight, flight_times, plan_flights
+from planning.routing.roadmap import build_roadmap
 from planning.site import SiteModel
+from planning.space import free_space
 
 DEFAULT_VIEWS = 560
 """For methods that need a number of views when none is given: the paper's for its planar case."""
@@ -284,6 +287,28 @@ def plan_records(
         path = tuple((float(x), float(y), float(z)) for x, y, z in flight.path_enu_m)
         sorties.append(Sortie(tuple(ids), path, round(flight.length_m, 3), round(flight.duration_s, 2)))
     return tuple(viewpoints), tuple(sorties)
+
+
+def share_out_anew(plan: Plan, site_model: SiteModel, max_views: int, monitor: Monitor = QUIET) -> Plan:
+    """The same viewpoints in sorties of at most `max_views`.
+
+    Raises
+    ------
+    InfeasibleError
+        Home cannot be used, or a viewpoint cannot be reached from it.
+    """
+    space = free_space(site_model, plan.constraints.min_distance_m)
+    views = viewpoint_arrays(plan.viewpoints)
+    aircraft = replace(plan.aircraft, max_waypoints=min(plan.aircraft.max_waypoints, max_views + 2))
+    times = flight_times(build_roadmap(space, plan.seed), views, aircraft, plan.rules, monitor)
+    limit = TimeLimit(LONGEST_ROUTING_S)
+    flights = plan_flights(times, views, aircraft, plan.rules, seed=plan.seed, stop=limit, monitor=monitor)
+    ids = [viewpoint.id for viewpoint in plan.viewpoints]
+    sorties = tuple(
+        replace(sortie, viewpoint_ids=tuple(ids[view] for view in flight.views))
+        for sortie, flight in zip(plan_records(views, flights)[1], flights, strict=True)
+    )
+    return replace(plan, sorties=sorties)
 
 
 class _StopWatch:

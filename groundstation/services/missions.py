@@ -6,19 +6,22 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from missions.encode import DEFAULT_OPTIONS, ExportOptions, encode
+from missions.encode import DEFAULT_OPTIONS, ExportOptions, default_autopilot, encode
 from missions.formats import read_missions, write_files
 from missions.model import FileFormat
 from missions.to_plan import viewpoints_and_sorties
 from planning.catalogue import DEFAULT_PROFILE, profile
 from planning.evaluate import coverage
-from planning.findings import Finding
+from planning.findings import Finding, Severity
 from planning.plan import Constraints, FlightRules, Plan
 from planning.plan_file import read_plan, write_plan
+from planning.planner import share_out_anew
 from planning.prepare import prepare
 from planning.progress import QUIET, Monitor
 from planning.site import SiteModel
 from planning.site_file import read_site
+
+MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
 
 IMPORTED = "imported"
 """Method written into plans that come from mission files."""
@@ -63,8 +66,28 @@ def export_plan(
         home = site_model.site.home_enu_m if home is None else home
     elif home is None and plan.sorties and plan.sorties[0].path_enu_m:
         home = plan.sorties[0].path_enu_m[0]
+    shared_out: tuple[Finding, ...] = ()
+    if file_format in MAVLINK_FORMATS and site_model is not None:
+        plan, shared_out = _within_item_limit(plan, site_model, options)
     encoded = encode(plan, origin, home, file_format, replace(options, site=site_model))
-    return write_files(encoded, out), encoded.findings
+    return write_files(encoded, out), (*shared_out, *encoded.findings)
+
+
+def _within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions) -> tuple[Plan, tuple[Finding, ...]]:
+    """The plan, its views shared out anew where a sortie has more than the autopilot keeps."""
+    from missions.mavlink.items import photos_that_fit
+
+    autopilot = options.autopilot or default_autopilot(plan.profile)
+    limit = photos_that_fit(autopilot)
+    longest = max((len(sortie.viewpoint_ids) for sortie in plan.sorties), default=0)
+    if longest <= limit:
+        return plan, ()
+    anew = share_out_anew(plan, site_model, limit)
+    text = (
+        f"{autopilot} keeps the items of about {limit} photos, but a sortie of this plan has {longest}; the same views "
+        f"were shared out among {len(anew.sorties)} sorties for these files"
+    )
+    return anew, (Finding(Severity.WARNING, "item-limit", text, "", float(longest), float(limit), "photos"),)
 
 
 def import_missions(

@@ -19,7 +19,7 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from missions.heights import altitude_amsl_m
 from missions.legs import leg_lengths_m
-from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.autopilots import Autopilot, facts
 from missions.model import GeoPoint, HeightReference, Mission, Photo
 from planning.frames import wrap_heading_deg
 
@@ -71,6 +71,16 @@ class MavlinkFile:
     autopilot: Autopilot | None = None
     cruise_speed_m_s: float | None = None
     fences: tuple[Polygon, ...] = ()
+
+
+RESERVED_ITEMS = 40
+"""Of an autopilot's items, for take-off, landing and waypoints around obstacles when photos are shared out."""
+
+
+def photos_that_fit(autopilot: Autopilot) -> int:
+    """Photos of one sortie that an autopilot's item limit leaves room for."""
+    items_per_photo = 5 if autopilot is Autopilot.ARDUPILOT else 4
+    return (facts(autopilot).max_items - RESERVED_ITEMS) // items_per_photo
 
 
 def mission_items(mission: Mission, autopilot: Autopilot, reference: HeightReference) -> tuple[MissionItem, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -74,6 +74,10 @@ class CoverageModel:
     max_distance_m: float | None = None
     sight: LineOfSight | None = None
     precision: Precision = "f32"
+    _arguments: _Arguments = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_arguments", _Arguments.of(self))
 
     @property
     def n_elements(self) -> int:
@@ -95,7 +99,7 @@ class CoverageModel:
             hit = np.zeros(self.n_elements, np.bool_)
             hit[self.elements(views).items] = True
             return hit
-        arguments = _Arguments.of(self)
+        arguments = self._arguments
         packed = arguments.pack(views)
         hits = np.zeros((len(self.frames), self.grid.n_sections + 1), np.uint8)
         kernel.mark_covered(*arguments.call(packed, hits))
@@ -104,7 +108,7 @@ class CoverageModel:
     def elements(self, views: ViewpointArrays) -> Elements:
         """Elements that each view covers, on all cores; the result does not depend on their number."""
         n, m = len(views.positions_enu_m), len(self.frames)
-        arguments = _Arguments.of(self)
+        arguments = self._arguments
         packed = arguments.pack(views)
 
         def work(start: int, stop: int) -> Elements:
@@ -145,7 +149,7 @@ def codes_all_around(model: CoverageModel, points_enu_m: NDArray[np.float64]) ->
 
     Points, shape (n, 3), further away than the largest distance count as none; occlusion is not looked at.
     """
-    arguments = _Arguments.of(model)
+    arguments = model._arguments
     packed = np.zeros((kernel.N_VIEW_ROWS, len(points_enu_m)), arguments.dtype)
     packed[:3] = (points_enu_m - arguments.centre).T
     codes = np.empty((len(model.frames), len(points_enu_m)), np.int32)

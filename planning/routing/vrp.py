@@ -1,0 +1,275 @@
+"""PyVRP as a second solver for tours, sorties and prizes: the judge of our own, and a choice for the user.
+
+N. Wouda, L. Lan and W. Kool, 2024, "PyVRP: a high-performance VRP solver package". It calculates in whole numbers:
+times and lengths are handed over in thousandths, times rounded up and budgets down, so that what fits there fits here.
+This is the only module that imports pyvrp; import it where it is needed, not at start-up.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pyvrp
+from numpy.typing import NDArray
+from pyvrp.stop import NoImprovement
+
+from planning.errors import InfeasibleError
+from planning.progress import QUIET, Monitor, Stop, Trace, never
+from planning.routing.slices import SLICE_S
+from planning.routing.sorties import SortieProblem, Sorties, sortie_durations_s
+from planning.routing.tour import check_costs, tour_length
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FINEST = 1000.0
+"""Whole numbers per unit of time or length, where they do not grow too large."""
+
+LARGEST_TOTAL = 1e12
+"""All legs of a solution together stay below this in whole numbers: PyVRP multiplies such sums by penalties of up to
+1e5, in int64."""
+
+PATIENCE = 20_000
+"""Iterations without a better solution before a search ends by itself."""
+
+
+def solve_tour(
+    cost: Floats,
+    order: Ints,
+    *,
+    closed: bool = True,
+    warm: bool = True,
+    seed: int = 0,
+    max_iterations: int | None = None,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Ints:
+    """PyVRP's tour through all points: `planning.routing.tour.improve_tour` for costs that may be asymmetric.
+
+    Parameters
+    ----------
+    warm
+        Start from `order`; otherwise only its first (and, of a path, its last) point are used.
+
+    Raises
+    ------
+    InfeasibleError
+        No tour without missing legs was found.
+    """
+    check_costs(cost)
+    order = np.asarray(order, np.int64)
+    n = len(cost)
+    start, end = int(order[0]), int(order[0 if closed else -1])
+    stops = np.sort(order[1:] if closed else order[1:-1])
+    if len(stops) > 0:
+        largest = float(np.max(cost, initial=0.0, where=np.isfinite(cost)))
+        missing = (n + 1) * (largest or 1.0)
+        scale = _scale((n + 1) * missing)
+        data = _problem_data(
+            distance=np.rint(scale * np.where(np.isinf(cost), missing, cost)),
+            clients=[pyvrp.Client(int(stop)) for stop in stops],
+            depots=[pyvrp.Depot(start), pyvrp.Depot(end)],
+            vehicle=pyvrp.VehicleType(1, start_depot=0, end_depot=1),
+        )
+        between = order[1:] if closed else order[1:-1]
+        routes = [[int(i) for i in np.searchsorted(stops, between)]] if warm else None
+        record = _recorder(trace, lambda solution: solution.distance() / scale)
+        best = _run(data, routes, seed, max_iterations, stop, record, monitor)
+        visits = stops[_visits(best)[0]]
+        order = np.concatenate([[start], visits, [] if closed else [end]]).astype(np.int64)
+    length = tour_length(cost, order, closed=closed)
+    if math.isinf(length):
+        raise InfeasibleError(f"PyVRP found no tour of all {n} points by existing legs; more time may help")
+    if trace is not None:
+        trace.record(length)
+    return order
+
+
+def improve_sorties(
+    problem: SortieProblem,
+    sorties: Sorties,
+    *,
+    warm: bool = True,
+    seed: int = 0,
+    max_iterations: int | None = None,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Sorties:
+    """PyVRP's sorties, with no more of them than those given (cold: with any number).
+
+    Parameters
+    ----------
+    sorties
+        Sorties that keep the limits, for example from `planning.routing.sorties.solve_sorties`.
+    warm
+        Start from them; otherwise they only serve to tell whether the result is any better.
+
+    Returns
+    -------
+    sorties
+        The better ones: fewer, if that is asked for, or shorter.
+    """
+    n = problem.n_stops
+    if n == 0:
+        return sorties
+    worst = float(np.max(problem.travel_s, initial=0.0, where=np.isfinite(problem.travel_s)))
+    total_s = (2 * n) * worst + float(problem.service_s.sum())
+    scale = _scale(max(total_s, problem.budget_s if math.isfinite(problem.budget_s) else 0.0))
+    budget_s = min(problem.budget_s, total_s)
+    n_vehicles = n if not warm else len(sorties) if problem.fewest_first else min(n, 2 * len(sorties))
+    load_scale = _scale(float(problem.load.sum()))
+    capacity = min(problem.capacity, float(problem.load.sum()))
+    data = _problem_data(
+        duration=np.ceil(scale * np.where(np.isinf(problem.travel_s), 2.0 * budget_s, problem.travel_s)),
+        clients=[
+            pyvrp.Client(i + 1, delivery=[math.ceil(load_scale * load)], service_duration=math.ceil(scale * service))
+            for i, (load, service) in enumerate(zip(problem.load, problem.service_s, strict=True))
+        ],
+        depots=[pyvrp.Depot(0)],
+        vehicle=pyvrp.VehicleType(
+            n_vehicles,
+            capacity=[math.floor(load_scale * capacity)],
+            shift_duration=math.floor(scale * budget_s),
+            # One sortie less outweighs any time: together they take no more than this.
+            fixed_cost=math.ceil(scale * min(total_s, n_vehicles * budget_s)) if problem.fewest_first else 0,
+            unit_distance_cost=0,
+            unit_duration_cost=1,
+        ),
+    )
+    record = _recorder(trace, lambda solution: solution.duration() / scale)
+    routes = [list(sortie) for sortie in sorties] if warm else None
+    best = _run(data, routes, seed, max_iterations, stop, record, monitor)
+    if not best.is_feasible():
+        return sorties
+    found = tuple(tuple(visits) for visits in _visits(best))
+
+    def quality(candidate: Sorties) -> tuple[int, float]:
+        return len(candidate) if problem.fewest_first else 0, math.fsum(sortie_durations_s(problem, candidate))
+
+    return min(sorties, found, key=quality)
+
+
+def collect_prizes(
+    travel_s: Floats,
+    service_s: Floats,
+    budget_s: float,
+    n_sorties: int,
+    prizes: Floats,
+    *,
+    seed: int = 0,
+    max_iterations: int | None = None,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Sorties:
+    """PyVRP's sorties that collect the most prizes, of equals the shortest; a stop may be left out.
+
+    Parameters
+    ----------
+    travel_s, service_s, budget_s
+        As in `planning.routing.orienteering.solve_orienteering`.
+    prizes
+        Shape (n,), none negative.
+    """
+    n = len(service_s)
+    collected = float(prizes.sum())
+    if n == 0 or collected == 0.0:
+        return ()
+    scale = _scale(n_sorties * budget_s)
+    limit = math.floor(scale * budget_s)
+    prize_scale = min(2.0 * n_sorties * limit / float(prizes[prizes > 0.0].min()), 1e15 / collected)
+    data = _problem_data(
+        duration=np.minimum(np.ceil(scale * travel_s), 2 * limit + 1),
+        clients=[
+            pyvrp.Client(
+                i + 1, service_duration=math.ceil(scale * service), prize=round(prize_scale * prize), required=False
+            )
+            for i, (service, prize) in enumerate(zip(service_s, prizes, strict=True))
+        ],
+        depots=[pyvrp.Depot(0)],
+        vehicle=pyvrp.VehicleType(n_sorties, shift_duration=limit, unit_distance_cost=0, unit_duration_cost=1),
+    )
+    record = _recorder(trace, lambda solution: solution.prizes() / prize_scale)
+    best = _run(data, None, seed, max_iterations, stop, record, monitor)
+    return tuple(tuple(visits) for visits in _visits(best)) if best.is_feasible() else ()
+
+
+def _scale(largest_total: float) -> float:
+    """Whole numbers per unit, so that no total overflows."""
+    return min(FINEST, LARGEST_TOTAL / max(largest_total, 1e-9))
+
+
+def _problem_data(
+    clients: list[pyvrp.Client],
+    depots: list[pyvrp.Depot],
+    vehicle: pyvrp.VehicleType,
+    distance: Floats | None = None,
+    duration: Floats | None = None,
+) -> pyvrp.ProblemData:
+    given = distance if distance is not None else duration
+    assert given is not None
+    matrices: list[Any] = []  # PyVRP's annotations ask for a type that NumPy's arrays do not have
+    for matrix in (distance, duration):
+        whole = np.zeros(given.shape, np.int64) if matrix is None else matrix.astype(np.int64)
+        np.fill_diagonal(whole, 0)
+        matrices.append(whole)
+    locations = [pyvrp.Location(0.0, 0.0) for _ in given]
+    return pyvrp.ProblemData(locations, clients, depots, [vehicle], [matrices[0]], [matrices[1]])
+
+
+def _visits(solution: pyvrp.Solution) -> list[list[int]]:
+    """Clients of every route, in order."""
+    return [[activity.idx for activity in route if activity.is_client()] for route in solution.routes()]
+
+
+def _recorder(trace: Trace | None, quality: Callable[[pyvrp.Solution], float]) -> Callable[[pyvrp.Solution], None]:
+    def record(solution: pyvrp.Solution) -> None:
+        if trace is not None:
+            trace.record(quality(solution))
+
+    return record
+
+
+class _Observer(pyvrp.IteratedLocalSearchCallbacks):
+    """Records every new best solution."""
+
+    def __init__(self, record: Callable[[pyvrp.Solution], None]) -> None:
+        self._record = record
+
+    def on_best(self, best: pyvrp.Solution) -> None:
+        self._record(best)
+
+
+def _run(
+    data: pyvrp.ProblemData,
+    routes: list[list[int]] | None,
+    seed: int,
+    max_iterations: int | None,
+    stop: Stop,
+    record: Callable[[pyvrp.Solution], None],
+    monitor: Monitor,
+) -> pyvrp.Solution:
+    """Best solution found until `stop`, for so many iterations, or until nothing was found for long."""
+    is_settled = NoImprovement(PATIENCE)
+    iterations = 0
+    next_report = time.perf_counter()
+
+    def is_over(best_cost: int) -> bool:
+        nonlocal iterations, next_report
+        iterations += 1
+        if time.perf_counter() >= next_report:
+            monitor.report("PyVRP", iterations, max_iterations or 0)
+            next_report = time.perf_counter() + SLICE_S
+        return stop() or (is_settled(best_cost) if max_iterations is None else iterations > max_iterations)
+
+    initial = None if routes is None else pyvrp.Solution(data, routes)
+    search = pyvrp.IteratedLocalSearchParams(callbacks=_Observer(record))
+    params = pyvrp.SolveParams(ils=search)
+    result = pyvrp.solve(data, is_over, seed, collect_stats=False, params=params, initial_solution=initial)
+    return result.best

@@ -1,0 +1,229 @@
+"""Buildings of a city model, whatever its format: the choice of one, its windows, mesh and neighbours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from planning.geodesy.crs import crs_conversion
+from planning.geometry.solids import Solids
+from planning.mesh import from_corners, join
+from planning.progress import Monitor
+from planning.site_import.options import ImportOptions
+from planning.site_import.placement import Placement, place
+from planning.site_import.polygons import triangulate
+from planning.site_import.source import HOW_TO_GET_PANELS, SourceModel, SourceWindow
+from planning.site_import.window_faces import pane_of_polygons
+
+Array = NDArray[np.float64]
+Rings = tuple[Array, ...]
+"""Outer ring, then holes, each of shape (k, 3), file coordinates, not repeating the first point."""
+
+NEIGHBOUR_REACH_M = 20.0
+"""Other buildings up to this far outside the airspace's sides are kept as obstacles; they may hide panels."""
+
+JOINED_GAP_M = 10.0
+"""Buildings with windows that stand no further apart are one site; the distance kept from them is no smaller."""
+
+MAX_NAMED = 8
+"""Buildings listed in a message."""
+
+
+@dataclass(slots=True, eq=False)
+class CityBuilding:
+    """One building with its parts, of one level of detail.
+
+    Parameters
+    ----------
+    id
+        As the file has it, else a number.
+    name
+        May be empty.
+    part_ids
+        Identifiers of its parts.
+    windows
+        Faces by identifier of the window.
+    faces
+        All other faces of the building that exist in the world (no interior, no closure surfaces).
+    n_unread_windows
+        Windows whose geometry is of a kind that is not read.
+    """
+
+    id: str
+    name: str = ""
+    part_ids: tuple[str, ...] = ()
+    windows: dict[str, list[Rings]] = field(default_factory=dict)
+    faces: list[Rings] = field(default_factory=list)
+    n_unread_windows: int = 0
+
+    def polygons(self) -> list[Rings]:
+        """All faces, windows last."""
+        return self.faces + [rings for faces in self.windows.values() for rings in faces]
+
+    def points(self) -> Array:
+        """Points of all rings, shape (n, 3)."""
+        rings = [ring for polygon in self.polygons() for ring in polygon]
+        return np.concatenate(rings) if rings else np.zeros((0, 3))
+
+    def triangles(self) -> Array:
+        """All faces in triangles, shape (t, 3, 3); a window given twice is there once, or nothing would be closed."""
+        glass = {
+            np.sort(rings[0].round(3), axis=0).tobytes(): rings for faces in self.windows.values() for rings in faces
+        }
+        return np.concatenate([triangulate(rings) for rings in (*self.faces, *glass.values())])
+
+    def at(self, placement: Placement) -> CityBuilding:
+        """Same building in local ENU metres."""
+        sizes = [len(ring) for polygon in self.polygons() for ring in polygon]
+        rings = iter(np.split(placement.enu(self.points()), np.cumsum(sizes)[:-1]))
+
+        def moved(polygons: list[Rings]) -> list[Rings]:
+            return [tuple(next(rings) for _ in polygon) for polygon in polygons]
+
+        faces = moved(self.faces)
+        windows = {window_id: moved(polygons) for window_id, polygons in self.windows.items()}
+        return replace(self, windows=windows, faces=faces)
+
+
+def merged(buildings: Sequence[CityBuilding]) -> CityBuilding:
+    """Several buildings as one, called after the first; windows of the same identifier keep apart."""
+    windows: dict[str, list[Rings]] = {}
+    for building in buildings:
+        for window_id, faces in building.windows.items():
+            windows[window_id if window_id not in windows else f"{building.id}/{window_id}"] = faces
+    return replace(
+        buildings[0],
+        windows=windows,
+        faces=[rings for building in buildings for rings in building.faces],
+        n_unread_windows=sum(building.n_unread_windows for building in buildings),
+    )
+
+
+def city_source(
+    path: Path, buildings: Sequence[CityBuilding], crs: str | None, options: ImportOptions, monitor: Monitor
+) -> SourceModel:
+    """Model of one building of a city model, or of a few that stand together.
+
+    Parameters
+    ----------
+    crs
+        Name of the coordinate reference system as the file gives it.
+
+    Raises
+    ------
+    InputError
+        There is no building, no such building, none with windows, or no place on earth.
+    """
+    solid = [building for building in buildings if len(building.points())]
+    if not solid:
+        raise InputError(f"{path}: there is no building with surfaces in this file")
+    if not options.panel_grids and not any(building.windows for building in solid):
+        raise InputError(f"{path}: no building in this file has windows; {HOW_TO_GET_PANELS}")
+    chosen, choice = _choose(path, solid, crs, options)
+    placement = _placement(crs, merged(chosen).points(), options)
+    local = merged(chosen).at(placement)
+    others = [building.at(placement) for building in solid if building not in chosen]
+    near = _near(local, others, options.airspace_margin_m + NEIGHBOUR_REACH_M)
+    meshes = []
+    for done, building in enumerate([local, *near]):
+        monitor.report("surfaces", done, len(near) + 1)
+        meshes.append(from_corners(building.triangles()))
+    notes = [*placement.georeference.notes, *choice]
+    if others:
+        notes.append(
+            f"of the {len(others)} other buildings in the file, {len(near)} within reach are kept as obstacles and "
+            f"{len(others) - len(near)} are left out"
+        )
+    if local.n_unread_windows:
+        notes.append(f"{local.n_unread_windows} windows given as implicit geometry (a shared prototype) are not read")
+    return SourceModel(
+        name=local.name,
+        windows=tuple(_windows(local)),
+        building=meshes[0],
+        neighbours=join(meshes[1:]),
+        placement=placement,
+        notes=tuple(notes),
+    )
+
+
+def _windows(building: CityBuilding) -> Iterator[SourceWindow]:
+    for window_id, polygons in building.windows.items():
+        pane = pane_of_polygons(polygons)
+        if pane is not None:
+            yield SourceWindow(window_id, pane.outline, pane.thickness_m)
+
+
+def _placement(crs: str | None, points: Array, options: ImportOptions) -> Placement:
+    found = None
+    if crs is not None and options.crs is None and options.origin is None:
+        found = crs_conversion(crs, points, options.axis_order, options.height_reference)
+    return place(found, points, None, options)
+
+
+def _choose(
+    path: Path, buildings: list[CityBuilding], crs: str | None, options: ImportOptions
+) -> tuple[list[CityBuilding], tuple[str, ...]]:
+    """The building named, the one that the panel grid is on, or the one with most windows and those beside it."""
+    if options.building is not None:
+        for building in buildings:
+            if options.building in (building.id, *building.part_ids):
+                return [building], ()
+        raise InputError(f"{path}: there is no building '{options.building}'; there are {_listed(buildings)}")
+    if len(buildings) == 1:
+        return buildings, ()
+    if options.panel_grids:
+        nearest = _nearest(buildings, np.array(options.panel_grids[0].corners), crs, options)
+        return [nearest], (f"the panel grid is on building '{nearest.id}'",)
+    with_windows = sorted((b for b in buildings if b.windows), key=lambda b: -len(b.windows))
+    placement = _placement(crs, with_windows[0].points(), options)
+    local = [building.at(placement) for building in with_windows]
+    beside = _near(local[0], local[1:], JOINED_GAP_M)
+    chosen = [with_windows[0], *(b for b, moved in zip(with_windows[1:], local[1:], strict=True) if moved in beside)]
+    left = [building for building in with_windows if building not in chosen]
+    note = f"the site is {_listed(chosen)}"
+    if left:
+        note += f"; {_listed(left)} further away, to be imported with --building ID"
+    return chosen, (note,)
+
+
+def _nearest(buildings: list[CityBuilding], grid: Array, crs: str | None, options: ImportOptions) -> CityBuilding:
+    """Building whose surfaces are nearest to the middle of a panel grid, given by three corners, file coordinates."""
+    placement = _placement(crs, grid, options)
+    corners = placement.enu(grid)
+    middle = 0.5 * (corners[1] + corners[2])[None]
+    local = [building.at(placement) for building in buildings]
+    gaps = [_box_gap(building.points(), middle) for building in local]
+    # Boxes overlap in a dense block; the surfaces themselves decide among the nearest.
+    distances = [
+        float(np.abs(Solids.of(building.triangles()).clearance_m(middle))[0]) if gap <= min(gaps) + 1.0 else np.inf
+        for building, gap in zip(local, gaps, strict=True)
+    ]
+    return buildings[int(np.argmin(distances))]
+
+
+def _listed(buildings: list[CityBuilding]) -> str:
+    """The first few identifiers, those with most windows first."""
+    order = sorted(buildings, key=lambda building: -len(building.windows))
+    named = [
+        f"'{building.id}'" + (f" ({len(building.windows)} windows)" if building.windows else "")
+        for building in order[:MAX_NAMED]
+    ]
+    rest = f" and {len(order) - MAX_NAMED} more" if len(order) > MAX_NAMED else ""
+    return f"{', '.join(named)}{rest}"
+
+
+def _box_gap(points: Array, others: Array) -> float:
+    """Distance between the bounding boxes of two sets of points, shape (n, k) and (m, k)."""
+    apart = np.maximum(points.min(axis=0) - others.max(axis=0), others.min(axis=0) - points.max(axis=0))
+    return float(np.linalg.norm(np.maximum(apart, 0.0)))
+
+
+def _near(chosen: CityBuilding, others: Sequence[CityBuilding], reach_m: float) -> list[CityBuilding]:
+    """Buildings whose bounding box lies within reach of the chosen one's, seen from above."""
+    own = chosen.points()[:, :2]
+    return [building for building in others if _box_gap(own, building.points()[:, :2]) <= reach_m]

@@ -1,0 +1,91 @@
+"""IFC 2x3 and IFC 4 models: windows and glazed plates become panes, all building elements the mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from planning.mesh import empty_mesh, from_corners
+from planning.progress import Monitor
+from planning.site_import.ifc_content import IfcContent
+from planning.site_import.ifc_georeference import ifc_georeference
+from planning.site_import.ifc_worker import read_in_worker
+from planning.site_import.options import ImportOptions
+from planning.site_import.placement import place
+from planning.site_import.source import HOW_TO_GET_PANELS, SourceModel, SourceWindow
+
+Array = NDArray[np.float64]
+
+MAX_FILE_BYTES = 4 * 2**30
+
+TAIL_BYTES = 4096
+"""The end mark stands in the last few; some programs write a comment after it."""
+
+
+def read_ifc(path: Path, options: ImportOptions, monitor: Monitor) -> SourceModel:
+    """Model of the building in an IFC file.
+
+    Raises
+    ------
+    InputError
+        The file is no IFC file, is cut off or broken, the deflection is not positive, or see `ifc_source`.
+    """
+    _check_ends(path)
+    if not options.deflection_m > 0.0:
+        raise InputError(f"--deflection {options.deflection_m:g}: expected a positive length in metres")
+    return ifc_source(path, *read_in_worker(path, options.deflection_m, monitor), options)
+
+
+def ifc_source(path: Path, content: IfcContent, triangles: Array, options: ImportOptions) -> SourceModel:
+    """Model from what was read of an IFC file, see `extract`.
+
+    Raises
+    ------
+    InputError
+        There is no geometry or no glass, or the place is not known.
+    """
+    if len(triangles) == 0:
+        raise InputError(f"{path}: no building element in this file has geometry")
+    if not content.pane_ids and not options.panel_grids:
+        raise InputError(f"{path}: there is neither a window nor a glazed plate with geometry; {HOW_TO_GET_PANELS}")
+    points = triangles.reshape(-1, 3)
+    georeference = ifc_georeference(content, options)
+    # Where there is a map conversion, --crs has served to name its map.
+    rest = options if georeference is None else replace(options, crs=None)
+    # The site's zero is the ground where the building reaches below it: a cellar, foundations.
+    ground_z = content.site_z_m
+    if ground_z is not None and not points[:, 2].min() < ground_z < points[:, 2].max():
+        ground_z = None
+    placement = place(georeference, points, ground_z, rest, content.north_rad)
+    panes = zip(content.pane_ids, content.outlines, content.thicknesses_m, strict=True)
+    return SourceModel(
+        name=content.name,
+        windows=tuple(SourceWindow(guid, placement.enu(np.array(ring)), thickness) for guid, ring, thickness in panes),
+        building=from_corners(placement.enu(points).reshape(-1, 3, 3)),
+        neighbours=empty_mesh(),
+        placement=placement,
+        repeats_panes=True,
+        notes=(*placement.georeference.notes, *content.notes),
+    )
+
+
+def _check_ends(path: Path) -> None:
+    """Refuse what is no STEP file or is cut off: IfcOpenShell reads what is left of it without a word."""
+    try:
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            head = file.read(64)
+            file.seek(max(0, size - TAIL_BYTES))
+            tail = file.read()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    if size > MAX_FILE_BYTES:
+        raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**30} GiB; export the facade alone")
+    if not head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"ISO-10303-21"):
+        raise InputError(f"{path}: expected an IFC file (STEP text that begins with ISO-10303-21)")
+    if b"END-ISO-10303-21" not in tail:
+        raise InputError(f"{path}: the file is cut off (END-ISO-10303-21 is missing); copy or export it again")

@@ -1,0 +1,215 @@
+"""Import a site: read the file, find the panels, group and name them, add what a flight needs, write it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from planning.frames import Vec3
+from planning.mesh import MESH_SUFFIXES, TriangleMesh, closed_parts, join, write_mesh
+from planning.progress import QUIET, Monitor
+from planning.site import Facade, Obstacle, Panel, Site, SiteModel
+from planning.site_file import write_site
+from planning.site_import.facades import facade_name, group_facades
+from planning.site_import.options import ImportOptions
+from planning.site_import.panel_grid import grid_panels
+from planning.site_import.panes import panes_outdoors
+from planning.site_import.polygons import quad_areas
+from planning.site_import.source import HOW_TO_GET_PANELS, SourceModel
+from planning.site_import.surroundings import surroundings
+
+Array = NDArray[np.float64]
+
+IFC_SUFFIXES = (".ifc",)
+CITYGML_SUFFIXES = (".gml", ".xml", ".citygml")
+CITYJSON_SUFFIXES = (".json", ".cityjson")
+SUFFIXES = (*IFC_SUFFIXES, *CITYGML_SUFFIXES, *CITYJSON_SUFFIXES, *MESH_SUFFIXES)
+
+MAX_BUILDING_M = 5_000.0
+"""The longest buildings (airports, factories) have under 2 km."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImportedSite:
+    """A site made from a file, and what the user should know about how it was made."""
+
+    model: SiteModel
+    notes: tuple[str, ...]
+
+
+def import_site(path: Path, options: ImportOptions, monitor: Monitor = QUIET) -> ImportedSite:
+    """Site from an IFC, CityGML, CityJSON or mesh file.
+
+    Raises
+    ------
+    InputError
+        The file is missing, of another kind or broken, its place on earth is not known, it has no windows and no panel
+        grid is stated, or a wish cannot be met; the message says what to do.
+    """
+    return assemble(path, _read(path, options, monitor), options, monitor)
+
+
+def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: Monitor = QUIET) -> ImportedSite:
+    """Site from what a reader found in the file `path`.
+
+    Raises
+    ------
+    InputError
+        There are no panels, stray points, or a wish cannot be met.
+    """
+    _check_extent(path, source)
+    panes = panes_outdoors(source, monitor)
+    grids = [grid_panels(grid, source, options.grid_tolerance_m) for grid in options.panel_grids]
+    corners = np.concatenate([panes.corners, *(grid.corners for grid in grids)])
+    if len(corners) == 0:
+        n = len(source.windows)
+        found = f"none of the {n} windows is a pane that faces the open" if n else "there are no windows"
+        raise InputError(f"{path}: {found}; {HOW_TO_GET_PANELS}")
+    ids = [*panes.source_ids, *[None] * (len(corners) - len(panes.corners))]
+    monitor.report("grouping facades", 0, 1)
+    groups = group_facades(corners)
+    facades = tuple(_facade(facade_name(k), corners[group], [ids[i] for i in group]) for k, group in enumerate(groups))
+    around = surroundings(
+        corners[groups[0]],
+        np.concatenate([source.building.corners_enu_m.reshape(-1, 3), corners.reshape(-1, 3)]),
+        source.neighbours.corners_enu_m,
+        source.placement.ground_z_m,
+        options,
+    )
+    has_neighbours = len(source.neighbours.triangles) > 0
+    site = Site(
+        name=options.name or source.name or path.stem,
+        origin=source.placement.origin,
+        facades=facades,
+        airspace=around.airspace,
+        home_enu_m=around.home_enu_m,
+        building_mesh="building.ply" if len(source.building.triangles) else None,
+        obstacles=(Obstacle("neighbours", mesh="neighbours.ply"),) if has_neighbours else (),
+    )
+    model = SiteModel(site, source.building, (source.neighbours,) if has_neighbours else ())
+    grid_notes = [note for grid in grids for note in grid.notes]
+    facade_notes = (_facade_note(corners, groups), *_solid_notes(source))
+    notes = (*source.notes, *panes.notes, *grid_notes, *facade_notes, *around.notes)
+    return ImportedSite(model, notes)
+
+
+def _read(path: Path, options: ImportOptions, monitor: Monitor) -> SourceModel:
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise InputError(f"{path}: expected a file ending in {', '.join(SUFFIXES)}, got '{suffix}'")
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file")
+    if suffix in IFC_SUFFIXES:
+        from planning.site_import.ifc_file import read_ifc
+
+        return read_ifc(path, options, monitor)
+    if suffix in CITYGML_SUFFIXES:
+        from planning.site_import.citygml_file import read_citygml
+
+        return read_citygml(path, options, monitor)
+    if suffix in CITYJSON_SUFFIXES:
+        from planning.site_import.cityjson_file import read_cityjson
+
+        return read_cityjson(path, options, monitor)
+    from planning.site_import.mesh_file import read_mesh_source
+
+    return read_mesh_source(path, options, monitor)
+
+
+def _check_extent(path: Path, source: SourceModel) -> None:
+    extent_m = float(np.ptp(source.building.corners_enu_m, axis=(0, 1)).max(initial=0.0))
+    if extent_m > MAX_BUILDING_M:
+        raise InputError(
+            f"{path}: the building would be {extent_m / 1000.0:.0f} km wide, at most {MAX_BUILDING_M / 1000.0:g} km "
+            "are expected; the file holds stray points, or its unit is not what it says (--units for meshes)"
+        )
+
+
+def _facade(name: str, corners: Array, source_ids: list[str | None]) -> Facade:
+    return Facade(
+        name,
+        tuple(
+            Panel(f"{name}-{number:04d}", _vertices(quad), source_id)
+            for number, (quad, source_id) in enumerate(zip(corners, source_ids, strict=True))
+        ),
+    )
+
+
+def _vertices(quad: Array) -> tuple[Vec3, Vec3, Vec3, Vec3]:
+    """Corners rounded to 0.1 mm, so that the file reads back as it was."""
+    a, b, c, d = ((round(float(x), 4), round(float(y), 4), round(float(z), 4)) for x, y, z in quad)
+    return a, b, c, d
+
+
+def _facade_note(corners: Array, groups: list[NDArray[np.int64]]) -> str:
+    largest, n_single = quad_areas(corners[groups[0]]), sum(len(group) == 1 for group in groups)
+    note = (
+        f"{len(groups)} facades by plane or smoothly curved surface, the one with most glass first (A: "
+        f"{len(groups[0])} panels, {largest.sum():.0f} m2)"
+    )
+    return note + (f"; {n_single} have one panel only" if n_single else "")
+
+
+def _solid_notes(source: SourceModel) -> tuple[str, ...]:
+    """How much of the building is open skin, whose inside is not known to be solid."""
+    corners = source.building.corners_enu_m
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    if areas.sum() == 0.0:
+        return ()
+    open_share = float(areas[closed_parts(corners) < 0].sum() / areas.sum())
+    if open_share < 0.005:
+        return ()
+    return (
+        f"{100.0 * open_share:.0f} % of the building's surface does not close (gaps and overlaps in the model): the "
+        "distance to it is kept all the same, but the space behind it does not count as solid",
+    )
+
+
+def write_imported_site(path: Path, imported: ImportedSite, source: Path) -> SiteModel:
+    """Write the site file and, beside it, its meshes; returns the model as it was written.
+
+    Meshes are named after the site file; none is ever written over the file that was imported.
+
+    Raises
+    ------
+    InputError
+        The folder is missing or cannot be written, or the site would replace the file it was imported from.
+    """
+    if path.exists() and path.samefile(source):
+        raise InputError(f"{path}: the site would be written over the file it is imported from; name another file")
+    model = imported.model
+    site = model.site
+    if site.building_mesh is not None:
+        name = _free_name(path, ".ply", "-building.ply", source)
+        _write_mesh(path.with_name(name), model.building)
+        site = replace(site, building_mesh=name)
+    if site.obstacles:
+        name = _free_name(path, "-neighbours.ply", "-other-buildings.ply", source)
+        _write_mesh(path.with_name(name), join(list(model.obstacles)))
+        site = replace(site, obstacles=(replace(site.obstacles[0], mesh=name),))
+    sha256 = write_site(path, site)
+    return replace(model, site=site, sha256=sha256)
+
+
+def _free_name(path: Path, ending: str, other_ending: str, source: Path) -> str:
+    """Name of a mesh beside the site file, with the other ending where the first is the imported file's own."""
+    name = path.stem + ending
+    target = path.with_name(name)
+    return path.stem + other_ending if target.exists() and target.samefile(source) else name
+
+
+def _write_mesh(path: Path, mesh: TriangleMesh) -> None:
+    """Write a mesh whole or not at all."""
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}.ply")
+    try:
+        write_mesh(temporary, mesh)
+        temporary.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+    finally:
+        temporary.unlink(missing_ok=True)

@@ -1,0 +1,109 @@
+"""Windows to panels: four corners each, outdoors only, normals outwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.coverage.model import OCCLUSION_OFFSET_M
+from planning.mesh import TriangleMesh
+from planning.occlusion import line_of_sight
+from planning.progress import Monitor
+from planning.site import panel_triangles
+from planning.site_import.duplicates import coincident_pairs, without_duplicates
+from planning.site_import.openness import Sides, open_shares, turn_outwards
+from planning.site_import.polygons import unit_normals
+from planning.site_import.quads import fit_quad, start_lower_left
+from planning.site_import.source import SourceModel, SourceWindow
+
+Array = NDArray[np.float64]
+
+OWN_REACH_M = 1.5
+"""What hides a direction within this distance is the window's own frame, reveal or sill."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panes:
+    """Panels to be, in the order of the file.
+
+    Parameters
+    ----------
+    corners
+        Shape (m, 4, 3), ENU metres, counter-clockwise from outside, lower left first.
+    source_ids
+        One for each.
+    notes
+        What was left out or changed, and how much of the open the panels see.
+    """
+
+    corners: Array
+    source_ids: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def panes_outdoors(source: SourceModel, monitor: Monitor) -> Panes:
+    """Find the panels among the windows of a building."""
+    monitor.report("fitting panels", 0, len(source.windows))
+    quads = [fit_quad(window.outline_enu_m) for window in source.windows]
+    fitted = [(window, quad) for window, quad in zip(source.windows, quads, strict=True) if quad is not None]
+    notes = []
+    if len(fitted) < len(source.windows):
+        notes.append(f"{len(source.windows) - len(fitted)} windows are slivers or without area and are left out")
+    if not fitted:
+        return Panes(np.zeros((0, 4, 3)), (), tuple(notes))
+    windows = [window for window, _ in fitted]
+    sides = _sides(windows, np.array([quad.corners for _, quad in fitted]), source.building, monitor)
+    kept = np.flatnonzero(sides.is_outdoors)
+    if len(kept) < len(windows):
+        notes.append(f"{len(windows) - len(kept)} windows see nothing of the open and are left out as indoor ones")
+    if source.repeats_panes:
+        n_outdoors = len(kept)
+        kept = kept[without_duplicates(sides.corners[kept])]
+        if len(kept) < n_outdoors:
+            notes.append(
+                f"{n_outdoors - len(kept)} windows show a pane that another one shows already and are left out"
+            )
+    else:
+        twice = [
+            (windows[kept[i]].source_id, windows[kept[j]].source_id) for i, j in coincident_pairs(sides.corners[kept])
+        ]
+        if twice:
+            notes.append(f"{len(twice)} windows lie exactly on others, and both stay: {_listed(twice)}")
+    rounded = [windows[i].source_id for i in kept if not fitted[i][1].is_exact]
+    if rounded:
+        notes.append(f"{len(rounded)} windows are no quads; a rectangle of the same area stands in: {_listed(rounded)}")
+    n_undecided = int((~sides.is_decided[kept]).sum())
+    if n_undecided:
+        notes.append(f"{n_undecided} windows are open on both sides; they are taken to face away from the building")
+    corners = np.array([start_lower_left(quad) for quad in sides.corners[kept]]).reshape(-1, 4, 3)
+    if len(corners):
+        notes.append(_view(corners, sides.open_share[kept], source.building))
+    return Panes(corners, tuple(windows[i].source_id for i in kept), tuple(notes))
+
+
+def _sides(windows: list[SourceWindow], corners: Array, building: TriangleMesh, monitor: Monitor) -> Sides:
+    triangles = np.concatenate([building.corners_enu_m, panel_triangles(corners)])
+    middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
+    monitor.report("looking outdoors", 0, 1)
+    thickness_m = np.array([window.thickness_m for window in windows])
+    return turn_outwards(corners, thickness_m, middle, line_of_sight(triangles))
+
+
+def _view(corners: Array, open_share: Array, building: TriangleMesh) -> str:
+    """How much of their hemispheres the panels see, as a note."""
+    normals = unit_normals(corners)
+    targets = corners.mean(axis=1) + OCCLUSION_OFFSET_M * normals
+    own = 1.0 - open_shares(targets, normals, line_of_sight(building.corners_enu_m), OWN_REACH_M)
+    return (
+        f"{OCCLUSION_OFFSET_M:g} m in front of the panels the building hides "
+        f"{100.0 * (1.0 - open_share.mean()):.0f} % of the directions (worst panel "
+        f"{100.0 * (1.0 - open_share.min()):.0f} %); their own frames and reveals hide {100.0 * own.mean():.0f} % "
+        f"(worst {100.0 * own.max():.0f} %)"
+    )
+
+
+def _listed(names: list[str] | list[tuple[str, str]], limit: int = 3) -> str:
+    texts = [name if isinstance(name, str) else " = ".join(name) for name in names[:limit]]
+    return ", ".join(texts) + (f" and {len(names) - limit} more" if len(names) > limit else "")

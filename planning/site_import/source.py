@@ -1,0 +1,70 @@
+"""What every reader hands over: windows, building and neighbours in local ENU metres, and how they got there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.mesh import TriangleMesh
+from planning.site_import.placement import Placement
+
+Array = NDArray[np.float64]
+
+HOW_TO_GET_PANELS = (
+    "panels come from the windows of a city model (level of detail 3), from IfcWindow and glazed IfcPlate of a BIM "
+    "model, or from you: --panel-grid 'E,N,U E,N,U E,N,U' (lower left, lower right and upper left corner of a facade "
+    "seen from outside, in the file's coordinates) --rows N --columns N"
+)
+"""What to do about a file without windows."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SourceWindow:
+    """A window as it stands in the file.
+
+    Parameters
+    ----------
+    source_id
+        GlobalId, gml:id or the like.
+    outline_enu_m
+        Its outline in order, shape (k, 3), k >= 3, on the middle plane of the pane; either sense of rotation.
+    thickness_m
+        Of the pane: on either side, its face is half of this from the outline.
+    """
+
+    source_id: str
+    outline_enu_m: Array
+    thickness_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SourceModel:
+    """Content of an imported file.
+
+    Parameters
+    ----------
+    name
+        Of the building, as the file calls it; may be empty.
+    windows
+        All that could become panels.
+    building
+        The building, windows included.
+    neighbours
+        Other buildings near by.
+    placement
+        How file coordinates became local ones.
+    repeats_panes
+        The format may give one pane twice, as a window and as the plate that holds it; then only one becomes a panel.
+    notes
+        What the user should know about the reading.
+    """
+
+    name: str
+    windows: tuple[SourceWindow, ...]
+    building: TriangleMesh
+    neighbours: TriangleMesh
+    placement: Placement
+    repeats_panes: bool = False
+    notes: tuple[str, ...] = ()
