@@ -136,11 +136,11 @@ def city_source(
     notes = [*placement.georeference.notes, *choice]
     if others:
         notes.append(
-            f"of the {len(others)} other buildings in the file, {len(near)} within reach are kept as obstacles and "
-            f"{len(others) - len(near)} are left out"
+            f"other buildings in the file: {len(near)} within reach of the airspace, kept as obstacles; "
+            f"{len(others) - len(near)} further away, left out"
         )
     if local.n_unread_windows:
-        notes.append(f"{local.n_unread_windows} windows given as implicit geometry (a shared prototype) are not read")
+        notes.append(f"windows given as a shared prototype (implicit geometry), not read: {local.n_unread_windows}")
     return SourceModel(
         name=local.name,
         windows=tuple(_windows(local)),
@@ -210,7 +210,7 @@ def _listed(buildings: list[CityBuilding]) -> str:
     """The first few identifiers, those with most windows first."""
     order = sorted(buildings, key=lambda building: -len(building.windows))
     named = [
-        f"'{building.id}'" + (f" ({len(building.windows)} windows)" if building.windows else "")
+        f"'{building.id}'" + (f" (windows: {len(building.windows)})" if building.windows else "")
         for building in order[:MAX_NAMED]
     ]
     rest = f" and {len(order) - MAX_NAMED} more" if len(order) > MAX_NAMED else ""

@@ -208,9 +208,9 @@ def _panes(elements: _Elements, shapes: dict[str, Shape]) -> tuple[dict[str, Pan
     for shape in shapes.values():
         if shape.kind == "IfcCurtainWall" and len(shape.glass):
             panes |= {f"{shape.guid}#{k}": pane for k, pane in enumerate(skin_panes(shape))}
-    notes = [f"{n_windows} windows, and {len(glazed)} glazed ones of {len(plates)} plates, have geometry"]
+    notes = [f"windows: {n_windows}; plates: {len(plates)}, of which glazed: {len(glazed)}"]
     if n_windows < len(elements.windows):
-        notes.append(f"{len(elements.windows) - n_windows} windows have no geometry and are left out")
+        notes.append(f"windows left out because they have no geometry: {len(elements.windows) - n_windows}")
     return panes, notes
 
 

@@ -1,9 +1,8 @@
-"""Import a site: read the file, find the panels, group and name them, add what a flight needs, write it."""
+"""Import a site: read the file, find the panels, group and name them, add what a flight needs."""
 
 from __future__ import annotations
 
-import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +10,9 @@ from numpy.typing import NDArray
 
 from planning.errors import InputError
 from planning.frames import Vec3
-from planning.mesh import MESH_SUFFIXES, TriangleMesh, closed_parts, join, write_mesh
+from planning.mesh import MESH_SUFFIXES, closed_parts
 from planning.progress import QUIET, Monitor
 from planning.site import Facade, Obstacle, Panel, Site, SiteModel
-from planning.site_file import write_site
 from planning.site_import.facades import facade_name, group_facades
 from planning.site_import.options import ImportOptions
 from planning.site_import.panel_grid import grid_panels
@@ -68,7 +66,7 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
     corners = np.concatenate([panes.corners, *(grid.corners for grid in grids)])
     if len(corners) == 0:
         n = len(source.windows)
-        found = f"none of the {n} windows is a pane that faces the open" if n else "there are no windows"
+        found = f"no window of {n} is a pane that faces the open" if n else "there are no windows"
         raise InputError(f"{path}: {found}; {HOW_TO_GET_PANELS}")
     ids = [*panes.source_ids, *[None] * (len(corners) - len(panes.corners))]
     monitor.report("grouping facades", 0, 1)
@@ -149,10 +147,10 @@ def _vertices(quad: Array) -> tuple[Vec3, Vec3, Vec3, Vec3]:
 def _facade_note(corners: Array, groups: list[NDArray[np.int64]]) -> str:
     largest, n_single = quad_areas(corners[groups[0]]), sum(len(group) == 1 for group in groups)
     note = (
-        f"{len(groups)} facades by plane or smoothly curved surface, the one with most glass first (A: "
+        f"facades, by plane or smoothly curved surface: {len(groups)}, the one with most glass first (A: "
         f"{len(groups[0])} panels, {largest.sum():.0f} m2)"
     )
-    return note + (f"; {n_single} have one panel only" if n_single else "")
+    return note + (f"; with one panel only: {n_single}" if n_single else "")
 
 
 def _solid_notes(source: SourceModel) -> tuple[str, ...]:
@@ -168,48 +166,3 @@ def _solid_notes(source: SourceModel) -> tuple[str, ...]:
         f"{100.0 * open_share:.0f} % of the building's surface does not close (gaps and overlaps in the model): the "
         "distance to it is kept all the same, but the space behind it does not count as solid",
     )
-
-
-def write_imported_site(path: Path, imported: ImportedSite, source: Path) -> SiteModel:
-    """Write the site file and, beside it, its meshes; returns the model as it was written.
-
-    Meshes are named after the site file; none is ever written over the file that was imported.
-
-    Raises
-    ------
-    InputError
-        The folder is missing or cannot be written, or the site would replace the file it was imported from.
-    """
-    if path.exists() and path.samefile(source):
-        raise InputError(f"{path}: the site would be written over the file it is imported from; name another file")
-    model = imported.model
-    site = model.site
-    if site.building_mesh is not None:
-        name = _free_name(path, ".ply", "-building.ply", source)
-        _write_mesh(path.with_name(name), model.building)
-        site = replace(site, building_mesh=name)
-    if site.obstacles:
-        name = _free_name(path, "-neighbours.ply", "-other-buildings.ply", source)
-        _write_mesh(path.with_name(name), join(list(model.obstacles)))
-        site = replace(site, obstacles=(replace(site.obstacles[0], mesh=name),))
-    sha256 = write_site(path, site)
-    return replace(model, site=site, sha256=sha256)
-
-
-def _free_name(path: Path, ending: str, other_ending: str, source: Path) -> str:
-    """Name of a mesh beside the site file, with the other ending where the first is the imported file's own."""
-    name = path.stem + ending
-    target = path.with_name(name)
-    return path.stem + other_ending if target.exists() and target.samefile(source) else name
-
-
-def _write_mesh(path: Path, mesh: TriangleMesh) -> None:
-    """Write a mesh whole or not at all."""
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}.ply")
-    try:
-        write_mesh(temporary, mesh)
-        temporary.replace(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,10 @@ Array = NDArray[np.float64]
 
 OWN_REACH_M = 1.5
 """What hides a direction within this distance is the window's own frame, reveal or sill."""
+
+
+MAX_NAMED = 3
+"""Windows named in a note."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,35 +53,25 @@ def panes_outdoors(source: SourceModel, monitor: Monitor) -> Panes:
     monitor.report("fitting panels", 0, len(source.windows))
     quads = [fit_quad(window.outline_enu_m) for window in source.windows]
     fitted = [(window, quad) for window, quad in zip(source.windows, quads, strict=True) if quad is not None]
-    notes = []
-    if len(fitted) < len(source.windows):
-        notes.append(f"{len(source.windows) - len(fitted)} windows are slivers or without area and are left out")
+    notes = _counted("windows left out as slivers or without area", len(source.windows) - len(fitted))
     if not fitted:
         return Panes(np.zeros((0, 4, 3)), (), tuple(notes))
     windows = [window for window, _ in fitted]
     sides = _sides(windows, np.array([quad.corners for _, quad in fitted]), source.building, monitor)
     kept = np.flatnonzero(sides.is_outdoors)
-    if len(kept) < len(windows):
-        notes.append(f"{len(windows) - len(kept)} windows see nothing of the open and are left out as indoor ones")
+    notes += _counted("windows left out as indoor ones, which see nothing of the open", len(windows) - len(kept))
     if source.repeats_panes:
         n_outdoors = len(kept)
         kept = kept[without_duplicates(sides.corners[kept])]
-        if len(kept) < n_outdoors:
-            notes.append(
-                f"{n_outdoors - len(kept)} windows show a pane that another one shows already and are left out"
-            )
+        notes += _counted("windows left out because another one shows the same pane", n_outdoors - len(kept))
     else:
-        twice = [
-            (windows[kept[i]].source_id, windows[kept[j]].source_id) for i, j in coincident_pairs(sides.corners[kept])
-        ]
-        if twice:
-            notes.append(f"{len(twice)} windows lie exactly on others, and both stay: {_listed(twice)}")
-    rounded = [windows[i].source_id for i in kept if not fitted[i][1].is_exact]
-    if rounded:
-        notes.append(f"{len(rounded)} windows are no quads; a rectangle of the same area stands in: {_listed(rounded)}")
+        pairs = [(windows[kept[i]], windows[kept[j]]) for i, j in coincident_pairs(sides.corners[kept])]
+        twice = [f"{first.source_id} = {second.source_id}" for first, second in pairs]
+        notes += _counted("windows that lie exactly on others, where both stay", len(twice), twice)
+    odd = [windows[i].source_id for i in kept if not fitted[i][1].is_exact]
+    notes += _counted("windows that are no quads, for which a rectangle of the same area stands in", len(odd), odd)
     n_undecided = int((~sides.is_decided[kept]).sum())
-    if n_undecided:
-        notes.append(f"{n_undecided} windows are open on both sides; they are taken to face away from the building")
+    notes += _counted("windows open on both sides, taken to face away from the building", n_undecided)
     corners = np.array([start_lower_left(quad) for quad in sides.corners[kept]]).reshape(-1, 4, 3)
     if len(corners):
         notes.append(_view(corners, sides.open_share[kept], source.building))
@@ -104,6 +99,9 @@ def _view(corners: Array, open_share: Array, building: TriangleMesh) -> str:
     )
 
 
-def _listed(names: list[str] | list[tuple[str, str]], limit: int = 3) -> str:
-    texts = [name if isinstance(name, str) else " = ".join(name) for name in names[:limit]]
-    return ", ".join(texts) + (f" and {len(names) - limit} more" if len(names) > limit else "")
+def _counted(what: str, n: int, names: Sequence[str] = ()) -> list[str]:
+    """A note with a count and the first few names; none where there is nothing to count."""
+    if n == 0:
+        return []
+    more = ", ..." if len(names) > MAX_NAMED else ""
+    return [f"{what}: {n}" + (f" ({', '.join(names[:MAX_NAMED])}{more})" if names else "")]

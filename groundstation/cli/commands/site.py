@@ -121,7 +121,8 @@ def _triple(text: str) -> tuple[Number3, Number3, Number3]:
 
 def run(options: argparse.Namespace) -> int:
     """Import a site; returns the exit status."""
-    from planning.site_import.importer import import_site, write_imported_site
+    from planning.site_import.importer import import_site
+    from planning.site_import.output import write_imported_site
 
     if not options.out.parent.is_dir():
         raise InputError(f"{options.out}: there is no folder '{options.out.parent}' to write it into")
@@ -152,9 +153,9 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps(content, indent=1, allow_nan=False))
         return 0
     listed = ", ".join(f"{facade['id']} {facade['panels']}" for facade in facades[:MAX_LISTED])
-    more = f", and {len(facades) - MAX_LISTED} smaller ones" if len(facades) > MAX_LISTED else ""
+    more = f", {len(facades) - MAX_LISTED} smaller ones" if len(facades) > MAX_LISTED else ""
     origin = site.origin
-    print(f"{options.out}: site '{site.name}', {site.n_panels} panels on {len(facades)} facades ({listed}{more})")
+    print(f"{options.out}: site '{site.name}', panels: {site.n_panels}, by facade: {listed}{more}")
     print(f"origin {origin.lat_deg:.7f}, {origin.lon_deg:.7f}, {origin.ellipsoid_height_m:.2f} m above the ellipsoid")
     for note in imported.notes:
         print(f"note: {note}", file=sys.stderr)
