@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from pyvistaqt import QtInteractor
 
+from planning.coverage.sections import panel_frames
 from planning.mesh import TriangleMesh
 from planning.plan import Plan, viewpoint_arrays
 from planning.positions import picture_corners
@@ -20,6 +21,9 @@ SORTIES = ("#e4572e", "#2e86ab", "#5b8c2a", "#8e44ad", "#b8860b", "#16807a")
 HOME = "#1d7a3c"
 
 FRUSTUM_LENGTH_M = 1.5
+
+PANEL_OFFSET_M = 0.05
+"""Less, and the depth buffer cannot tell panel and wall apart from 100 m away."""
 
 
 class SiteView(QWidget):
@@ -55,9 +59,10 @@ class SiteView(QWidget):
         airspace = model.site.airspace
         (x0, y0, z0), (x1, y1, z1) = airspace.min_enu_m, airspace.max_enu_m
         self._plotter.add_mesh(pv.Box((x0, x1, y0, y1, z0, z1)), style="wireframe", color=AIRSPACE, opacity=0.6)
-        ground = pv.Plane(((x0 + x1) / 2, (y0 + y1) / 2, airspace.ground_z_m), (0, 0, 1), x1 - x0, y1 - y0)
+        middle = ((x0 + x1) / 2, (y0 + y1) / 2, airspace.ground_z_m)
+        ground = pv.Plane(center=middle, direction=(0, 0, 1), i_size=x1 - x0, j_size=y1 - y0)
         self._plotter.add_mesh(ground, color="#e3e8dd", opacity=0.6)
-        self._plotter.add_mesh(pv.Sphere(1.0, model.site.home_enu_m), color=HOME)
+        self._plotter.add_mesh(pv.Sphere(radius=1.0, center=model.site.home_enu_m), color=HOME)
         self._look_at(corners)
 
     def show_plan(self, plan: Plan | None) -> None:
@@ -101,6 +106,8 @@ def _poly(mesh: TriangleMesh) -> pv.PolyData:
 
 
 def _quads(corners: NDArray[np.float64]) -> pv.PolyData:
+    """Panels, drawn a little in front of the walls that they lie on."""
+    corners = corners + PANEL_OFFSET_M * panel_frames(corners).normals[:, None]
     return pv.PolyData.from_regular_faces(corners.reshape(-1, 3), np.arange(4 * len(corners)).reshape(-1, 4))
 
 

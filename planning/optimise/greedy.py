@@ -133,7 +133,6 @@ def _fewest_views(
             if exchange.value() < enough:
                 break
             chosen = exchange.chosen.copy()
-            trace.record(exchange.n_covered())
     return ViewSet(take(pool.views, chosen))
 
 

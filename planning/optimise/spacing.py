@@ -17,32 +17,38 @@ MIN_SPACING_M = 0.5
 """Smallest distance between waypoints that DJI's firmware accepts (Payload SDK, waypoint errors)."""
 
 
+MAX_LOST = 1
+"""Elements that moving one view may cost: an aircraft that refuses the mission costs all of them."""
+
+
 def merge_close_views(
     problem: ViewProblem, views: ViewpointArrays, spacing_m: float = MIN_SPACING_M
 ) -> ViewpointArrays:
-    """Same views, those closer than `spacing_m` to another moved onto it where nothing that is covered gets lost."""
+    """Same views, those closer than `spacing_m` to another moved onto it where that loses (almost) no coverage."""
     from scipy.spatial import cKDTree
 
-    model = problem.model
+    model, n = problem.model, len(views.heading_rad)
     positions = views.positions_enu_m.copy()
     moved = ViewpointArrays(positions, views.heading_rad, views.pitch_rad)
-    items = [model.elements(take(views, np.array([i]))).items for i in range(len(positions))]
-    counts = np.bincount(np.concatenate(items), minlength=model.n_elements) if items else np.zeros(0, np.int64)
-    for i, j in sorted(cKDTree(positions).query_pairs(spacing_m)) if len(positions) else ():
-        for mover, anchor in ((i, j), (j, i)):
-            if (positions[mover] == positions[anchor]).all():
-                break
-            before = positions[mover].copy()
-            positions[mover] = positions[anchor]
-            new_items = _items(model, moved, mover)
-            counts[items[mover]] -= 1
-            counts[new_items] += 1
-            if (counts[items[mover]] > 0).all():
-                items[mover] = new_items
-                break
-            counts[new_items] -= 1
-            counts[items[mover]] += 1
-            positions[mover] = before
+    items = [_items(model, moved, i) for i in range(n)]
+    counts = np.bincount(np.concatenate(items), minlength=model.n_elements) if n else np.zeros(0, np.int64)
+    close = sorted(cKDTree(positions).query_pairs(spacing_m)) if n else []
+    for allowed_loss in range(MAX_LOST + 1):
+        for pair in close:
+            if (positions[pair[0]] == positions[pair[1]]).all():
+                continue
+            for mover, anchor in (pair, pair[::-1]):
+                before = positions[mover].copy()
+                positions[mover] = positions[anchor]
+                new_items = _items(model, moved, mover)
+                counts[items[mover]] -= 1
+                counts[new_items] += 1
+                if np.count_nonzero(counts[items[mover]] == 0) <= allowed_loss:
+                    items[mover] = new_items
+                    break
+                counts[new_items] -= 1
+                counts[items[mover]] += 1
+                positions[mover] = before
     return moved
 
 
