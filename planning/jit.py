@@ -41,13 +41,18 @@ def chunks(n: int, size: int) -> list[tuple[int, int]]:
     return [(start, min(start + size, n)) for start in range(0, n, size)]
 
 
-def run_chunks(work: Callable[[int, int], Result], ranges: Iterable[tuple[int, int]]) -> list[Result]:
-    """Results of `work(start, stop)` for all ranges, in order, on all cores.
+def run_parallel(work: Callable[..., Result], arguments: Iterable[tuple[Any, ...]]) -> list[Result]:
+    """Results of `work(*a)` for all `a` in `arguments`, in order, on all cores.
 
     The result does not depend on the number of threads, as long as `work` does not.
     """
-    ranges = list(ranges)
-    if len(ranges) <= 1 or n_threads() == 1:
-        return [work(start, stop) for start, stop in ranges]
+    arguments = list(arguments)
+    if len(arguments) <= 1 or n_threads() == 1:
+        return [work(*a) for a in arguments]
     with ThreadPoolExecutor(n_threads()) as pool:
-        return list(pool.map(lambda bounds: work(*bounds), ranges))
+        return list(pool.map(lambda a: work(*a), arguments))
+
+
+def run_chunks(work: Callable[[int, int], Result], ranges: Iterable[tuple[int, int]]) -> list[Result]:
+    """Results of `work(start, stop)` for all ranges; see `run_parallel`."""
+    return run_parallel(work, ranges)

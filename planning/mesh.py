@@ -103,14 +103,14 @@ def from_corners(corners_enu_m: NDArray[np.float64]) -> TriangleMesh:
     return TriangleMesh(corners_enu_m.reshape(-1, 3), np.arange(3 * n, dtype=np.int64).reshape(n, 3))
 
 
-def read_mesh(path: Path) -> TriangleMesh:
+def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> TriangleMesh:
     """Read a PLY, OBJ, GLB or STL file; its coordinates are taken as they stand.
 
     Raises
     ------
     InputError
         The file is missing, is of another kind, cannot be read, has no triangles, or has coordinates that are not
-        finite or further than `MAX_COORDINATE_M` from the origin.
+        finite or further than `max_coordinate_m` from the origin.
     """
     if path.suffix.lower() not in MESH_SUFFIXES:
         raise InputError(f"{path}: expected a mesh file ({', '.join(MESH_SUFFIXES)}), got '{path.suffix}'")
@@ -125,12 +125,12 @@ def read_mesh(path: Path) -> TriangleMesh:
         vertices, triangles = np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
     except Exception as error:  # trimesh's readers raise whatever their parsers raise
         raise InputError(f"{path}: this mesh cannot be read ({error})") from error
-    if len(triangles) == 0:
+    if triangles.ndim != 2 or len(triangles) == 0:
         raise InputError(f"{path}: the mesh has no triangles (a point cloud cannot serve as a building)")
     used = vertices[triangles]
     if not np.isfinite(used).all():
         raise InputError(f"{path}: the mesh has coordinates that are not finite numbers")
-    if np.abs(used).max() > MAX_COORDINATE_M:
+    if np.abs(used).max() > max_coordinate_m:
         raise InputError(
             f"{path}: the mesh has a coordinate of {np.abs(used).max():.0f} m; local ENU metres near the site's origin "
             "are expected. Shift it (site import does) before using it"

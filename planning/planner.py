@@ -39,7 +39,7 @@ from planning.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, ne
 from planning.routing.flights import Flight, flight_times, plan_flights
 from planning.routing.roadmap import build_roadmap
 from planning.site import SiteModel
-from planning.space import free_space
+from planning.space import LEG_MARGIN_M, free_space
 
 DEFAULT_VIEWS = 560
 """For methods that need a number of views when none is given: the paper's for its planar case."""
@@ -212,7 +212,7 @@ def as_written(problem: ViewProblem, views: ViewpointArrays) -> ViewpointArrays:
     _, first = np.unique(np.column_stack([positions, heading_deg, pitch_deg]), axis=0, return_index=True)
     rounded = ViewpointArrays(positions, np.radians(heading_deg), np.radians(pitch_deg))
     kept: NDArray[np.int64] = np.sort(first)
-    kept = kept[problem.flyable(positions[kept])]
+    kept = kept[problem.flyable(positions[kept], LEG_MARGIN_M)]
     return take(rounded, kept)
 
 

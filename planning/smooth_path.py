@@ -20,15 +20,21 @@ from planning.timing import FlightPath, MotionLimits, slowed_by_turns_m_s, speed
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-ARC_INTERVALS = 6
-"""Intervals of one rounded corner, an even number: the polyline's vertex belongs to the node in the middle."""
+ARC_NODES = (0.0, 0.02, 0.2, 0.48, 0.5, 0.52, 0.8, 0.98, 1.0)
+"""Nodes along one rounded corner, as parts of its arc. The vertex belongs to the middle one, where the turn of one leg
+ends and that of the next begins; nodes lie close together where the highest speed changes."""
 
 SHARPEST_TURN_RAD = math.radians(175.0)
-"""At sharper corners the aircraft stops: the arc would be shorter than a millimetre per half metre of deviation."""
+"""At sharper corners the aircraft stops: it would pass them at less than 0.2 m/s within 0.3 m."""
 
 STRAIGHT_RAD = 1e-6
-"""Corners below are no corners: rounding them would take an arc of more than a million times the deviation."""
+"""Corners below are none: the path leaves the direction it had by less than a micrometre a metre."""
 
+NO_LENGTH_M = 1e-9
+"""Legs up to a nanometre have no direction; the aircraft stops at both their ends."""
+
+LEAST_CHANGE = 0.01
+"""Part of its cap; where b starts closer to the cap, the time lost by this is below a millionth."""
 
 SHORTEST = 1e-9
 """Intervals shorter than this part of their leg are rounding and left out."""
@@ -49,7 +55,7 @@ class PathGrid:
     vertex_node
         Shape (k,), the node of each vertex of the polyline.
     rest_s
-        Shape (k,), time spent at each vertex: hover, and turns on legs of no length that lead there.
+        Shape (k,), time spent at each vertex: hover, and turns on legs of no length that lead on from there.
     acceleration_m_s2
         Limit of tangential and centripetal acceleration together.
     """
@@ -86,7 +92,7 @@ def path_grid(path: FlightPath, limits: MotionLimits, corner_deviation_m: float)
 
 @dataclass(frozen=True, slots=True)
 class _Corner:
-    """A rounded corner: how much of both legs it replaces, its arc, and the highest speed on it."""
+    """What replaces a corner: the arc, how much of both legs it takes, and the highest speed on it."""
 
     cut_m: float
     arc_m: float
@@ -94,15 +100,15 @@ class _Corner:
     speed_m_s: float
 
 
-def _round(
-    before: Floats, behind: Floats, turning: tuple[float, float], limits: MotionLimits, deviation_m: float
-) -> _Corner | None:
+def _rounded(before: Floats, behind: Floats, limits: MotionLimits, deviation_m: float) -> _Corner | None:
     """Arc for the corner between two leg vectors; None where the aircraft has to stop.
 
     With phi the angle between the legs, an arc of radius r leaves the corner by r (1 / cos(phi / 2) - 1) and touches
-    the legs r tan(phi / 2) away from it. `turning` are the seconds of turn per metre on both legs.
+    the legs r tan(phi / 2) away from it.
     """
     length_in, length_out = float(np.linalg.norm(before)), float(np.linalg.norm(behind))
+    if min(length_in, length_out) <= NO_LENGTH_M:
+        return None
     u, v = before / length_in, behind / length_out
     angle = 2.0 * math.atan2(float(np.linalg.norm(u - v)), float(np.linalg.norm(u + v)))
     if angle > SHARPEST_TURN_RAD:
@@ -114,63 +120,33 @@ def _round(
     radius = deviation_m * math.cos(half) / (2.0 * math.sin(half / 2.0) ** 2)
     cut = min(radius * math.tan(half), length_in / 2.0, length_out / 2.0)
     radius = cut / math.tan(half)
-    arc = radius * angle
     directions = u + np.linspace(0.0, 1.0, 9)[:, None] * (v - u)
     speed = float(speed_limits_m_s(directions, limits).min())
-    turn_s = cut * (turning[0] + turning[1])
-    return _Corner(cut, arc, 1.0 / radius, min(speed, arc / turn_s) if turn_s > 0.0 else speed)
+    return _Corner(cut, radius * angle, 1.0 / radius, min(speed, math.sqrt(limits.acceleration_m_s2 * radius)))
+
+
+_STOP = _Corner(0.0, 0.0, 0.0, 0.0)
 
 
 def _pieces(path: FlightPath, limits: MotionLimits, deviation_m: float) -> PathGrid:
-    """Grid with one interval for each straight part, and `ARC_INTERVALS` for each arc."""
+    """Grid with one interval for each straight part, and those between `ARC_NODES` for each arc.
+
+    The turn of a leg is spread along its straight part and the halves of the arcs at its ends.
+    """
     deltas = path.deltas_enu_m
     length = np.linalg.norm(deltas, axis=1)
-    speed = slowed_by_turns_m_s(path, limits)
     k = len(path.vertices_enu_m)
+    found = [None if stops else _rounded(deltas[i], deltas[i + 1], limits, deviation_m)
+             for i, stops in enumerate(path.is_stop[1:-1])]
+    corners = [_STOP, *(corner or _STOP for corner in found), _STOP]
+    cut, arc = np.array([[corner.cut_m, corner.arc_m] for corner in corners]).T
+    straight = length - cut[:-1] - cut[1:]
+    flown = straight + (arc[:-1] + arc[1:]) / 2.0
+    speed = speed_limits_m_s(deltas, limits)
+    is_slowed = path.turn_s * speed > flown
+    turning = np.where(path.turn_s > 0.0, flown / np.where(path.turn_s > 0.0, path.turn_s, 1.0), np.inf)
     steps: list[float] = []
-    curvatures: list[float] = []
-    speeds: list[float] = []
-    stops = [0]
-    vertex_node = np.zeros(k, np.int64)
-    rest_s = path.hover_s.copy()
-    cut_before = 0.0
-    for i in range(k - 1):
-        corner = None
-        is_stop = path.is_stop[i + 1] or length[i] == 0.0 or length[i + 1] == 0.0
-        if not is_stop:
-            turning = path.turn_s[i] / length[i], path.turn_s[i + 1] / length[i + 1]
-            corner = _round(deltas[i], deltas[i + 1], turning, limits, deviation_m)
-        cut_behind = 0.0 if corner is None else corner.cut_m
-        straight = length[i] - cut_before - cut_behind
-        if length[i] == 0.0:
-            rest_s[i + 1] += path.turn_s[i]
-        elif straight > SHORTEST * length[i]:
-            steps.append(straight)
-            curvatures.append(0.0)
-            speeds.append(speed[i])
-        vertex_node[i + 1] = len(steps)
-        if corner is None:
-            stops.append(len(steps))
-        elif corner.arc_m > 0.0:
-            vertex_node[i + 1] += ARC_INTERVALS // 2
-            steps += [corner.arc_m / ARC_INTERVALS] * ARC_INTERVALS
-            curvatures += [corner.curvature_per_m] * ARC_INTERVALS
-            turning_m_s = math.sqrt(limits.acceleration_m_s2 / corner.curvature_per_m)
-            speeds += [min(corner.speed_m_s, turning_m_s)] * ARC_INTERVALS
-        cut_before = cut_behind
-    is_stop = np.zeros(len(steps) + 1, np.bool_)
-    is_stop[stops] = True
-    return PathGrid(
-        step_m=np.array(steps, float),
-        curvature_per_m=np.array(curvatures, float),
-        cap=np.array(speeds, float) ** 2,
-        is_stop=is_stop,
-        vertex_node=vertex_node,
-        rest_s=rest_s,
-        acceleration_m_s2=limits.acceleration_m_s2,
-    )
-
-
+    ...
 @kernel
 def _sweep(step: Floats, curvature: Floats, ceiling: Floats, acceleration: float) -> Floats:
     speed_2 = ceiling.copy()
@@ -199,20 +175,23 @@ def fastest_sweep(grid: PathGrid) -> Floats:
 
 
 def _with_switches(grid: PathGrid, speed_2: Floats) -> PathGrid:
-    """Add the nodes where acceleration ends and braking begins on straight intervals, so that b is linear between."""
-    gain = 2.0 * grid.acceleration_m_s2
+    """Add the nodes where acceleration ends and braking begins.
+
+    On straight intervals b is then linear between nodes; on arcs, where the acceleration left over for speeding up
+    depends on b, the nodes are where it would end if b were at its cap. None is put so near to an end that b could
+    change by less than `LEAST_CHANGE` on the way: the program of `planning.speed_profile` would be badly scaled.
+    """
+    room = np.maximum(0.0, grid.acceleration_m_s2**2 - (grid.curvature_per_m * grid.cap) ** 2)
     parts: list[Floats] = []
     for i, step in enumerate(grid.step_m):
-        part = np.array([step])
-        if grid.curvature_per_m[i] == 0.0:
-            first = (grid.cap[i] - speed_2[i]) / gain
-            last = step - (grid.cap[i] - speed_2[i + 1]) / gain
-            if first > last:
-                first = last = step / 2.0 + (speed_2[i + 1] - speed_2[i]) / (2.0 * gain)
-            inner = np.unique([first, last])
-            inner = inner[(inner > SHORTEST * step) & (inner < (1.0 - SHORTEST) * step)]
-            part = np.diff(inner, prepend=0.0, append=step)
-        parts.append(part)
+        gain, cap, b0, b1 = 2.0 * math.sqrt(room[i]), grid.cap[i], speed_2[i], speed_2[i + 1]
+        first, last = max(cap - b0, LEAST_CHANGE * cap), gain * step - max(cap - b1, LEAST_CHANGE * cap)
+        is_arc = grid.curvature_per_m[i] > 0.0
+        if first > last and not is_arc:
+            first = last = gain * step / 2.0 + (b1 - b0) / 2.0
+        inner = np.unique([first, last]) / gain if not is_arc else np.zeros(0)
+        inner = inner[(inner > SHORTEST * step) & (inner < (1.0 - SHORTEST) * step)]
+        parts.append(np.diff(inner, prepend=0.0, append=step))
     repeats = np.array([len(part) for part in parts], np.int64)
     moved = np.concatenate([[0], np.cumsum(repeats)])
     is_stop = np.zeros(moved[-1] + 1, np.bool_)

@@ -15,7 +15,11 @@ from planning.site import SiteModel, panel_corners, panel_triangles
 Array = NDArray[np.float64]
 
 SAFETY_MARGIN_M = 0.002
-"""Kept on top of every distance, so that coordinates rounded to 0.1 mm and readers in float32 still find it kept."""
+"""Kept on top of every distance where viewpoints are chosen."""
+
+LEG_MARGIN_M = 0.001
+"""Kept on top of every distance by legs, and by viewpoints once their coordinates are rounded to 0.1 mm: less than
+where they are chosen, so that rounding grounds none, and enough for readers in float32 to find the distance kept."""
 
 TAKEOFF_CLIMB_M = 2.0
 """Aircraft climb at least this far before they fly sideways, wherever the airspace begins."""
@@ -55,12 +59,12 @@ class FreeSpace:
         lowest = max(self.home_enu_m[2] + TAKEOFF_CLIMB_M, self.low_enu_m[2] + SAFETY_MARGIN_M)
         return np.array([*self.home_enu_m[:2], lowest])
 
-    def is_allowed(self, points_enu_m: Array) -> NDArray[np.bool_]:
+    def is_allowed(self, points_enu_m: Array, margin_m: float = SAFETY_MARGIN_M) -> NDArray[np.bool_]:
         """Whether viewpoints may lie at points of shape (n, 3)."""
         points = np.asarray(points_enu_m, np.float64).reshape(-1, 3)
-        low, high = self.low_enu_m + SAFETY_MARGIN_M, self.high_enu_m - SAFETY_MARGIN_M
+        low, high = self.low_enu_m + margin_m, self.high_enu_m - margin_m
         allowed = np.asarray(np.all((points >= low) & (points <= high), axis=1))
-        for solids, distance in self._kept_distances():
+        for solids, distance in self._kept_distances(margin_m):
             asked = np.flatnonzero(allowed)
             allowed[asked] = solids.clearance_m(points[asked], 2.0 * distance) >= distance
         return allowed
@@ -68,15 +72,15 @@ class FreeSpace:
     def legs_clear(self, a_enu_m: Array, b_enu_m: Array) -> NDArray[np.bool_]:
         """Whether straight legs between allowed points, shape (n, 3), keep every distance on their whole length."""
         clear = np.ones(len(a_enu_m), np.bool_)
-        for solids, distance in self._kept_distances():
+        for solids, distance in self._kept_distances(LEG_MARGIN_M):
             asked = np.flatnonzero(clear)
             clear[asked] = solids.segments_clear(a_enu_m[asked], b_enu_m[asked], distance)
         return clear
 
-    def _kept_distances(self) -> tuple[tuple[Solids, float], ...]:
-        kept: tuple[tuple[Solids, float], ...] = ((self.solids, self.min_distance_m + SAFETY_MARGIN_M),)
+    def _kept_distances(self, margin_m: float) -> tuple[tuple[Solids, float], ...]:
+        kept: tuple[tuple[Solids, float], ...] = ((self.solids, self.min_distance_m + margin_m),)
         if len(self.no_fly.part):
-            kept += ((self.no_fly, self.no_fly_distance_m + SAFETY_MARGIN_M),)
+            kept += ((self.no_fly, self.no_fly_distance_m + margin_m),)
         return kept
 
 

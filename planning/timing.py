@@ -289,8 +289,9 @@ def flight_path(
 def slowed_by_turns_m_s(path: FlightPath, limits: MotionLimits) -> Floats:
     """Highest speed on each leg, shape (k - 1,): by its direction, and so that the turn on it keeps pace."""
     length = np.linalg.norm(path.deltas_enu_m, axis=1)
-    turning_m_s = np.where(path.turn_s > 0.0, length / np.where(path.turn_s > 0.0, path.turn_s, 1.0), math.inf)
-    return np.minimum(speed_limits_m_s(path.deltas_enu_m, limits), turning_m_s)
+    speed = speed_limits_m_s(path.deltas_enu_m, limits)
+    is_slowed = path.turn_s * speed > length
+    return np.where(is_slowed, length / np.where(is_slowed, path.turn_s, 1.0), speed)
 
 
 def stopping_times_s(path: FlightPath, limits: MotionLimits) -> Floats:
@@ -300,8 +301,7 @@ def stopping_times_s(path: FlightPath, limits: MotionLimits) -> Floats:
     """
     length = np.linalg.norm(path.deltas_enu_m, axis=1)
     speed = slowed_by_turns_m_s(path, limits)
-    leg_s = np.where(
-        length > 0.0, rest_to_rest_s(length, np.where(length > 0.0, speed, 1.0), limits.acceleration_m_s2), 0
-    )
-    leg_s = np.maximum(leg_s, path.turn_s)
+    moves = (length > 0.0) & (speed > 0.0)
+    flying_s = rest_to_rest_s(length, np.where(moves, speed, 1.0), limits.acceleration_m_s2)
+    leg_s = np.where(moves, flying_s, path.turn_s)
     return np.concatenate([[0.0], np.cumsum(path.hover_s[:-1] + leg_s)])

@@ -75,7 +75,7 @@ def greedy(
     if goal.share is not None:
         return _fewest_views(pool, weights, goal.share * everything, seed, stop, trace, monitor, parameters)
     assert goal.n_views is not None  # Goal's own check
-    chosen, value = choose_greedily(pool, weights, goal.n_views, np.inf, stop, trace, monitor)
+    chosen, value = choose_greedily(pool, weights, goal.n_views, np.inf, trace, monitor)
     views = take(pool.views, chosen)
     bound = everything
     if value < everything - 1e-9 and len(chosen) == goal.n_views:
@@ -90,16 +90,17 @@ def greedy(
 
 
 def choose_greedily(
-    pool: Pool, weights: Array, n_wanted: int, enough: float, stop: Stop, trace: Trace, monitor: Monitor
+    pool: Pool, weights: Array, n_wanted: int, enough: float, trace: Trace, monitor: Monitor
 ) -> tuple[NDArray[np.int64], float]:
     """Numbers of the candidates chosen, in order, and the weight that they cover.
 
-    Ends at `n_wanted` candidates, at a weight of `enough`, when nothing is left to gain, or when `stop` says so.
+    Ends at `n_wanted` candidates, at a weight of `enough`, or when nothing is left to gain. It is quick, and the first
+    answer of an anytime method, so nothing stops it but cancelling.
     """
     state = cover_state(pool.elements, weights)
     chosen = np.zeros(min(n_wanted, len(state.gains)), np.int64)
     n_chosen = 0
-    while n_chosen < len(chosen) and not stop():
+    while n_chosen < len(chosen):
         monitor.report("choosing views", n_chosen, len(chosen))
         slice_end = min(len(chosen), n_chosen + max(8, n_chosen // 4))
         n_now = int(kernel.greedy_steps(state, chosen, n_chosen, slice_end, enough))
@@ -123,7 +124,7 @@ def _fewest_views(
 ) -> ViewSet:
     """Fewest views found that cover the weight `target`: greedy, then views are taken away while exchange makes up."""
     enough = target - 1e-9
-    chosen, value = choose_greedily(pool, weights, len(pool.views.heading_rad), enough, stop, trace, monitor)
+    chosen, value = choose_greedily(pool, weights, len(pool.views.heading_rad), enough, trace, monitor)
     if parameters.improve and value >= enough:
         exchange = Exchange(pool.elements, weights, chosen, seed)
         while len(chosen) > 1 and not stop():

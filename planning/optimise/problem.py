@@ -14,7 +14,7 @@ from planning.plan import ViewpointArrays
 from planning.progress import Monitor, Stop, Trace
 from planning.reachability import Reachability
 from planning.routing.roadmap import Roadmap
-from planning.space import FreeSpace
+from planning.space import SAFETY_MARGIN_M, FreeSpace
 
 DEFAULT_SHARE = 0.99
 """Share of the reachable sections that is covered when no number of views is given."""
@@ -29,9 +29,9 @@ class ViewProblem:
     reachability: Reachability
     roadmap: Roadmap
 
-    def flyable(self, positions_enu_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def flyable(self, positions_enu_m: NDArray[np.float64], margin_m: float = SAFETY_MARGIN_M) -> NDArray[np.bool_]:
         """Positions, shape (n, 3), that are allowed and can be flown to from home."""
-        allowed = self.space.is_allowed(positions_enu_m)
+        allowed = self.space.is_allowed(positions_enu_m, margin_m)
         asked = np.flatnonzero(allowed)
         allowed[asked] = self.roadmap.connected_to_home(positions_enu_m[asked])
         return allowed

@@ -33,8 +33,9 @@ back to the best."""
 
 RETURN = 200
 
-EXPONENTS = (0.5, 1.0, 1.5, 2.0)
-"""Stops are put in by worth to one of these powers, divided by the time they add: one is drawn for each round."""
+EXPONENTS = (0.5, 1.0, 2.0, 50.0)
+"""Stops are put in by worth to one of these powers, divided by the time they add: one is drawn for each round.
+Small powers suit tight budgets; where the number of stops is what is tight, only the worth counts."""
 
 NOISE = (0.0, 0.1, 0.3, 1.0)
 """Spread of the random factors on that score (standard deviation of their logarithm): one is drawn for each round."""
@@ -215,7 +216,8 @@ class _Search:
                 return
             # An added time of zero, or below where the way by a stop is shorter, must not divide.
             shortest_s = FIT * self.budget_s
-            score = worth[candidates] ** exponent / np.maximum(needed_s[candidates], shortest_s) * noise[candidates - 1]
+            share = (worth[candidates] / worth.max()) ** exponent
+            score = share / np.maximum(needed_s[candidates], shortest_s) * noise[candidates - 1]
             place = int(candidates[np.argmax(score)])
             i = int(route[place])
             self.gain.add(place - 1)

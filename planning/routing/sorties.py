@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from planning.errors import InfeasibleError
 from planning.jit import kernel
 from planning.progress import QUIET, Monitor, Stop, Trace, never
-from planning.routing import string_removal, tour
+from planning.routing import exact_tour, insertion, string_removal, tour
 from planning.routing.lower_bound import held_karp_bound
 from planning.routing.slices import slices
 from planning.routing.string_removal import Annealing, Limits, Routes
@@ -35,8 +35,8 @@ FIT = 1e-9
 TOUR_KICKS, ROUTE_KICKS = 200, 50
 """Kicks a point for the tour that is cut up, and for each sortie afterwards."""
 
-ROUNDS = 1000
-"""Rounds of ruin and recreate a stop before a search ends by itself."""
+ROUNDS, LEAST_STOPS = 1000, 20
+"""Rounds of ruin and recreate a stop before a search ends by itself; fewer stops get as many rounds as these."""
 
 FIRST_CYCLE = 100
 """Rounds a stop until the temperature has fallen for the first time; every cycle takes twice as long as the last."""
@@ -136,7 +136,8 @@ def plan_sorties(
     Raises
     ------
     InfeasibleError
-        A viewpoint cannot be reached, or takes more than the budget on a sortie of its own.
+        A viewpoint cannot be reached, or takes more than the budget on a sortie of its own. (Travel times must be those
+        of shortest ways, so that no detour over another viewpoint can be any shorter.)
     """
     if max_stops is not None and max_stops < 1:
         raise ValueError(f"max_stops: expected 1 or more, got {max_stops}")
@@ -197,6 +198,8 @@ class _Solver:
         self.problem = problem
         self.limits = _limits(problem)
         self.cost = _symmetric(problem.travel_s)
+        self.is_symmetric = np.array_equal(problem.travel_s, problem.travel_s.T)
+        self.n_busy = max(problem.n_stops, LEAST_STOPS)
         self.seed = seed
         self.rng = np.random.default_rng(seed)
         self.stop = stop
@@ -205,13 +208,12 @@ class _Solver:
 
     def solve(self, max_rounds: int | None) -> Sorties:
         """Cut a tour, do with fewer sorties where possible, then shorten them."""
-        n = self.problem.n_stops
         sorties = self._record(self._cut_tour())
         fewest = fewest_sorties(self.problem) if self.problem.fewest_first else len(sorties)
         while len(sorties) > fewest and (fewer := self._with_one_less(sorties)) is not None:
             sorties = self._record(fewer)
-        if len(sorties) > 1:
-            sorties = self._anneal(sorties, ROUNDS * n if max_rounds is None else max_rounds)
+        if len(sorties) > 1 or not self.is_symmetric:
+            sorties = self._anneal(sorties, ROUNDS * self.n_busy if max_rounds is None else max_rounds)
         return self._record(self._reordered(sorties, None if len(sorties) == 1 else ROUTE_KICKS))
 
     def _total_s(self, sorties: Sorties) -> float:
@@ -242,7 +244,7 @@ class _Solver:
         kept = sorties[:shortest] + sorties[shortest + 1 :]
         absent = np.array(sorties[shortest], np.int64) + 1
         run = self._annealing(kept, len(kept), absent)
-        n_rounds = FLEET_ROUNDS * self.problem.n_stops
+        n_rounds = FLEET_ROUNDS * self.n_busy
         run.status[3] = HOT * self._mean_leg_s(sorties)
         cooling = (COLD / HOT) ** (1.0 / n_rounds)
         rounds = 0
@@ -259,7 +261,7 @@ class _Solver:
         """Shorten sorties in cycles of cooling, each twice as long as the last."""
         n_spare = 0 if self.problem.fewest_first else 1 + len(sorties) // 8
         rounds = 0
-        cycle = FIRST_CYCLE * self.problem.n_stops
+        cycle = FIRST_CYCLE * self.n_busy
         while rounds < max_rounds and not self.stop():
             sorties = self._reordered(sorties, ROUTE_KICKS)
             run = self._annealing(sorties, len(sorties) + n_spare)
@@ -309,11 +311,20 @@ class _Solver:
 
     def _shortest_order(self, sortie: tuple[int, ...], kicks: int | None) -> tuple[int, ...]:
         places = np.array([0, *(stop + 1 for stop in sortie)])
-        cost = self.cost[np.ix_(places, places)]
-        max_kicks = None if kicks is None else kicks * len(places)
-        order = improve_tour(cost, np.arange(len(places)), seed=self.seed, max_kicks=max_kicks, stop=self.stop)
-        shortest = tuple(int(place) - 1 for place in places[order[1:]])
-        return min(sortie, shortest, shortest[::-1], key=lambda stops: self._total_s((stops,)))
+        if len(places) <= exact_tour.MAX_POINTS:
+            # Sums of what stands for a missing leg stay finite, and such an order is never the shortest below.
+            order = exact_tour.exact_tour(np.minimum(self.problem.travel_s[np.ix_(places, places)], 1e100))
+            tries = [places[order[1:]]]
+        else:
+            cost = self.cost[np.ix_(places, places)]
+            max_kicks = None if kicks is None else kicks * len(places)
+            order = improve_tour(cost, np.arange(len(places)), seed=self.seed, max_kicks=max_kicks, stop=self.stop)
+            tries = [places[order[1:]], places[order[:0:-1]]]
+            if not self.is_symmetric:
+                for route in tries:
+                    insertion.shorten(self.problem.travel_s, route, FIT * self.problem.budget_s)
+        candidates = [sortie, *(tuple(int(place) - 1 for place in route) for route in tries)]
+        return min(candidates, key=lambda stops: self._total_s((stops,)))
 
 
 def _as_sorties(routes: Routes, n_stops: int) -> Sorties:
@@ -414,6 +425,7 @@ def _limits(problem: SortieProblem) -> Limits:
 def compile_kernels() -> None:
     """Compile what this module runs."""
     tour.compile_kernels()
+    insertion.compile_kernels()
     n = 8
     problem = SortieProblem(np.ones((n + 1, n + 1)), np.ones(n), 9.0, np.ones(n), 5.0)
     solve_sorties(problem, max_rounds=1)

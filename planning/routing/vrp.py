@@ -33,8 +33,8 @@ LARGEST_TOTAL = 1e12
 """All legs of a solution together stay below this in whole numbers: PyVRP multiplies such sums by penalties of up to
 1e5, in int64."""
 
-PATIENCE = 20_000
-"""Iterations without a better solution before a search ends by itself."""
+PATIENCE = 150_000
+"""Iterations without a better solution before a search ends by itself; PyVRP starts anew from its best after as many."""
 
 
 def solve_tour(

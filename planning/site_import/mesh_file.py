@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from planning.errors import InputError
-from planning.mesh import MESH_SUFFIXES, TriangleMesh, empty_mesh
+from planning.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.progress import Monitor
 from planning.site_import.options import UNITS_M, ImportOptions
 from planning.site_import.placement import place
 from planning.site_import.source import SourceModel
-
-Array = NDArray[np.float64]
 
 COARSE_M = 0.01
 """Coordinates stored in steps coarser than this are worth a note."""
@@ -35,7 +33,8 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
             "of a facade, seen from outside)"
         )
     monitor.report("reading the mesh", 0, 1)
-    vertices, triangles = _load(path)
+    mesh = read_mesh(path, max_coordinate_m=math.inf)
+    vertices, triangles = mesh.vertices_enu_m, mesh.triangles
     up = options.up or ("y" if path.suffix.lower() == ".glb" else "z")
     if up == "y":
         vertices = np.stack([vertices[:, 0], -vertices[:, 2], vertices[:, 1]], axis=-1)
@@ -59,23 +58,3 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
     building = TriangleMesh(placement.enu(vertices), triangles)
     all_notes = (*placement.georeference.notes, *notes)
     return SourceModel("", (), building, empty_mesh(), placement, notes=all_notes)
-
-
-def _load(path: Path) -> tuple[Array, NDArray[np.int64]]:
-    """Vertices, shape (v, 3), in the file's own axes and units, and triangles, shape (t, 3)."""
-    import trimesh
-
-    if path.suffix.lower() not in MESH_SUFFIXES:
-        raise InputError(f"{path}: expected a mesh file ({', '.join(MESH_SUFFIXES)}), got '{path.suffix}'")
-    try:
-        loaded = trimesh.load_mesh(path, process=False, maintain_order=True)
-        if isinstance(loaded, trimesh.Scene):
-            loaded = loaded.to_mesh()
-        vertices, triangles = np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
-    except Exception as error:  # trimesh's readers raise whatever their parsers raise
-        raise InputError(f"{path}: this mesh cannot be read ({error})") from error
-    if triangles.ndim != 2 or len(triangles) == 0:
-        raise InputError(f"{path}: the mesh has no triangles (a point cloud cannot serve as a building)")
-    if not np.isfinite(vertices[triangles]).all():
-        raise InputError(f"{path}: the mesh has coordinates that are not finite numbers")
-    return np.where(np.isfinite(vertices), vertices, 0.0), triangles

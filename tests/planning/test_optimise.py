@@ -180,7 +180,7 @@ def test_refining_never_loses_and_stops_when_asked():
     problem = problem_of("office")
     pool = candidate_pool(problem, 0, 2000)
     weights = element_weights(problem.model, False)
-    chosen, value = choose_greedily(pool, weights, 20, np.inf, never, Trace(), QUIET)
+    chosen, value = choose_greedily(pool, weights, 20, np.inf, Trace(), QUIET)
     views = type(pool.views)(*(column[chosen] for column in pool.views))
     refined = refine_views(problem, views, weights, TimeLimit(2.0))
     assert problem.model.covered_count(refined) > value

@@ -8,7 +8,7 @@ import pytest
 from planning.errors import InfeasibleError
 from planning.scenes import SCENES
 from planning.site import Airspace, NoFlyZone
-from planning.space import SAFETY_MARGIN_M, free_space
+from planning.space import LEG_MARGIN_M, SAFETY_MARGIN_M, free_space
 
 
 def office_with(**changes):
@@ -22,6 +22,17 @@ def test_viewpoint_at_exactly_the_minimum_distance_is_refused_only_for_the_round
     assert space.is_allowed(points).tolist() == [False, False, False, True]
     rounded = np.round(points[3], 4)
     assert space.solids.clearance_m(rounded[None])[0] >= 10.0
+
+
+def test_viewpoints_chosen_at_the_limit_stay_flyable_when_they_are_rounded():
+    space = free_space(SCENES["library"](), 10.0)
+    rng = np.random.default_rng(2)
+    angle = rng.uniform(-2.5, -0.7, 4000)
+    radius = 30.0 + 10.0 + rng.uniform(-0.2, SAFETY_MARGIN_M + 1e-4, 4000)
+    points = np.c_[radius * np.cos(angle), radius * np.sin(angle), rng.uniform(4, 20, 4000)]
+    points = points[space.is_allowed(points)]
+    assert len(points) > 200
+    assert space.is_allowed(points.round(4), LEG_MARGIN_M).all()
 
 
 def test_positions_outside_the_airspace_inside_the_building_and_not_finite_are_refused():
@@ -70,8 +81,8 @@ def test_home_close_to_a_no_fly_zone_lowers_the_distance_kept_from_it_and_nothin
     assert space.is_allowed(points).tolist() == [True, False, False, True]
 
 
-def test_column_runs_from_home_to_the_airspace_floor_or_is_home_itself_when_home_is_higher():
+def test_column_runs_from_home_to_the_airspace_floor_and_at_least_two_metres_up():
     assert free_space(SCENES["office"](), 10.0).column_top_enu_m[2] == pytest.approx(3.0 + SAFETY_MARGIN_M)
     airspace = Airspace((-60.0, -70.0, 3.0), (60.0, 50.0, 75.0), ground_z_m=0.0)
     high = free_space(office_with(airspace=airspace, home_enu_m=(0.0, -45.0, 12.0)), 10.0)
-    assert high.column_top_enu_m[2] == 12.0
+    assert high.column_top_enu_m[2] == 14.0
