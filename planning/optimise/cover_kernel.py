@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from planning.jit import kernel
 
+FOREVER = 2**62
+
 
 class CoverState(NamedTuple):
     """Candidates, elements, and what is chosen so far.
@@ -145,8 +147,8 @@ def exchange_steps(
     """Swap chosen candidates against others for `n_steps` steps; returns how much f grew (never negative).
 
     Each step drops a chosen candidate (the one of least loss among a few drawn at random), adds the best other one, and
-    undoes both when that makes f smaller. Dropped candidates rest for a while (`tabu`, numbers of steps from `clock`),
-    so that steps of equal value do not go in circles.
+    undoes both when that makes f smaller. Candidates rest until step `tabu` (counted from `clock`): dropped ones for a
+    while, so that steps of equal value do not go in circles, chosen ones for ever, so that none is chosen twice.
     """
     np.random.seed(seed)  # noqa: NPY002  (Numba's own generator, per thread)
     grown = 0.0
@@ -170,5 +172,6 @@ def exchange_steps(
             best, gain = dropped, least
         add_elements(state, state.items[state.starts[best] : state.starts[best + 1]])
         chosen[worst] = best
+        tabu[best] = FOREVER
         grown += gain - least
     return grown

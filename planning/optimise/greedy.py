@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.coverage.model import CoverageModel
+from planning.coverage.model import CoverageModel, Elements
 from planning.coverage.sections import SectionGrid
 from planning.optimise import cover_kernel as kernel
 from planning.optimise.bounds import dual_bound
-from planning.optimise.candidates import N_CANDIDATES, Pool, candidate_pool
+from planning.optimise.candidates import N_CANDIDATES, Pool, candidate_pool, join_pools
 from planning.optimise.improve import Exchange, cover_state, improve_views
 from planning.optimise.problem import Goal, ViewProblem, ViewSet, take
 from planning.progress import Monitor, Stop, Trace
@@ -76,7 +76,6 @@ def greedy(
         return _fewest_views(pool, weights, goal.share * everything, seed, stop, trace, monitor, parameters)
     assert goal.n_views is not None  # Goal's own check
     chosen, value = choose_greedily(pool, weights, goal.n_views, np.inf, trace, monitor)
-    views = take(pool.views, chosen)
     bound = everything
     if value < everything - 1e-9 and len(chosen) == goal.n_views:
         if parameters.certify:
@@ -84,9 +83,25 @@ def greedy(
             bound = dual_bound(pool.elements, weights, goal.n_views, value, stop=stop)
         if parameters.improve:
             views = improve_views(problem, pool, chosen, weights, seed, stop, trace, monitor)
-    else:
-        views = take(pool.views, spend_spare_views(problem.model, pool, chosen, goal.n_views, stop, monitor))
-    return ViewSet(views, bound)
+            views = take(views, needed(problem.model.elements(views), weights))
+            n_needed = len(views.heading_rad)
+            pool = join_pools(Pool(views, problem.model.elements(views)), pool)
+            chosen = np.arange(n_needed)
+    chosen = spend_spare_views(problem.model, pool, chosen, goal.n_views, monitor)
+    return ViewSet(take(pool.views, chosen), bound)
+
+
+def needed(elements: Elements, weights: Array) -> NDArray[np.bool_]:
+    """Which views are left when those are dropped, one after the other, without which nothing is lost."""
+    state = cover_state(elements, weights)
+    kept = np.ones(len(elements.starts) - 1, np.bool_)
+    for view in range(len(kept)):
+        kernel.add_elements(state, elements.of(view))
+    for view in range(len(kept)):
+        if kernel.loss_of(state, elements.of(view)) <= 1e-9:
+            kernel.remove_elements(state, elements.of(view))
+            kept[view] = False
+    return kept
 
 
 def choose_greedily(
@@ -146,7 +161,7 @@ def element_weights(model: CoverageModel, by_solid_angle: bool) -> Array:
 
 
 def spend_spare_views(
-    model: CoverageModel, pool: Pool, chosen: NDArray[np.int64], n_views: int, stop: Stop, monitor: Monitor
+    model: CoverageModel, pool: Pool, chosen: NDArray[np.int64], n_views: int, monitor: Monitor
 ) -> NDArray[np.int64]:
     """Numbers of the chosen candidates and of further ones, until there are `n_views` or nothing is left to gain.
 
@@ -154,7 +169,7 @@ def spend_spare_views(
     """
     for division, depth in SPARE_STAGES:
         n_spare = n_views - len(chosen)
-        if n_spare <= 0 or stop():
+        if n_spare <= 0:
             break
         monitor.report("spending spare views", len(chosen), n_views)
         finer = replace(model, grid=SectionGrid(model.grid.step_deg / division))

@@ -58,6 +58,7 @@ class Exchange:
         for candidate in self.chosen:
             kernel.add_elements(self.state, elements.of(candidate))
         self._rests_until = np.zeros(len(self.state.gains), np.int64)
+        self._rests_until[self.chosen] = kernel.FOREVER
         self._clock = 0
 
     def value(self) -> float:
@@ -73,6 +74,7 @@ class Exchange:
         losses = [kernel.loss_of(self.state, self.elements.of(candidate)) for candidate in self.chosen]
         place = int(np.argmin(losses))
         kernel.remove_elements(self.state, self.elements.of(self.chosen[place]))
+        self._rests_until[self.chosen[place]] = 0
         self.chosen = np.delete(self.chosen, place)
 
     def run(self, stop: Stop, enough: float = np.inf, patience: int = IDLE_SLICES) -> None:

@@ -34,7 +34,7 @@ LARGEST_TOTAL = 1e12
 1e5, in int64."""
 
 PATIENCE = 150_000
-"""Iterations without a better solution before a search ends by itself; PyVRP starts anew from its best after as many."""
+"""Iterations without a better solution before a search ends by itself; PyVRP restarts from its best after as many."""
 
 
 def solve_tour(

@@ -124,7 +124,7 @@ def test_form_gives_back_the_request_it_was_given(application):
 
 
 def test_qt_calls_leave_reference_counts_alone(application):
-    """PySide6 6.12.0 takes one reference of None with every call on Python 3.11, which ends in an abort after minutes."""
+    """PySide6 6.12.0 takes one reference of None with every call on Python 3.11, and aborts after minutes."""
     import sys
 
     from PySide6.QtWidgets import QLabel

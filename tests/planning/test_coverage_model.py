@@ -62,9 +62,7 @@ def test_float32_kernel_differs_only_within_a_thousandth_of_a_degree_of_a_border
     expected = sections_of(views.positions_enu_m, frames, single.grid)
     differs = got != expected
     assert differs.mean() < 1e-4
-    on_panel_plane = np.abs(
-        ((views.positions_enu_m[:, None] - frames.centroids) * frames.normals).sum(2)
-    ) < 1e-3
+    on_panel_plane = np.abs(((views.positions_enu_m[:, None] - frames.centroids) * frames.normals).sum(2)) < 1e-3
     assert (degrees_from_border(views, frames, step)[differs & ~on_panel_plane] < 1e-3).all()
 
 

@@ -49,7 +49,9 @@ def sections_hit(model, space, n_seeds=6, n=3000):
     return hit
 
 
-@pytest.mark.parametrize(("scene", "occlusion"), [("office", False), ("library", False), ("court", True), ("roof", False)])
+@pytest.mark.parametrize(
+    ("scene", "occlusion"), [("office", False), ("library", False), ("court", True), ("roof", False)]
+)
 def test_nothing_proven_unreachable_is_ever_seen_from_an_allowed_place(scene, occlusion):
     model, space = prepare(SCENES[scene](), occlusion)
     found = find_reachable(model, space)
@@ -159,9 +161,7 @@ def test_empty_airspace_gives_a_bound_of_zero():
     assert 0 < found.upper_bound < 0.5 * model.n_elements
 
 
-@given(
-    low=st.floats(-90.0, 40.0), span=st.floats(0.0, 60.0), half_w=st.floats(0.1, 1.5), half_h=st.floats(0.1, 1.5)
-)
+@given(low=st.floats(-90.0, 40.0), span=st.floats(0.0, 60.0), half_w=st.floats(0.1, 1.5), half_h=st.floats(0.1, 1.5))
 @settings(max_examples=60)
 def test_elevation_range_bounds_every_direction_in_the_picture(low, span, half_w, half_h):
     camera = Camera("c", 2 * half_w, 2 * half_h, 1.0, 100, 100, (low, min(low + span, 90.0)))

@@ -20,7 +20,7 @@ def test_nothing_to_run_gives_nothing():
 
 
 def test_errors_of_a_run_reach_the_caller():
-    with pytest.raises(ValueError, match="domain|nonnegative"):
+    with pytest.raises(ValueError, match=r"domain|nonnegative"):
         sweep(math.sqrt, [(1.0,), (-1.0,)], n_processes=2)
 
 
@@ -45,5 +45,5 @@ def test_cluster_gives_the_same_results():
 @pytest.mark.slow
 def test_address_where_no_scheduler_answers_is_a_clear_error():
     pytest.importorskip("distributed")
-    with pytest.raises(InputError, match="no Dask scheduler answers at tcp://127.0.0.1:1"):
+    with pytest.raises(InputError, match="no Dask scheduler answers"):
         sweep(math.sqrt, ARGUMENTS, address="tcp://127.0.0.1:1")
