@@ -58,10 +58,17 @@ class Decision:
 class Effect(Protocol[Scene_contra]):
     """Something a simulation may take into account or leave out."""
 
-    name: str
-    unit: str
-    tolerance: float
-    """Changes of the result up to this size are not worth their cost; in `unit`."""
+    @property
+    def name(self) -> str:
+        """What the user knows it by."""
+
+    @property
+    def unit(self) -> str:
+        """Of size and tolerance."""
+
+    @property
+    def tolerance(self) -> float:
+        """Changes of the result up to this size are not worth their cost."""
 
     def assess(self, scene: Scene_contra) -> Assessment:
         """Size, reason and cost of the effect in this scene."""

@@ -70,6 +70,8 @@ class Aircraft:
     endurance_s: float
     max_speed_m_s: float
     max_acceleration_m_s2: float = 2.5
+    max_jerk_m_s3: float | None = None
+    """How fast acceleration may change; None where the maker says nothing. Decides the time of legs of a few metres."""
     max_ascent_m_s: float = 4.0
     max_descent_m_s: float = 3.0
     max_yaw_rate_deg_s: float = 60.0
@@ -81,7 +83,9 @@ class Aircraft:
     def __post_init__(self) -> None:
         for field in self.__slots__:
             value = getattr(self, field)
-            if field != "name" and not (math.isfinite(value) and value > 0):
+            if field == "name" or (field == "max_jerk_m_s3" and value is None):
+                continue
+            if not (math.isfinite(value) and value > 0):
                 raise ValueError(f"{field}: expected a positive number, got {value}")
 
 

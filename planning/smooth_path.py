@@ -3,11 +3,13 @@
 The path is described by its length s and the squared speed b = (ds/dt)^2 (D. Verscheure et al., 2009, "Time-optimal
 path tracking for robots: a convex optimization approach", section III): the tangential acceleration is b'/2 and the
 centripetal one kappa b, so that all limits are convex in b. With b linear between the nodes of a grid they hold
-everywhere when they hold at both ends of every interval, and the time over an interval is exact.
+everywhere when they hold at both ends of every interval, and the time over an interval is exact. A limit of jerk is
+left out: it is not convex in b.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -15,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.jit import inline, kernel
-from planning.timing import FlightPath, MotionLimits, slowed_by_turns_m_s, speed_limits_m_s
+from planning.timing import FlightPath, MotionLimits, speed_limits_m_s
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -100,19 +102,22 @@ class _Corner:
     speed_m_s: float
 
 
-def _rounded(before: Floats, behind: Floats, limits: MotionLimits, deviation_m: float) -> _Corner | None:
-    """Arc for the corner between two leg vectors; None where the aircraft has to stop.
+_STOP = _Corner(0.0, 0.0, 0.0, 0.0)
+
+
+def _rounded(before: Floats, behind: Floats, limits: MotionLimits, deviation_m: float) -> _Corner:
+    """Arc for the corner between two leg vectors, or a stop where it needs one.
 
     With phi the angle between the legs, an arc of radius r leaves the corner by r (1 / cos(phi / 2) - 1) and touches
     the legs r tan(phi / 2) away from it.
     """
     length_in, length_out = float(np.linalg.norm(before)), float(np.linalg.norm(behind))
     if min(length_in, length_out) <= NO_LENGTH_M:
-        return None
+        return _STOP
     u, v = before / length_in, behind / length_out
     angle = 2.0 * math.atan2(float(np.linalg.norm(u - v)), float(np.linalg.norm(u + v)))
     if angle > SHARPEST_TURN_RAD:
-        return None
+        return _STOP
     if angle < STRAIGHT_RAD:
         return _Corner(0.0, 0.0, 0.0, math.inf)
     half = angle / 2.0
@@ -125,9 +130,6 @@ def _rounded(before: Floats, behind: Floats, limits: MotionLimits, deviation_m: 
     return _Corner(cut, radius * angle, 1.0 / radius, min(speed, math.sqrt(limits.acceleration_m_s2 * radius)))
 
 
-_STOP = _Corner(0.0, 0.0, 0.0, 0.0)
-
-
 def _pieces(path: FlightPath, limits: MotionLimits, deviation_m: float) -> PathGrid:
     """Grid with one interval for each straight part, and those between `ARC_NODES` for each arc.
 
@@ -136,17 +138,44 @@ def _pieces(path: FlightPath, limits: MotionLimits, deviation_m: float) -> PathG
     deltas = path.deltas_enu_m
     length = np.linalg.norm(deltas, axis=1)
     k = len(path.vertices_enu_m)
-    found = [None if stops else _rounded(deltas[i], deltas[i + 1], limits, deviation_m)
-             for i, stops in enumerate(path.is_stop[1:-1])]
-    corners = [_STOP, *(corner or _STOP for corner in found), _STOP]
-    cut, arc = np.array([[corner.cut_m, corner.arc_m] for corner in corners]).T
-    straight = length - cut[:-1] - cut[1:]
-    flown = straight + (arc[:-1] + arc[1:]) / 2.0
+    corners = [_STOP if path.is_stop[i] else _rounded(deltas[i - 1], deltas[i], limits, deviation_m) for i in range(k)]
+    cuts = np.array([corner.cut_m for corner in corners])
+    arcs = np.array([corner.arc_m for corner in corners])
+    straight = length - cuts[:-1] - cuts[1:]
+    flown = straight + (arcs[:-1] + arcs[1:]) / 2.0
     speed = speed_limits_m_s(deltas, limits)
     is_slowed = path.turn_s * speed > flown
-    turning = np.where(path.turn_s > 0.0, flown / np.where(path.turn_s > 0.0, path.turn_s, 1.0), np.inf)
-    steps: list[float] = []
-    ...
+    speed = np.where(is_slowed, flown / np.where(is_slowed, path.turn_s, 1.0), speed)
+    pieces: list[tuple[float, float, float]] = []
+    stops = []
+    vertex_node = np.zeros(k, np.int64)
+    for i, corner in enumerate(corners):
+        if i > 0 and straight[i - 1] > max(NO_LENGTH_M, SHORTEST * length[i - 1]):
+            pieces.append((straight[i - 1], 0.0, speed[i - 1]))
+        vertex_node[i] = len(pieces)
+        if corner is _STOP:
+            stops.append(len(pieces))
+        elif corner.arc_m > 0.0:
+            vertex_node[i] += ARC_NODES.index(0.5)
+            for first, last in itertools.pairwise(ARC_NODES):
+                leg = i - 1 if last <= 0.5 else i
+                step = corner.arc_m * (last - first)
+                pieces.append((step, corner.curvature_per_m, min(corner.speed_m_s, speed[leg])))
+    steps, curvatures, speeds = np.array(pieces, float).reshape(-1, 3).T
+    is_stop = np.zeros(len(steps) + 1, np.bool_)
+    is_stop[stops] = True
+    turns_at_rest_s = np.append(np.where(length > NO_LENGTH_M, 0.0, path.turn_s), 0.0)
+    return PathGrid(
+        step_m=steps,
+        curvature_per_m=curvatures,
+        cap=speeds**2,
+        is_stop=is_stop,
+        vertex_node=vertex_node,
+        rest_s=path.hover_s + turns_at_rest_s,
+        acceleration_m_s2=limits.acceleration_m_s2,
+    )
+
+
 @kernel
 def _sweep(step: Floats, curvature: Floats, ceiling: Floats, acceleration: float) -> Floats:
     speed_2 = ceiling.copy()
@@ -175,23 +204,25 @@ def fastest_sweep(grid: PathGrid) -> Floats:
 
 
 def _with_switches(grid: PathGrid, speed_2: Floats) -> PathGrid:
-    """Add the nodes where acceleration ends and braking begins.
+    """Add the nodes where acceleration ends and braking begins on straight intervals, so that b is linear between.
 
-    On straight intervals b is then linear between nodes; on arcs, where the acceleration left over for speeding up
-    depends on b, the nodes are where it would end if b were at its cap. None is put so near to an end that b could
-    change by less than `LEAST_CHANGE` on the way: the program of `planning.speed_profile` would be badly scaled.
+    None is put so near to an end that b could change by less than `LEAST_CHANGE` on the way: the program of
+    `planning.speed_profile` would be badly scaled.
     """
-    room = np.maximum(0.0, grid.acceleration_m_s2**2 - (grid.curvature_per_m * grid.cap) ** 2)
+    gain = 2.0 * grid.acceleration_m_s2
     parts: list[Floats] = []
     for i, step in enumerate(grid.step_m):
-        gain, cap, b0, b1 = 2.0 * math.sqrt(room[i]), grid.cap[i], speed_2[i], speed_2[i + 1]
-        first, last = max(cap - b0, LEAST_CHANGE * cap), gain * step - max(cap - b1, LEAST_CHANGE * cap)
-        is_arc = grid.curvature_per_m[i] > 0.0
-        if first > last and not is_arc:
-            first = last = gain * step / 2.0 + (b1 - b0) / 2.0
-        inner = np.unique([first, last]) / gain if not is_arc else np.zeros(0)
-        inner = inner[(inner > SHORTEST * step) & (inner < (1.0 - SHORTEST) * step)]
-        parts.append(np.diff(inner, prepend=0.0, append=step))
+        part = np.array([step])
+        if grid.curvature_per_m[i] == 0.0:
+            cap, b0, b1 = grid.cap[i], speed_2[i], speed_2[i + 1]
+            first = max(cap - b0, LEAST_CHANGE * cap) / gain
+            last = step - max(cap - b1, LEAST_CHANGE * cap) / gain
+            if first > last:
+                first = last = step / 2.0 + (b1 - b0) / (2.0 * gain)
+            inner = np.unique([first, last])
+            inner = inner[(inner > SHORTEST * step) & (inner < (1.0 - SHORTEST) * step)]
+            part = np.diff(inner, prepend=0.0, append=step)
+        parts.append(part)
     repeats = np.array([len(part) for part in parts], np.int64)
     moved = np.concatenate([[0], np.cumsum(repeats)])
     is_stop = np.zeros(moved[-1] + 1, np.bool_)

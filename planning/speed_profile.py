@@ -1,5 +1,9 @@
 """Fastest speed profile of a whole sortie as one nonlinear program, and the effect that says when it is worth having.
 
+It answers by how much a flight that does not stop at every corner can be faster than one that does. The missions that
+are written stop at every waypoint, where the closed form of `planning.timing` is exact; missions of other programs and
+pilots need not, so a check of durations asks here first.
+
 The program is that of `planning.smooth_path`: squared speeds b at the nodes of a grid; least time, the sum of
 2 ds / (sqrt(b0) + sqrt(b1)); b under its ceilings (speed by direction, heading and gimbal rate); tangential and
 centripetal acceleration together within one circle. It is convex and sparse; Ipopt solves it from the profile of
@@ -11,13 +15,14 @@ As long as every limit couples two neighbouring nodes, the sweep alone finds the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.effects import Assessment
+from planning.effects import Assessment, Decision, Wish, decide
 from planning.progress import QUIET, Monitor, Stop, never
 from planning.smooth_path import PathGrid, arrivals_s, fastest_sweep, interval_times_s, path_grid
 from planning.timing import FlightPath, MotionLimits, stopping_times_s
@@ -144,16 +149,20 @@ def _solve(grid: PathGrid, start: Floats, stop: Stop, monitor: Monitor) -> tuple
     both = np.flatnonzero((left >= 0) & (right >= 0))
     one = np.flatnonzero((left < 0) != (right < 0))
     b0, b1, lone = pick(squared, left[both]), pick(squared, right[both]), pick(squared, np.maximum(left, right)[one])
-    step = casadi.DM(grid.step_m[both])
-    time_s = casadi.sum1(2.0 * step / (casadi.sqrt(b0) + casadi.sqrt(b1)))
+    time_s = casadi.sum1(2.0 * casadi.DM(grid.step_m[both]) / (casadi.sqrt(b0) + casadi.sqrt(b1)))
     time_s += casadi.sum1(2.0 * casadi.DM(grid.step_m[one]) / casadi.sqrt(lone))
-    tangential = (b1 - b0) / (2.0 * step * grid.acceleration_m_s2)
+    gain = 2.0 * grid.step_m[both] * grid.acceleration_m_s2
+    # Rows are scaled by what their interval can change of its variables: unscaled, those of short intervals have
+    # gradients of thousands, and Ipopt loses its way on sorties of hundreds of legs.
+    row = np.minimum(1.0, gain / np.maximum(highest[:-1], highest[1:])[both])
+    tangential = (b1 - b0) / casadi.DM(gain)
     bend = casadi.DM(grid.curvature_per_m[both] / grid.acceleration_m_s2)
     is_arc = grid.curvature_per_m[both] > 0.0
     lines, arcs = np.flatnonzero(~is_arc), np.flatnonzero(is_arc)
-    circles = [pick(tangential**2 + (bend * b) ** 2, arcs) for b in (b0, b1)]
-    constraints = casadi.vertcat(pick(tangential, lines), *circles)
-    lower = np.concatenate([np.full(len(lines), -1.0), np.full(2 * len(arcs), -np.inf)])
+    circles = [pick((tangential**2 + (bend * b) ** 2) * casadi.DM(row), arcs) for b in (b0, b1)]
+    constraints = casadi.vertcat(pick(tangential * casadi.DM(row), lines), *circles)
+    upper = np.concatenate([row[lines], row[arcs], row[arcs]])
+    lower = np.concatenate([-row[lines], np.full(2 * len(arcs), -np.inf)])
     sweep_s = float(interval_times_s(grid, start).sum())
 
     progress = _progress(len(free), constraints.shape[0], stop, monitor)
@@ -170,11 +179,12 @@ def _solve(grid: PathGrid, start: Floats, stop: Stop, monitor: Monitor) -> tuple
     program = {"x": x, "f": time_s / sweep_s, "g": constraints}
     ipopt = casadi.nlpsol("profile", "ipopt", program, options)
     solution = ipopt(
-        x0=np.clip(start[free] / highest[free], SMALLEST, 1.0),
+        # The sweep's profile lies on the limits; an interior-point method wants to begin inside them.
+        x0=np.maximum(0.5 * start[free] / highest[free], SMALLEST),
         lbx=SMALLEST,
         ubx=1.0,
         lbg=lower,
-        ubg=1.0,
+        ubg=upper,
     )
     progress.raise_cancelled()
     statistics = ipopt.stats()
@@ -243,6 +253,21 @@ class CornerSpeed:
             return Assessment(0.0, "the aircraft stops at every vertex, where the closed form is exact", 0.0)
         grid = path_grid(path, limits, CORNER_DEVIATION_M)
         rounded_s = float(arrivals_s(grid, fastest_sweep(grid))[-1])
-        saved_s = float(stopping_times_s(path, limits)[-1]) - rounded_s
+        saved_s = float(stopping_times_s(path, replace(limits, jerk_m_s3=math.inf))[-1]) - rounded_s
         reason = f"{n_flown_through} of {len(path.is_stop)} vertices are flown through without a stop"
         return Assessment(max(0.0, saved_s), reason, COST_S + COST_PER_NODE_S * len(grid.is_stop))
+
+
+def corner_saving_s(path: FlightPath, limits: MotionLimits, wish: Wish = "auto") -> tuple[float, Decision]:
+    """What flying through the corners of a path saves against stopping at each, and the effect's decision.
+
+    Returns
+    -------
+    saving_s
+        By the program where the effect is on, 0 where it is off. Jerk is left out on both sides.
+    """
+    decision = decide(CornerSpeed(), (path, limits), wish)
+    if not decision.on:
+        return 0.0, decision
+    stopping_s = float(stopping_times_s(path, replace(limits, jerk_m_s3=math.inf))[-1]) + float(path.hover_s[-1])
+    return max(0.0, stopping_s - fastest_profile(path, limits).duration_s), decision

@@ -1,8 +1,9 @@
 """How long flying takes: legs from rest to rest, turns, photos, and what a battery allows. All in closed form.
 
-The aircraft accelerates at one rate up to the highest speed that the leg's direction allows, holds it, and brakes at
-the same rate. Horizontal and vertical speed have limits of their own, as autopilots have them. Wind is taken from the
-worst direction on every leg: it is subtracted from the horizontal airspeed, never added.
+The aircraft accelerates up to the highest speed that the leg's direction allows, holds it, and brakes, within limits of
+acceleration and, where the aircraft has one, of jerk. Horizontal and vertical speed have limits of their own, as
+autopilots have them. Wind is taken from the worst direction on every leg: it is subtracted from the horizontal
+airspeed, never added.
 """
 
 from __future__ import annotations
@@ -27,7 +28,10 @@ UNKNOWN_TURN_RAD = math.pi
 
 @dataclass(frozen=True, slots=True)
 class MotionLimits:
-    """How fast an aircraft moves over the ground and turns, under given rules and wind; all positive."""
+    """How fast an aircraft moves over the ground and turns, under given rules and wind; all positive.
+
+    Only the jerk may be infinite: acceleration then changes at once.
+    """
 
     horizontal_m_s: float
     ascent_m_s: float
@@ -35,11 +39,12 @@ class MotionLimits:
     acceleration_m_s2: float
     yaw_rate_rad_s: float
     gimbal_rate_rad_s: float
+    jerk_m_s3: float = math.inf
 
     def __post_init__(self) -> None:
         for field in self.__slots__:
             value = getattr(self, field)
-            if not (math.isfinite(value) and value > 0.0):
+            if not (value > 0.0 and (math.isfinite(value) or field == "jerk_m_s3")):
                 raise ValueError(f"{field}: expected a positive number, got {value}")
 
 
@@ -69,6 +74,7 @@ def motion_limits(aircraft: Aircraft, rules: FlightRules) -> MotionLimits:
         acceleration_m_s2=aircraft.max_acceleration_m_s2,
         yaw_rate_rad_s=math.radians(aircraft.max_yaw_rate_deg_s),
         gimbal_rate_rad_s=math.radians(aircraft.max_gimbal_rate_deg_s),
+        jerk_m_s3=math.inf if aircraft.max_jerk_m_s3 is None else aircraft.max_jerk_m_s3,
     )
 
 
@@ -120,22 +126,31 @@ def speed_limits_m_s(delta_enu_m: Floats, limits: MotionLimits) -> Floats:
     return np.where(is_leg, length / np.where(is_leg, slowness, 1.0), limits.horizontal_m_s)
 
 
-def rest_to_rest_s(length_m: ArrayLike, speed_m_s: ArrayLike, acceleration_m_s2: float) -> Floats:
+def rest_to_rest_s(
+    length_m: ArrayLike, speed_m_s: ArrayLike, acceleration_m_s2: float, jerk_m_s3: float = math.inf
+) -> Floats:
     """Shortest time over a straight leg from rest to rest, broadcast shape.
 
-    With d the length, v the highest speed and a the acceleration: 2 sqrt(d / a) where v is not reached (d < v^2 / a),
-    otherwise d / v + v / a.
+    With L the length and v, a, j the limits, r(v) is the time to reach v from rest: v / a + a / j where v reaches a,
+    2 sqrt(v / j) where it does not (v < a^2 / j). The leg takes L / v + r(v) where it is long enough to reach v
+    (L >= v r(v)); otherwise 2 r of the highest speed that it does reach. Without a limit of jerk: 2 sqrt(L / a), and
+    L / v + v / a where v is reached.
     """
     length, speed = np.asarray(length_m, float), np.asarray(speed_m_s, float)
-    triangle_s = 2.0 * np.sqrt(length / acceleration_m_s2)
-    trapezoid_s = length / speed + speed / acceleration_m_s2
-    return np.where(length * acceleration_m_s2 < speed**2, triangle_s, trapezoid_s)
+    a, j = acceleration_m_s2, jerk_m_s3
+    ramp_s = np.where(speed * j >= a**2, speed / a + a / j, 2.0 * np.sqrt(speed / j))
+    cruising_s = length / speed + ramp_s
+    # The highest speed u of a shorter leg: u r(u) = L.
+    least = a**2 / j
+    highest = (np.sqrt(least**2 + 4.0 * a * length) - least) / 2.0
+    peaked_s = np.where(length >= 2.0 * a * least / j, 2.0 * (highest / a + a / j), 4.0 * np.cbrt(length / (2.0 * j)))
+    return np.where(length < speed * ramp_s, peaked_s, cruising_s)
 
 
 def leg_times_s(delta_enu_m: Floats, limits: MotionLimits) -> Floats:
     """Times of straight legs from rest to rest, shape (n,), from their vectors, shape (n, 3)."""
     length = np.linalg.norm(np.asarray(delta_enu_m, float), axis=-1)
-    return rest_to_rest_s(length, speed_limits_m_s(delta_enu_m, limits), limits.acceleration_m_s2)
+    return rest_to_rest_s(length, speed_limits_m_s(delta_enu_m, limits), limits.acceleration_m_s2, limits.jerk_m_s3)
 
 
 def round_trip_metric(limits: MotionLimits) -> Callable[[Floats], Floats]:
@@ -180,7 +195,8 @@ def with_turns_s(
     travel_s
         Shape (n + 1, n + 1). From home `UNKNOWN_TURN_RAD` is turned, towards home nothing. In flight a leg is slowed
         down until the turn keeps pace, L / v <= turn: t + leg^2 / (4 t) for a turn of t > leg / 2. That is exact for a
-        leg that does not reach its highest speed, and a little long (never short) for one that does; for legs around
+        leg that does not reach its highest speed, and a little long (never short) for one that does. With a limit of
+        jerk, r(v) grows no slower than sqrt(v) and t + (leg / 2) sqrt(leg / (2 t)) is never short. For legs around
         obstacles see `flight_path`.
     """
     n = len(heading_rad)
@@ -192,8 +208,12 @@ def with_turns_s(
     turn_s[0, 1:] = turn_times_s(UNKNOWN_TURN_RAD, pitch_rad, limits)
     if not turn_in_flight:
         return leg_s + turn_s
-    is_slowed = turn_s > leg_s / 2.0
-    return np.where(is_slowed, turn_s + leg_s**2 / (4.0 * np.where(is_slowed, turn_s, 1.0)), leg_s)
+    half_s = leg_s / 2.0
+    is_slowed = turn_s > half_s
+    slower = half_s / np.where(is_slowed, turn_s, 1.0)
+    if math.isfinite(limits.jerk_m_s3):
+        slower = np.sqrt(slower)
+    return np.where(is_slowed, turn_s + half_s * slower, leg_s)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -302,6 +322,6 @@ def stopping_times_s(path: FlightPath, limits: MotionLimits) -> Floats:
     length = np.linalg.norm(path.deltas_enu_m, axis=1)
     speed = slowed_by_turns_m_s(path, limits)
     moves = (length > 0.0) & (speed > 0.0)
-    flying_s = rest_to_rest_s(length, np.where(moves, speed, 1.0), limits.acceleration_m_s2)
+    flying_s = rest_to_rest_s(length, np.where(moves, speed, 1.0), limits.acceleration_m_s2, limits.jerk_m_s3)
     leg_s = np.where(moves, flying_s, path.turn_s)
     return np.concatenate([[0.0], np.cumsum(path.hover_s[:-1] + leg_s)])

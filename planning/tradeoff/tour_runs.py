@@ -1,0 +1,144 @@
+"""Runs of the routing methods on the same tour: length against time, with a proven bound and, where known, the optimum.
+
+A tour is one of a TSPLIB file, or the closed tour through home and all viewpoints of a plan, as if one battery were
+enough: its legs lead around the building, and their lengths are the seconds that flying and turning takes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from planning.plan import Plan, viewpoint_arrays
+from planning.progress import QUIET, Monitor, QualityPoint, TimeLimit
+from planning.routing.flights import flight_times
+from planning.routing.methods import TourMethod, solve_tour, tour_curves
+from planning.routing.roadmap import build_roadmap
+from planning.routing.tour import tour_length
+from planning.routing.tsplib import read_instance, read_tour, tour_order
+from planning.site import SiteModel
+from planning.space import free_space
+from planning.tradeoff.curves import Curve, falling
+
+TOUR_METHODS: tuple[TourMethod, ...] = get_args(TourMethod)
+
+TOUR_GAPS = (0.1, 0.05, 0.03, 0.01)
+"""Lengths of 10, 5, 3 and 1 % above the reference: when were they reached?"""
+
+TOUR_NOISE = 1e-4
+"""Tours whose lengths differ by less than this part count as equally short."""
+
+BOUND_LIMIT_S = 25.0
+"""Of this, `solve_tour` gives a fifth to the lower bound; 724 points need 0.3 s."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TourCase:
+    """One tour to be found.
+
+    Parameters
+    ----------
+    cost
+        Shape (n, n).
+    unit
+        Of the costs: `s` for plans, nothing for TSPLIB files.
+    lower_bound
+        No tour is shorter.
+    optimum
+        Length of the shortest tour, where it is known.
+    """
+
+    name: str
+    cost: NDArray[np.float64]
+    unit: str
+    lower_bound: float
+    optimum: float | None = None
+
+    @property
+    def reference(self) -> float:
+        """What lengths are compared with: the optimum where it is known, else the lower bound."""
+        return self.lower_bound if self.optimum is None else self.optimum
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether both directions of every leg cost the same."""
+        return bool(np.array_equal(self.cost, self.cost.T))
+
+
+@dataclass(frozen=True, slots=True)
+class TourRun:
+    """Length of the best tour so far against time; the last point is where the run ended."""
+
+    case: str
+    method: TourMethod
+    seed: int
+    points: tuple[QualityPoint, ...]
+
+
+def tsplib_case(path: Path, monitor: Monitor = QUIET) -> TourCase:
+    """Case of a TSPLIB file; an optimal tour beside it (`NAME.opt.tour`) gives the known optimum.
+
+    Raises
+    ------
+    InputError
+        The file is missing or wrong, or a CVRP.
+    """
+    instance = read_instance(path)
+    if instance.kind == "CVRP":
+        raise InputError(f"{path}: a CVRP needs several routes; expected a TSP or ATSP")
+    tour_path = path.with_suffix(".opt.tour")
+    optimum = None
+    if tour_path.is_file():
+        optimum = tour_length(instance.cost, tour_order(instance, read_tour(tour_path)))
+    return TourCase(instance.name, instance.cost, "", _lower_bound(instance.cost, monitor), optimum)
+
+
+def plan_case(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> TourCase:
+    """Case of a plan's viewpoints, home first.
+
+    Raises
+    ------
+    InputError
+        The plan has fewer than two viewpoints.
+    InfeasibleError
+        Home cannot be used, or a viewpoint cannot be reached from it.
+    """
+    if len(plan.viewpoints) < 2:
+        raise InputError(f"plan of '{plan.site}': expected two viewpoints or more, got {len(plan.viewpoints)}")
+    roadmap = build_roadmap(free_space(site_model, plan.constraints.min_distance_m), plan.seed)
+    times = flight_times(roadmap, viewpoint_arrays(plan.viewpoints), plan.aircraft, plan.rules, monitor)
+    # Only legs from and to home differ by direction, and both directions around a tour together use each once.
+    cost = (times.travel_s + times.travel_s.T) / 2.0
+    np.fill_diagonal(cost, 0.0)
+    return TourCase(plan.site, cost, "s", _lower_bound(cost, monitor))
+
+
+def _lower_bound(cost: NDArray[np.float64], monitor: Monitor) -> float:
+    return solve_tour(cost, "nearest-neighbour", TimeLimit(BOUND_LIMIT_S), monitor=monitor).lower_bound
+
+
+def run_tours(
+    case: TourCase,
+    seconds: float,
+    methods: Sequence[TourMethod] = TOUR_METHODS,
+    seed: int = 0,
+    monitor: Monitor = QUIET,
+) -> tuple[TourRun, ...]:
+    """Each method for so many seconds, one after the other; local search is left out where costs are asymmetric."""
+    possible = [method for method in methods if method != "local-search" or case.is_symmetric]
+    curves = tour_curves(case.cost, seconds, methods=possible, seed=seed, monitor=monitor)
+    return tuple(TourRun(case.name, method, seed, tuple(trace.points)) for method, trace in curves.items())
+
+
+def tour_curve(run: TourRun, reference: float) -> Curve:
+    """Gap of a run above the reference length."""
+    scale = reference if reference > 0.0 else 1.0
+    points = (QualityPoint(p.t_s, p.value / scale - 1.0) for p in run.points if math.isfinite(p.value))
+    return falling(points, run.points[-1].t_s)
