@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.coverage.model import Elements
 from planning.errors import InfeasibleError
 from planning.optimise import cover_kernel as kernel
 from planning.optimise.candidates import Pool, candidate_pool, keep
@@ -30,12 +31,17 @@ CHOICE_DEPTHS = (1, 2, 3)
 """Candidates are the greedy choices for covering each section once, then twice and so on: variety to route by."""
 
 
+REFRESH = 1000
+"""Changes after which the marginal gains are summed up anew, so that rounding cannot build up."""
+
+
 class CoverGain:
     """Worth of a set of candidates: the weight of the elements they cover (`CoverageGain` of the routing)."""
 
-    def __init__(self, pool: Pool, weights: Array) -> None:
-        self._elements = pool.elements
-        self._state = cover_state(pool.elements, weights)
+    def __init__(self, elements: Elements, weights: Array) -> None:
+        self._elements = elements
+        self._state = cover_state(elements, weights)
+        self._n_changes = 0
 
     @property
     def value(self) -> float:
@@ -49,10 +55,17 @@ class CoverGain:
     def add(self, candidate: int) -> None:
         """Put a candidate into the set."""
         kernel.add_elements(self._state, self._elements.of(candidate))
+        self._count_change()
 
     def remove(self, candidate: int) -> None:
         """Take a candidate out of the set."""
         kernel.remove_elements(self._state, self._elements.of(candidate))
+        self._count_change()
+
+    def _count_change(self) -> None:
+        self._n_changes += 1
+        if self._n_changes % REFRESH == 0:
+            kernel.refresh_gains(self._state)
 
 
 def views_within_budget(
@@ -80,7 +93,7 @@ def views_within_budget(
     weights = element_weights(problem.model, parameters.solid_angle_weights)
     pool = _shortlist(candidate_pool(problem, seed, parameters.n_candidates), weights)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
-    gain = CoverGain(pool, weights)
+    gain = CoverGain(pool.elements, weights)
     selection = solve_orienteering(
         times.travel_s,
         times.service_s,

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.progress import QUIET, Monitor, Stop, Trace, never
-from planning.routing import gains, insertion, tour
+from planning.routing import insertion, tour
 from planning.routing.gains import CoverageGain
 from planning.routing.sorties import FIT, Sorties
 from planning.routing.tour import check_costs, improve_tour
@@ -355,5 +355,4 @@ class _Search:
 def compile_kernels() -> None:
     """Compile what this module runs."""
     tour.compile_kernels()
-    gains.compile_kernels()
     insertion.compile_kernels()

@@ -10,6 +10,9 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from planning.coverage.model import Elements
+from planning.optimise.budget import CoverGain
+
 Floats = NDArray[np.float64]
 
 
@@ -87,3 +90,10 @@ class Cancelling:
         self.left -= 1
         if self.left < 0:
             raise self.error()
+
+
+def cover_gain(sees: np.ndarray, weights: np.ndarray | None = None) -> CoverGain:
+    """Worth of candidates by the elements they see: `sees` of shape (n, m)."""
+    starts = np.concatenate([[0], np.cumsum(sees.sum(axis=1))]).astype(np.int64)
+    elements = Elements(starts, np.nonzero(sees)[1].astype(np.int32))
+    return CoverGain(elements, np.ones(sees.shape[1]) if weights is None else weights)

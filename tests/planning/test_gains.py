@@ -7,28 +7,25 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.routing.gains import CoverageGain, Prizes, SectionCoverage
+from planning.routing.gains import CoverageGain, Prizes
+from tests.planning.routing_cases import cover_gain
 
 
-def counted(sees: np.ndarray, weights: np.ndarray, depth: int, chosen: set[int]) -> float:
+def counted(sees: np.ndarray, weights: np.ndarray, chosen: set[int]) -> float:
     """Worth of a set by its definition."""
-    seen = sees[sorted(chosen)].sum(axis=0)
-    return float(weights @ np.minimum(seen, depth))
+    return float(weights @ sees[sorted(chosen)].any(axis=0))
 
 
 @given(
     n=st.integers(1, 8),
     m=st.integers(0, 12),
-    depth=st.integers(1, 3),
     seed=st.integers(0, 1000),
     steps=st.lists(st.integers(0, 7), max_size=20),
 )
-def test_coverage_agrees_with_counting_after_every_change(
-    n: int, m: int, depth: int, seed: int, steps: list[int]
-) -> None:
+def test_coverage_agrees_with_counting_after_every_change(n: int, m: int, seed: int, steps: list[int]) -> None:
     rng = np.random.default_rng(seed)
     sees, weights = rng.random((n, m)) < 0.4, rng.random(m)
-    gain = SectionCoverage(sees, weights, depth)
+    gain = cover_gain(sees, weights)
     chosen: set[int] = set()
     for step in steps:
         candidate = step % n
@@ -38,10 +35,10 @@ def test_coverage_agrees_with_counting_after_every_change(
         else:
             chosen.add(candidate)
             gain.add(candidate)
-        value = counted(sees, weights, depth, chosen)
+        value = counted(sees, weights, chosen)
         assert gain.value == pytest.approx(value, abs=1e-12)
         for other in set(range(n)) - chosen:
-            added = counted(sees, weights, depth, chosen | {other}) - value
+            added = counted(sees, weights, chosen | {other}) - value
             assert gain.marginals()[other] == pytest.approx(added, abs=1e-12)
 
 
@@ -49,7 +46,7 @@ def test_coverage_agrees_with_counting_after_every_change(
 @settings(max_examples=20)
 def test_what_a_candidate_adds_never_grows_with_the_set(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    gain = SectionCoverage(rng.random((12, 30)) < 0.3, rng.random(30), 2)
+    gain = cover_gain(rng.random((12, 30)) < 0.3, rng.random(30))
     before = gain.marginals().copy()
     for candidate in rng.permutation(12)[:6]:
         gain.add(int(candidate))
@@ -61,7 +58,7 @@ def test_what_a_candidate_adds_never_grows_with_the_set(seed: int) -> None:
 def test_rounding_does_not_build_up_over_many_changes() -> None:
     rng = np.random.default_rng(0)
     weights = rng.random(50) * 10.0 ** rng.integers(-8, 8, 50)
-    gain = SectionCoverage(rng.random((20, 50)) < 0.5, weights)
+    gain = cover_gain(rng.random((20, 50)) < 0.5, weights)
     fresh = gain.marginals().copy()
     for _ in range(20_000):
         candidate = int(rng.integers(20))
@@ -85,13 +82,3 @@ def test_prizes_add_up() -> None:
 def test_prizes_that_are_none_are_refused(prizes: np.ndarray) -> None:
     with pytest.raises(ValueError, match="prizes"):
         Prizes(prizes)
-
-
-def test_coverage_that_is_none_is_refused() -> None:
-    sees = np.ones((2, 3), np.bool_)
-    with pytest.raises(ValueError, match="depth"):
-        SectionCoverage(sees, depth=0)
-    with pytest.raises(ValueError, match="weights: expected 3"):
-        SectionCoverage(sees, np.ones(2))
-    with pytest.raises(ValueError, match="sees: expected shape"):
-        SectionCoverage(sees[0])

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from planning.errors import OperationCancelled
 from planning.progress import Trace
-from planning.routing.gains import CoverageGain, Prizes, SectionCoverage
+from planning.routing.gains import CoverageGain, Prizes
 from planning.routing.orienteering import Selection, solve_orienteering
-from tests.planning.routing_cases import Cancelling, Counting, distances, fewest_by_force, random_distances
+from tests.planning.routing_cases import Cancelling, Counting, cover_gain, distances, fewest_by_force, random_distances
 
 
 def worth(gain: CoverageGain, stops: list[int]) -> float:
@@ -60,7 +60,7 @@ def test_few_stops_are_chosen_as_trying_everything_does(
     def new_gain() -> CoverageGain:
         draw = np.random.default_rng(seed)
         if overlaps:
-            return SectionCoverage(draw.random((n, 10)) < 0.4, draw.integers(1, 5, 10).astype(float))
+            return cover_gain(draw.random((n, 10)) < 0.4, draw.integers(1, 5, 10).astype(float))
         return Prizes(draw.integers(0, 9, n).astype(float))
 
     best = 0.0
@@ -133,7 +133,7 @@ def test_overlapping_worth_is_searched_beyond_the_greedy_choice() -> None:
     travel_s, sees = coverage_case(120)
     service_s = np.full(120, 3.0)
     trace = Trace()
-    selection = solve_orienteering(travel_s, service_s, 120.0, 2, SectionCoverage(sees), max_rounds=300, trace=trace)
+    selection = solve_orienteering(travel_s, service_s, 120.0, 2, cover_gain(sees), max_rounds=300, trace=trace)
     check(selection, travel_s, service_s, 120.0, 2)
     assert selection.value == sees[list(itertools.chain(*selection.sorties))].any(axis=0).sum()
     values = [point.value for point in trace.points]
@@ -144,7 +144,7 @@ def test_overlapping_worth_is_searched_beyond_the_greedy_choice() -> None:
 
 def test_everything_is_visited_where_the_budget_allows() -> None:
     travel_s, sees = coverage_case(30)
-    selection = solve_orienteering(travel_s, np.zeros(30), 1e5, 1, SectionCoverage(sees))
+    selection = solve_orienteering(travel_s, np.zeros(30), 1e5, 1, cover_gain(sees))
     assert selection.value == selection.bound == sees.any(axis=0).sum()
 
 
@@ -189,7 +189,7 @@ def test_stops_at_one_place_do_not_divide_by_zero() -> None:
 def test_the_same_seed_and_rounds_give_the_same_selection() -> None:
     travel_s, sees = coverage_case(60)
     runs = [
-        solve_orienteering(travel_s, np.full(60, 3.0), 100.0, 2, SectionCoverage(sees), seed=seed, max_rounds=50)
+        solve_orienteering(travel_s, np.full(60, 3.0), 100.0, 2, cover_gain(sees), seed=seed, max_rounds=50)
         for seed in (1, 1, 2)
     ]
     assert runs[0] == runs[1]
@@ -200,15 +200,13 @@ def test_stopping_returns_the_best_so_far_and_cancelling_does_not() -> None:
     travel_s, sees = coverage_case(60)
     service_s = np.full(60, 3.0)
     values = [
-        solve_orienteering(travel_s, service_s, 100.0, 1, SectionCoverage(sees), stop=Counting(n)).value
+        solve_orienteering(travel_s, service_s, 100.0, 1, cover_gain(sees), stop=Counting(n)).value
         for n in (0, 20, 200)
     ]
     assert values == sorted(values)
     assert values[0] > 0.0
     with pytest.raises(OperationCancelled):
-        solve_orienteering(
-            travel_s, service_s, 100.0, 1, SectionCoverage(sees), monitor=Cancelling(5, OperationCancelled)
-        )
+        solve_orienteering(travel_s, service_s, 100.0, 1, cover_gain(sees), monitor=Cancelling(5, OperationCancelled))
 
 
 @pytest.mark.parametrize(
