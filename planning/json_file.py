@@ -8,6 +8,7 @@ import os
 import re
 import tempfile
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -27,23 +28,28 @@ def read_json(path: Path) -> Any:
     Raises
     ------
     InputError
-        Missing, unreadable, too large, not UTF-8, not JSON, or holding NaN or Infinity (which JSON does not have).
+        Missing, unreadable, empty, too large, not UTF-8, not JSON, or holding NaN or Infinity (which JSON does not
+        have).
     """
     try:
         if path.stat().st_size > MAX_FILE_BYTES:
             raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**20} MiB; expected a JSON file")
-        text = path.read_text("utf-8")
+        text = path.read_text("utf-8-sig")  # editors on Windows put a byte order mark in front
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: expected JSON in UTF-8, found other bytes at offset {error.start}") from error
+    if not text.strip():
+        raise InputError(f"{path}: not valid JSON, line 1: the file is empty")
     try:
         content = json.loads(text)
+        place = _first_not_finite(content, "")
     except json.JSONDecodeError as error:
         raise InputError(f"{path}: not valid JSON, line {error.lineno}, column {error.colno}: {error.msg}") from error
     except RecursionError as error:
         raise InputError(f"{path}: nested too deeply for a file of ours") from error
-    place = _first_not_finite(content, "")
+    except ValueError as error:
+        raise InputError(f"{path}: holds a number with too many digits ({error})") from error
     if place is not None:
         raise InputError(f"{path}: {place.lstrip('.')}: expected a finite number, got NaN or Infinity")
     return content
@@ -76,6 +82,19 @@ def to_record(content: Any, record: type[Record], path: Path) -> Record:
         raise InputError(f"{path}: {_in_words(str(error))}") from error
 
 
+def expect_format(content: Any, expected: str, path: Path) -> None:
+    """Say which file was wanted and which was found, before single fields are looked at.
+
+    Raises
+    ------
+    InputError
+        The content says that it is in another format. Content that does not say passes.
+    """
+    found = content.get("format", expected) if isinstance(content, dict) else expected
+    if found != expected:
+        raise InputError(f"{path}: format: expected '{expected}', got {found!r}; is it the right file?")
+
+
 _WORDS = {
     "array": "list",
     "object": "object",
@@ -91,12 +110,17 @@ def _in_words(message: str) -> str:
     """Turn "Expected `float`, got `str` - at `$.a.b`" into "a.b: expected number, got text"."""
     text, _, place = message.partition(" - at `$")
     place = place.rstrip("`").lstrip(".")
-    text = re.sub(r"`(\w+)`", lambda found: _WORDS.get(found[1], f"'{found[1]}'"), text).replace("`", "'")
+    text = re.sub(r"`(\w+(?: \| \w+)*)`", lambda found: _kind(found[1]), text).replace("`", "'")
     text = re.sub(r"^Object missing", "missing", text)
     text = text[:1].lower() + text[1:] if text.startswith("Expected") else text
     if not place:
         return text
     return f"{place}.{text}" if re.match(r"\w+(\[\d+\])*: ", text) else f"{place}: {text}"
+
+
+def _kind(types: str) -> str:
+    """Turn "str | null" into "text or nothing"; a word that is no type is quoted."""
+    return " or ".join(_WORDS.get(kind, f"'{kind}'") for kind in types.split(" | "))
 
 
 def read_toml(path: Path, record: type[Record]) -> Record:
@@ -116,18 +140,47 @@ def read_toml(path: Path, record: type[Record]) -> Record:
     return to_record(content, record, path)
 
 
-def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all: to a temporary neighbour first, then renamed over the target.
+def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
+    """Find out before long work that its result could not be written.
 
     Raises
     ------
     InputError
-        The folder is missing or cannot be written.
+        There is no such folder, a folder has that name, the file is write-protected, or it is one of `sources`.
     """
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: cannot be written: there is no folder '{path.parent}'; make it first")
+    if path.is_dir():
+        raise InputError(f"{path}: cannot be written: this is a folder; name a file in it")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise InputError(f"{path}: cannot be written: the file is write-protected; name another one")
+    for source in sources:
+        if path.exists() and source.exists() and path.samefile(source):
+            raise InputError(f"{path}: would replace {source}, which it is made from; name another file")
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all: to a temporary neighbour first, then renamed over the target.
+
+    A link is followed. What is no regular file (a device, a pipe) is written into, never replaced.
+
+    Raises
+    ------
+    InputError
+        The folder is missing or cannot be written, or the disk is full.
+    """
+    check_output(path)
     try:
-        descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        if path.exists() and not path.is_file():
+            path.write_bytes(content)
+        else:
+            _replace(path.resolve(), content)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+
+
+def _replace(path: Path, content: bytes) -> None:
+    descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     try:
         with os.fdopen(descriptor, "wb") as file:
             file.write(content)
@@ -135,9 +188,6 @@ def write_atomically(path: Path, content: bytes) -> None:
             os.fsync(file.fileno())
         Path(temporary).chmod(0o644)
         Path(temporary).replace(path)
-    except OSError as error:
-        Path(temporary).unlink(missing_ok=True)
-        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise

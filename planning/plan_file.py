@@ -8,8 +8,10 @@ from typing import Any
 
 import msgspec
 
-from planning.json_file import read_json, to_record, write_atomically
+from planning.json_file import expect_format, read_json, to_record, write_atomically
 from planning.plan import Plan
+
+FORMAT = "reflight-plan/1"
 
 
 def read_plan(path: Path) -> Plan:
@@ -20,7 +22,9 @@ def read_plan(path: Path) -> Plan:
     InputError
         The file is missing or wrong; the message names the file, the field and what was expected.
     """
-    return to_record(read_json(path), Plan, path)
+    content = read_json(path)
+    expect_format(content, FORMAT, path)
+    return to_record(content, Plan, path)
 
 
 def plan_to_json(plan: Plan) -> dict[str, Any]:

@@ -10,9 +10,11 @@ from typing import Any
 import msgspec
 
 from planning.errors import InputError
-from planning.json_file import read_json, to_record, write_atomically
+from planning.json_file import expect_format, read_json, to_record, write_atomically
 from planning.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.site import Obstacle, Site, SiteModel, box_geometry
+
+FORMAT = "reflight-site/1"
 
 
 def read_site(path: Path) -> SiteModel:
@@ -24,25 +26,30 @@ def read_site(path: Path) -> SiteModel:
         The file or a mesh is missing or wrong; the message names the file, the field and what was expected.
     """
     content = read_json(path)
+    expect_format(content, FORMAT, path)
     site = to_record(content, Site, path)
     folder = path.parent
-    building = empty_mesh() if site.building_mesh is None else _read_named_mesh(folder, site.building_mesh, path)
-    obstacles = tuple(_obstacle_geometry(folder, obstacle, path) for obstacle in site.obstacles)
+    name = site.building_mesh
+    building = empty_mesh() if name is None else _read_named_mesh(folder, name, f"{path}: building_mesh")
+    obstacles = tuple(
+        _obstacle_geometry(folder, obstacle, f"{path}: obstacles[{i}].mesh")
+        for i, obstacle in enumerate(site.obstacles)
+    )
     return SiteModel(site, building, obstacles, hashlib.sha256(path.read_bytes()).hexdigest())
 
 
-def _read_named_mesh(folder: Path, name: str, site_path: Path) -> TriangleMesh:
+def _read_named_mesh(folder: Path, name: str, place: str) -> TriangleMesh:
     try:
         return read_mesh(folder / name)
     except InputError as error:
-        raise InputError(f"{site_path}: {error}") from error
+        raise InputError(f"{place}: {error}; mesh paths start from the folder of the site file") from error
 
 
-def _obstacle_geometry(folder: Path, obstacle: Obstacle, site_path: Path) -> TriangleMesh:
+def _obstacle_geometry(folder: Path, obstacle: Obstacle, place: str) -> TriangleMesh:
     if obstacle.box_enu_m is not None:
         return box_geometry(obstacle)
     assert obstacle.mesh is not None  # Obstacle's own check
-    return _read_named_mesh(folder, obstacle.mesh, site_path)
+    return _read_named_mesh(folder, obstacle.mesh, place)
 
 
 def site_to_json(site: Site) -> dict[str, Any]:

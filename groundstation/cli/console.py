@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any, TypeVar
 
 from groundstation.services.jobs import JobContext, JobEvent, JobProgress, JobRunner
@@ -13,6 +15,9 @@ from planning.findings import Finding, Severity
 Result = TypeVar("Result")
 
 MARKS = {Severity.ERROR: "ERROR", Severity.WARNING: "warning", Severity.NOTE: "note", Severity.OK: "ok"}
+
+MAX_SHOWN = 5
+"""Different findings of one kind that are printed before the rest is only counted."""
 
 
 def run_job(name: str, work: Callable[[JobContext], Result]) -> Result:
@@ -62,6 +67,34 @@ def print_json(content: dict[str, Any]) -> None:
 
 
 def print_findings(findings: Iterable[Finding]) -> None:
-    """Findings on stderr, one a line."""
+    """Findings on stderr: equal ones once with their number, and of each kind the first few."""
+    alike: dict[tuple[Severity, str], dict[str, list[Finding]]] = {}
     for finding in findings:
-        print(f"{MARKS[finding.severity]}: {finding.message}", file=sys.stderr)
+        texts = alike.setdefault((finding.severity, finding.code), {})
+        texts.setdefault(finding.message, []).append(finding)
+    for (severity, _), texts in alike.items():
+        for message, equal in list(texts.items())[:MAX_SHOWN]:
+            place = equal[0].place
+            if len(equal) > 1:
+                message += f" ({len(equal)} times, the first: {place})" if place else f" ({len(equal)} times)"
+            elif place and place not in message:
+                message = f"{place}: {message}"
+            print(f"{MARKS[severity]}: {message}", file=sys.stderr)
+        if len(texts) > MAX_SHOWN:
+            print(f"{MARKS[severity]}: {len(texts) - MAX_SHOWN} more like this (--json lists all)", file=sys.stderr)
+
+
+def print_next(*arguments: object) -> None:
+    """The command to type next, on stderr."""
+    print(f"next: {shlex.join(['app.py', *map(str, arguments)])}", file=sys.stderr)
+
+
+def named_like(path: Path, ending: str) -> Path:
+    """Name for what is made from a site or plan file: `office.site.json` and `.kmz` give `office.kmz`."""
+    stem = path.name.removesuffix(".json").removesuffix(".site").removesuffix(".plan")
+    return path.with_name((stem or path.name) + ending)
+
+
+def counted(n: int, singular: str) -> str:
+    """A number of things: `1 sortie`, `2 sorties`."""
+    return f"{n} {singular}{'' if n == 1 else 's'}"

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import io
+import os
 import pkgutil
 import sys
 import tempfile
 import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from groundstation.cli import commands
 from planning.errors import GroundStationError, OperationCancelled
@@ -24,6 +26,16 @@ class _Parser(argparse.ArgumentParser):
         self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")
 
 
+class _Version(argparse.Action):
+    """Looks the version up only when asked, which takes as long as all of `-h`."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from importlib.metadata import version
+
+        print(f"Reflight {version('reflight')}")
+        parser.exit()
+
+
 def build_parser() -> argparse.ArgumentParser:
     """Parser with every module of `groundstation.cli.commands` as a command; none of them imports anything heavy."""
     parser = _Parser(
@@ -31,6 +43,7 @@ def build_parser() -> argparse.ArgumentParser:
         description="Reflight plans, checks and exports the second flight over a reflective glass facade. "
         "Without a command the window opens.",
     )
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND")
     for module in pkgutil.iter_modules(commands.__path__):
@@ -40,33 +53,67 @@ def build_parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str], open_window: Callable[[], int]) -> int:
     """Run one command, or the window without one; returns 0 done, 1 bad input or impossible, 2 wrong usage."""
-    parser = build_parser()
+    _make_streams_safe()
+    status = _run(arguments, open_window)
     try:
-        options = parser.parse_args(arguments)
-    except SystemExit as stop:
-        return int(stop.code or 0)
+        sys.stdout.flush()
+    except OSError as error:
+        if not isinstance(error, BrokenPipeError):
+            print(f"error: the output cannot be written ({error.strerror or error})", file=sys.stderr)
+        # The interpreter flushes once more when it ends, and would complain then.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_FAILED
+    return status
+
+
+def _make_streams_safe() -> None:
+    """Let no message fail over a character that the terminal lacks, or over a stream that is closed."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, io.StringIO())
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _run(arguments: Sequence[str], open_window: Callable[[], int]) -> int:
+    debug = "--debug" in arguments
     try:
+        options = build_parser().parse_args(arguments)
         if not hasattr(options, "run"):
             return open_window()
         return int(options.run(options))
+    except SystemExit as stop:
+        return int(stop.code or 0)
     except (OperationCancelled, KeyboardInterrupt):
         print("cancelled", file=sys.stderr)
-        return EXIT_FAILED
-    except GroundStationError as error:
-        if options.debug:
-            traceback.print_exc()
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return EXIT_FAILED
     except BrokenPipeError:
-        return EXIT_FAILED
+        pass  # whoever read the output has gone (| head)
+    except (GroundStationError, OSError) as error:
+        if debug:
+            traceback.print_exc()
+        print(f"error: {_in_one_line(error)}", file=sys.stderr)
     except Exception as error:
-        if options.debug:
+        if debug:
             raise
-        with tempfile.NamedTemporaryFile("w", suffix=".txt", prefix="reflight-", delete=False) as report:
-            traceback.print_exc(file=report)
-        print(
-            f"error: Reflight failed where it should not ({type(error).__name__}: {' '.join(str(error).split())}); "
-            f"please report it with {Path(report.name)}",
-            file=sys.stderr,
-        )
-        return EXIT_FAILED
+        _report(error)
+    return EXIT_FAILED
+
+
+def _report(error: Exception) -> None:
+    """Say that the program is at fault, and where the traceback is."""
+    with tempfile.NamedTemporaryFile("w", suffix=".txt", prefix="reflight-", delete=False) as report:
+        traceback.print_exc(file=report)
+    print(
+        f"error: Reflight failed where it should not ({type(error).__name__}: {_in_one_line(error)}); "
+        f"please report it with {Path(report.name)}",
+        file=sys.stderr,
+    )
+
+
+def _in_one_line(error: Exception) -> str:
+    """Message without line ends, and without the control characters that a damaged file can bring into it."""
+    text = str(error)
+    if isinstance(error, OSError) and error.strerror:
+        text = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))

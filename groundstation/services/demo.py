@@ -28,13 +28,14 @@ EXPORTS = (
 
 @dataclass(frozen=True, slots=True)
 class Demonstration:
-    """What the demonstration made."""
+    """What the demonstration made, and what the checks found on the plan and on its mission files."""
 
     site_path: Path
     plan_path: Path
     planned: Planned
     findings: tuple[Finding, ...]
     mission_paths: tuple[Path, ...]
+    export_findings: tuple[Finding, ...]
 
 
 def demonstrate(
@@ -56,7 +57,10 @@ def demonstrate(
     planned = plan_site(site_path, request, plan_path, monitor=monitor)
     findings = check_plan(read_plan(plan_path), read_site(site_path), monitor)
     missions: list[Path] = []
+    export_findings: list[Finding] = []
     for file_format, suffix in EXPORTS:
         monitor.report("exporting", len(missions), 0)
-        missions += export_plan(plan_path, file_format, folder / f"{scene}{suffix}", site_path)[0]
-    return Demonstration(site_path, plan_path, planned, findings, tuple(missions))
+        paths, found = export_plan(plan_path, file_format, folder / f"{scene}{suffix}", site_path)
+        missions += paths
+        export_findings += found
+    return Demonstration(site_path, plan_path, planned, findings, tuple(missions), tuple(export_findings))

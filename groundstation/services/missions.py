@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from missions.encode import DEFAULT_OPTIONS, ExportOptions, default_autopilot, encode
-from missions.formats import read_missions, write_files
+from missions.formats import read_missions, sortie_path, write_files
 from missions.model import FileFormat
 from missions.to_plan import viewpoints_and_sorties
 from planning.catalogue import DEFAULT_PROFILE, profile
+from planning.checks import check_plan
+from planning.errors import InputError
 from planning.evaluate import coverage
 from planning.findings import Finding, Severity
+from planning.json_file import check_output
 from planning.plan import Constraints, FlightRules, Plan
 from planning.plan_file import read_plan, write_plan
 from planning.planner import share_out_anew
@@ -22,6 +26,15 @@ from planning.site import SiteModel
 from planning.site_file import read_site
 
 MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
+
+SUFFIXES = {
+    FileFormat.DJI_KMZ: (".kmz",),
+    FileFormat.MAVLINK_PLAN: (".plan",),
+    FileFormat.MAVLINK_WPL: (".waypoints", ".txt"),
+    FileFormat.KML: (".kml",),
+    FileFormat.CSV: (".csv",),
+}
+"""How the names of files end that other programs offer to open."""
 
 IMPORTED = "imported"
 """Method written into plans that come from mission files."""
@@ -33,18 +46,32 @@ def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> Sit
     Raises
     ------
     InputError
-        The site named cannot be read.
+        The site cannot be read, or the one named lies at another place than the plan.
     """
     if site_path is not None:
-        return read_site(site_path)
+        site_model = read_site(site_path)
+        if plan.origin is not None and plan.origin != site_model.site.origin:
+            raise InputError(
+                f"{site_path}: the origin of '{site_model.site.name}' is not the one of the plan, which is for "
+                f"'{plan.site}'; name the site file that the plan was made for"
+            )
+        return site_model
+    beside = _site_beside(plan, plan_path)
+    return None if beside is None else read_site(beside)
+
+
+def _site_beside(plan: Plan, plan_path: Path) -> Path | None:
     if not plan.site_sha256:
         return None
-    import hashlib
+    return next((path for path in sorted(plan_path.parent.glob("*.json")) if _is_site_of(path, plan)), None)
 
-    for candidate in sorted(plan_path.parent.glob("*.json")):
-        if candidate != plan_path and hashlib.sha256(candidate.read_bytes()).hexdigest() == plan.site_sha256:
-            return read_site(candidate)
-    return None
+
+def _is_site_of(path: Path, plan: Plan) -> bool:
+    """Whether a file beside a plan is its site; what cannot be read is not."""
+    try:
+        return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == plan.site_sha256
+    except OSError:
+        return False
 
 
 def export_plan(
@@ -56,21 +83,58 @@ def export_plan(
 ) -> tuple[tuple[Path, ...], tuple[Finding, ...]]:
     """Write a plan as mission files (see `missions.formats.export`): the files, and what their checks found.
 
-    Plans that do not say where their site lies take it from the site file.
+    Plans that do not say where their site lies take it from the site file. A plan that is not ready to fly on its site
+    is written all the same, with a warning.
+
+    Raises
+    ------
+    InputError, MissionError
+        A file cannot be read or written, the site is another one, or an aircraft would refuse the mission.
     """
     plan = read_plan(plan_path)
+    site_path = _site_beside(plan, plan_path) if site_path is None else site_path
+    sources = [path for path in (plan_path, site_path) if path is not None]
+    check_output(out, sources)
     site_model = find_site(plan, plan_path, site_path)
+    findings = list(_name_findings(out, file_format))
     origin, home = plan.origin, plan.home_enu_m
     if site_model is not None:
         origin = site_model.site.origin if origin is None else origin
         home = site_model.site.home_enu_m if home is None else home
+        findings += _readiness(plan, site_model)
     elif home is None and plan.sorties and plan.sorties[0].path_enu_m:
         home = plan.sorties[0].path_enu_m[0]
-    shared_out: tuple[Finding, ...] = ()
     if file_format in MAVLINK_FORMATS and site_model is not None:
         plan, shared_out = _within_item_limit(plan, site_model, options)
+        findings += shared_out
     encoded = encode(plan, origin, home, file_format, replace(options, site=site_model))
-    return write_files(encoded, out), (*shared_out, *encoded.findings)
+    for number in range(2, len(encoded.contents) + 1):
+        check_output(sortie_path(out, number), sources)
+    return write_files(encoded, out), (*findings, *encoded.findings)
+
+
+def _name_findings(out: Path, file_format: FileFormat) -> Iterator[Finding]:
+    suffixes = SUFFIXES[file_format]
+    if out.suffix.lower() not in suffixes:
+        text = f"{out.name}: other programs look for {file_format} files with names that end in {' or '.join(suffixes)}"
+        yield Finding(Severity.WARNING, "file-name", text)
+
+
+def _readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
+    """What the pilot must know of a plan before it flies on this site."""
+    if plan.site_sha256 and plan.site_sha256 != site_model.sha256:
+        text = (
+            f"the site file of '{site_model.site.name}' has changed since this plan was made; what the mission takes "
+            "from it (return height, fences) is as it is now"
+        )
+        yield Finding(Severity.WARNING, "site-changed", text)
+    errors = [found for found in check_plan(plan, site_model) if found.severity is Severity.ERROR]
+    if errors:
+        text = (
+            f"this plan is not ready to fly ({len(errors)} findings of the pre-flight check, the first: "
+            f"{errors[0].message})"
+        )
+        yield Finding(Severity.WARNING, "not-ready", text, errors[0].place, float(len(errors)), 0.0, "findings")
 
 
 def _within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions) -> tuple[Plan, tuple[Finding, ...]]:
@@ -103,8 +167,13 @@ def import_missions(
     Raises
     ------
     InputError, MissionError
-        A file cannot be read, or belongs to another place.
+        A file cannot be read, is given twice, or belongs to another place; or the plan cannot be written.
     """
+    check_output(out, [*paths, site_path])
+    resolved = [path.resolve() for path in paths]
+    for number, path in enumerate(paths):
+        if resolved[number] in resolved[:number]:
+            raise InputError(f"{path}: this mission file is named twice; name the file of each sortie once")
     site_model = read_site(site_path)
     chosen = profile(profile_id)
     rules = FlightRules()

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from planning.checks import check_plan
-from planning.errors import InputError
-from planning.findings import Finding
+from planning.findings import Finding, Severity
+from planning.json_file import check_output
+from planning.plan import Plan
 from planning.plan_file import read_plan, write_plan
 from planning.planner import Planned, PlanRequest, plan_flight
 from planning.progress import QUIET, Monitor, Stop, Trace, never
@@ -27,17 +30,39 @@ def plan_site(
 ) -> Planned:
     """Plan a flight over the site in a file, and write the plan where `out` says.
 
+    A finding says so where the plan has less than was asked for.
+
     Raises
     ------
     InputError, InfeasibleError
-        As `planning.planner.plan_flight`; nothing is written then.
+        As `planning.planner.plan_flight`, or the plan cannot be written where it should go; nothing is written then.
     """
-    if out is not None and not out.parent.is_dir():
-        raise InputError(f"{out}: there is no folder '{out.parent}' to write it to")
+    if out is not None:
+        check_output(out, [site_path])
     planned = plan_flight(read_site(site_path), request, stop=stop, trace=trace, monitor=monitor)
     if out is not None:
         write_plan(out, planned.plan)
-    return planned
+    return replace(planned, findings=(*planned.findings, *_shortfalls(request, planned.plan)))
+
+
+def _shortfalls(request: PlanRequest, plan: Plan) -> Iterator[Finding]:
+    n_views = len(plan.viewpoints)
+    if request.n_views is not None and n_views < request.n_views:
+        text = (
+            f"{n_views} views instead of the {request.n_views} asked for: more would show nothing new or could not be "
+            "flown"
+        )
+        yield Finding(Severity.NOTE, "fewer-views", text, "", float(n_views), float(request.n_views), "views")
+    if request.share is None:
+        return
+    share = plan.coverage.covered / max(plan.coverage.reachable_upper_bound, 1)
+    if share < request.share:
+        advice = "allow it more time" if request.method == "greedy" else "the method flies a pattern of its own"
+        text = (
+            f"covers {100.0 * share:.2f} % of what is possible at most, {100.0 * request.share:g} % were asked for; "
+            f"{advice}"
+        )
+        yield Finding(Severity.WARNING, "less-coverage", text, "", share, request.share)
 
 
 def check_files(plan_path: Path, site_path: Path, monitor: Monitor = QUIET) -> tuple[Finding, ...]:

@@ -22,7 +22,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check and print; returns the exit status."""
-    from groundstation.cli.console import MARKS, print_json, run_job
+    from groundstation.cli.console import MARKS, named_like, print_json, print_next, run_job
     from groundstation.services.planning import check_files, finding_summary
     from planning.findings import is_flyable
 
@@ -35,4 +35,6 @@ def run(options: argparse.Namespace) -> int:
             place = f" [{finding.place}]" if finding.place else ""
             print(f"{MARKS[finding.severity]:>7}  {finding.code}{place}: {finding.message}")
         print("ready to fly" if flyable else "not ready to fly: see the errors above")
+        if flyable:
+            print_next("export", options.plan, "--format", "dji-kmz", "-o", named_like(options.plan, ".kmz"))
     return 0 if flyable else 1

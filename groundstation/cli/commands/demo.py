@@ -7,6 +7,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+SCENES = ("office", "library", "court", "canyon", "roof", "tower", "single-panel")
+
 
 def add_parser(subparsers: Any) -> None:
     """Describe the command."""
@@ -17,7 +19,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.set_defaults(run=run)
     parser.add_argument("--out", type=Path, default=Path("demo-out"), metavar="DIR", help="default: demo-out")
-    parser.add_argument("--scene", default="office", metavar="NAME", help="office (default), library, court, tower ...")
+    parser.add_argument("--scene", default=SCENES[0], choices=SCENES, help="the site (default office)")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -32,19 +34,20 @@ def run(options: argparse.Namespace) -> int:
     started = time.perf_counter()
     made = run_job("demo", lambda context: demonstrate(options.out, options.scene, monitor=context))
     seconds = time.perf_counter() - started
+    flyable = is_flyable(made.findings)
     if options.json:
         content = planned_summary(made.planned, seconds)
         content["site"], content["plan"] = str(made.site_path), str(made.plan_path)
         content["missions"] = [str(path) for path in made.mission_paths]
-        content["flyable"] = is_flyable(made.findings)
+        content["flyable"] = flyable
         print_json(content)
-        return 0
-    print(f"site:     {made.site_path}")
-    print_summary(made.planned, made.plan_path, seconds)
-    kept = sum(finding.severity is Severity.OK for finding in made.findings)
-    print(
-        f"check:    {kept} of {len(made.findings)} rules kept, {'ready' if is_flyable(made.findings) else 'NOT ready'}"
-    )
-    print_findings(finding for finding in made.findings if finding.severity is not Severity.OK)
-    print("missions: " + ", ".join(str(path) for path in made.mission_paths))
-    return 0
+    else:
+        print(f"site:     {made.site_path}")
+        print_summary(made.planned, made.plan_path, seconds)
+        kept = sum(finding.severity is Severity.OK for finding in made.findings)
+        print(
+            f"check:    {kept} of {len(made.findings)} rules kept, {'ready to fly' if flyable else 'NOT ready to fly'}"
+        )
+        print("missions: " + ", ".join(str(path) for path in made.mission_paths))
+        print_findings(f for f in (*made.findings, *made.export_findings) if f.severity is not Severity.OK)
+    return 0 if flyable else 1

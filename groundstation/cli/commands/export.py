@@ -6,6 +6,11 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import number
+
+MAX_RETURN_HEIGHT_M = 1500.0
+"""Highest that DJI's waylines allow for any height above take-off."""
+
 
 def add_parser(subparsers: Any) -> None:
     """Describe the command."""
@@ -30,7 +35,7 @@ def add_parser(subparsers: Any) -> None:
     )
     add("--autopilot", choices=("ardupilot", "px4"), help="whose rules MAVLink files follow (default: by profile)")
     add("--link-loss", choices=("continue", "go-home"), default="continue", help="DJI: what to do without radio link")
-    add("--return-height", type=float, metavar="M", help="DJI: above take-off (default: above everything on the site)")
+    add("--return-height", type=number, metavar="M", help="DJI: above take-off (default: above everything on the site)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -43,13 +48,17 @@ def run(options: argparse.Namespace) -> int:
     from missions.encode import ExportOptions
     from missions.mavlink.autopilots import Autopilot
     from missions.model import FileFormat, HeightReference
+    from planning.errors import InputError
     from planning.findings import Severity
 
+    height_m = options.return_height
+    if height_m is not None and not 0.0 < height_m <= MAX_RETURN_HEIGHT_M:
+        raise InputError(f"--return-height: expected a height up to {MAX_RETURN_HEIGHT_M:g} m, got {height_m:g}")
     export_options = ExportOptions(
         height_reference=HeightReference(options.heights),
         autopilot=None if options.autopilot is None else Autopilot(options.autopilot),
         link_loss=LinkLoss(options.link_loss),
-        rth_height_m=options.return_height,
+        rth_height_m=height_m,
     )
     paths, findings = export_plan(options.plan, FileFormat(options.format), options.out, options.site, export_options)
     if options.json:

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import add_profile_argument, in_words_of_options, number
+
 
 def add_parser(subparsers: Any) -> None:
     """Describe the command."""
@@ -20,25 +22,22 @@ def add_parser(subparsers: Any) -> None:
     add("file", type=Path, nargs="+", metavar="FILE", help="mission file")
     add("--site", type=Path, required=True, metavar="SITE", help="site file the mission is flown at")
     add("-o", "--out", type=Path, required=True, metavar="PLAN", help="plan file to write")
-    add("--profile", default="m3e", metavar="ID", help="aircraft and camera (default m3e)")
-    add("--min-distance", type=float, default=10.0, metavar="M", help="for the reachable bound (default 10 m)")
-    add("--step", type=float, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
+    add_profile_argument(parser)
+    add("--min-distance", type=number, default=10.0, metavar="M", help="for the reachable bound (default 10 m)")
+    add("--step", type=number, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
     add("--occlusion", choices=("auto", "on", "off"), default="auto", help="default: as the scene calls for")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
 
 def run(options: argparse.Namespace) -> int:
     """Import and print; returns the exit status."""
-    from groundstation.cli.console import print_findings, print_json, run_job
+    from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job
     from groundstation.services.missions import import_missions
     from groundstation.services.planning import finding_summary
-    from planning.errors import InputError
     from planning.plan import Constraints
 
-    try:
+    with in_words_of_options():
         constraints = Constraints(options.min_distance, options.step, options.occlusion)
-    except ValueError as error:
-        raise InputError(str(error)) from error
     plan, findings = run_job(
         "import",
         lambda context: import_missions(options.file, options.site, options.out, options.profile, constraints, context),
@@ -59,8 +58,10 @@ def run(options: argparse.Namespace) -> int:
         )
     else:
         print(
-            f"{options.out}: {len(plan.viewpoints)} views in {len(plan.sorties)} sorties cover {coverage.covered} of "
-            f"{coverage.total} sections ({coverage.reachable_upper_bound} reachable at most)"
+            f"{options.out}: {counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')} cover "
+            f"{coverage.covered} of {coverage.total} sections; no flight can cover more than "
+            f"{coverage.reachable_upper_bound}"
         )
         print_findings(findings)
+        print_next("check", options.out, options.site)
     return 0

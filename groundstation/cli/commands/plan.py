@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.options import add_profile_argument, checked_seed, in_words_of_options, number
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,14 +26,17 @@ examples:
   plan tower.site.json -o tower.plan.json --batteries 2 --profile m4e --wind 6
 """
 
+MAX_CANDIDATES = 1_000_000
+"""Takes 24 s and finds nothing that a tenth of it does not."""
+
 
 def add_parser(subparsers: Any) -> None:
     """Describe the command."""
     parser = subparsers.add_parser(
         "plan",
         help="plan the second flight over a site",
-        description="Choose viewpoints that see every panel from as many directions as the site allows, share them "
-        "out among sorties, and prove how much more could be seen at all.",
+        description="Choose viewpoints that see every panel from as many directions as the site allows,\n"
+        "share them out among sorties, and prove how much more could be seen at all.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -45,30 +50,34 @@ def add_parser(subparsers: Any) -> None:
 
 def add_request_arguments(parser: argparse.ArgumentParser) -> None:
     """What is wanted of a plan; shared with other commands that plan."""
-    goal = parser.add_argument_group("how much").add_argument
-    goal("--views", type=int, metavar="N", help="number of views")
-    goal("--coverage", type=float, metavar="SHARE", help="share of what can be covered, 0 to 1")
-    goal("--batteries", type=int, metavar="N", help="number of sorties")
-    goal("--weights", choices=("equal", "solid-angle"), default="equal", help="worth of hemisphere sections")
+    goal = parser.add_argument_group("how much (one of the first three)")
+    one_of = goal.add_mutually_exclusive_group().add_argument
+    one_of("--views", type=int, metavar="N", help="number of views")
+    one_of("--coverage", type=number, metavar="SHARE", help="share of what can be covered, 0 to 1 (default 0.99)")
+    one_of("--batteries", type=int, metavar="N", help="number of sorties")
+    goal.add_argument(
+        "--weights", choices=("equal", "solid-angle"), default="equal", help="worth of hemisphere sections"
+    )
     search = parser.add_argument_group("how").add_argument
     search("--method", choices=("greedy", "pso", "noto", "orbit"), default="greedy", help="default: greedy")
-    search("--time-budget", type=float, default=60.0, metavar="S", help="longest wall time (default 60 s)")
+    search("--time-budget", type=number, default=60.0, metavar="S", help="longest wall time (default 60 s)")
     search("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
     search("--precision", choices=("f32", "f64"), default="f32", help="of the coverage kernel (default f32)")
     search("--candidates", type=int, metavar="N", help="well-spread viewpoints to choose from (default 20000)")
     rules = parser.add_argument_group("which views count").add_argument
-    rules("--min-distance", type=float, default=10.0, metavar="M", help="to everything solid (default 10 m)")
-    rules("--step", type=float, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
+    rules("--min-distance", type=number, default=10.0, metavar="M", help="to everything solid (default 10 m)")
+    rules("--step", type=number, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
     rules("--occlusion", choices=("auto", "on", "off"), default="auto", help="default: as the scene calls for")
-    rules("--max-distance", type=float, metavar="M", help="views from further away do not count")
-    rules("--max-gsd", type=float, metavar="MM", help="views with larger pixels on the panel do not count")
+    rules("--max-distance", type=number, metavar="M", help="views from further away do not count")
+    rules("--max-gsd", type=number, metavar="MM", help="views with larger pixels on the panel do not count")
     rules("--whole-panel", action="store_true", help="all four corners must be in the picture")
-    flight = parser.add_argument_group("flight").add_argument
-    flight("--profile", default="m3e", metavar="ID", help="aircraft and camera (default m3e); 'list' shows all")
-    flight("--reserve", type=float, default=0.25, metavar="SHARE", help="battery left at landing (default 0.25)")
-    flight("--settle", type=float, default=2.0, metavar="S", help="hover before each photo (default 2 s)")
-    flight("--speed", type=float, metavar="M_S", help="highest speed, if lower than the aircraft's")
-    flight("--wind", type=float, default=0.0, metavar="M_S", help="wind expected (default 0)")
+    flight_group = parser.add_argument_group("flight")
+    add_profile_argument(flight_group)
+    flight = flight_group.add_argument
+    flight("--reserve", type=number, default=0.25, metavar="SHARE", help="battery left at landing (default 0.25)")
+    flight("--settle", type=number, default=2.0, metavar="S", help="hover before each photo (default 2 s)")
+    flight("--speed", type=number, metavar="M_S", help="highest speed, if lower than the aircraft's")
+    flight("--wind", type=number, default=0.0, metavar="M_S", help="wind expected (default 0)")
     flight("--turn-in-flight", action="store_true", help="turn heading and gimbal on the way, not at the waypoint")
 
 
@@ -80,17 +89,15 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
     InputError
         A value is out of range.
     """
-    from planning.catalogue import profile
     from planning.optimise.candidates import N_CANDIDATES
     from planning.optimise.greedy import GreedyParameters
     from planning.plan import Constraints, FlightRules
     from planning.planner import PlanRequest
 
-    max_distance_m = options.max_distance
-    if options.max_gsd is not None:
-        by_gsd = profile(options.profile).camera.distance_for_gsd_m(options.max_gsd / 1000.0)
-        max_distance_m = by_gsd if max_distance_m is None else min(max_distance_m, by_gsd)
-    try:
+    n_candidates = N_CANDIDATES if options.candidates is None else options.candidates
+    if not 1 <= n_candidates <= MAX_CANDIDATES:
+        raise InputError(f"--candidates: expected 1 to {MAX_CANDIDATES}, got {n_candidates}")
+    with in_words_of_options():
         return PlanRequest(
             method=options.method,
             n_views=options.views,
@@ -98,7 +105,11 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
             n_batteries=options.batteries,
             profile_id=options.profile,
             constraints=Constraints(
-                options.min_distance, options.step, options.occlusion, options.whole_panel, max_distance_m
+                options.min_distance,
+                options.step,
+                options.occlusion,
+                options.whole_panel,
+                _max_distance_m(options),
             ),
             rules=FlightRules(
                 battery_reserve=options.reserve,
@@ -107,21 +118,33 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
                 wind_m_s=options.wind,
                 turn_in_flight=options.turn_in_flight,
             ),
-            greedy=GreedyParameters(
-                n_candidates=N_CANDIDATES if options.candidates is None else options.candidates,
-                solid_angle_weights=options.weights == "solid-angle",
-            ),
+            greedy=GreedyParameters(n_candidates, solid_angle_weights=options.weights == "solid-angle"),
             precision=options.precision,
-            seed=options.seed,
+            seed=checked_seed(options.seed),
             time_budget_s=options.time_budget,
         )
-    except ValueError as error:
-        raise InputError(str(error)) from error
+
+
+def _max_distance_m(options: argparse.Namespace) -> float | None:
+    """The nearer of `--max-distance` and the distance at which `--max-gsd` is reached."""
+    from planning.catalogue import profile
+
+    if options.max_gsd is None:
+        return options.max_distance  # type: ignore[no-any-return]
+    if not options.max_gsd > 0.0:
+        raise InputError(f"--max-gsd: expected a positive number of millimetres, got {options.max_gsd:g}")
+    by_gsd_m = profile(options.profile).camera.distance_for_gsd_m(options.max_gsd / 1000.0)
+    if not by_gsd_m > options.min_distance:
+        raise InputError(
+            f"--max-gsd: this camera has pixels of {options.max_gsd:g} mm at {by_gsd_m:.2f} m, but the minimum "
+            f"distance is {options.min_distance:g} m; allow larger pixels or lower --min-distance"
+        )
+    return by_gsd_m if options.max_distance is None else min(options.max_distance, by_gsd_m)
 
 
 def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
-    from groundstation.cli.console import print_findings, print_json, run_job
+    from groundstation.cli.console import print_findings, print_json, print_next, run_job
     from groundstation.services.planning import plan_site, planned_summary
 
     started = time.perf_counter()
@@ -138,26 +161,36 @@ def run(options: argparse.Namespace) -> int:
     else:
         print_summary(planned, options.out, seconds)
         print_findings(planned.findings)
+        print_next("check", options.out, options.site)
     return 0
 
 
 def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     """What a pilot wants to know, in a few lines on stdout."""
+    from groundstation.cli.console import counted
+    from planning.coverage.sections import SectionGrid
+
     plan, coverage = planned.plan, planned.plan.coverage
-    share = 100.0 * coverage.covered / max(coverage.reachable_upper_bound, 1)
+    n_directions = SectionGrid(plan.constraints.section_step_deg).n_sections
+    # Rounded down: 100 % means that nothing is missing.
+    share = math.floor(10_000.0 * coverage.covered / max(coverage.reachable_upper_bound, 1)) / 100.0
     print(
-        f"{out}: {len(plan.viewpoints)} views in {len(plan.sorties)} sorties, {plan.duration_s / 60:.1f} min in the air"
+        f"{out}: {counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')}, "
+        f"{plan.duration_s / 60:.1f} min in the air"
     )
     print(
-        f"covered {coverage.covered} of {coverage.total} sections; at most {coverage.reachable_upper_bound} can be "
-        f"reached by any flight, so {share:.2f} % of what is possible"
+        f"covered {coverage.covered} of {coverage.total} sections ({n_directions} directions of view for each of "
+        f"{counted(coverage.total // n_directions, 'panel')})"
+    )
+    print(
+        f"no flight can cover more than {coverage.reachable_upper_bound}, so this is {share:.2f} % of what is possible"
     )
     twice = next((count for count in planned.depth if count.n_views == 2), None)
     if twice is not None:
-        print(f"{twice.covered} sections are seen at least twice")
-    for number, sortie in enumerate(plan.sorties, 1):
+        print(f"seen at least twice: {twice.covered} sections")
+    for position, sortie in enumerate(plan.sorties, 1):
         print(
-            f"  sortie {number}: {len(sortie.viewpoint_ids)} views, {sortie.length_m:.0f} m, "
+            f"  sortie {position}: {counted(len(sortie.viewpoint_ids), 'view')}, {sortie.length_m:.0f} m, "
             f"{sortie.duration_s / 60:.1f} min"
         )
     for decision in plan.effects:

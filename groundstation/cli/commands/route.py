@@ -9,6 +9,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import checked_seed, number
+
 METHODS = ("local-search", "pyvrp", "nearest-neighbour")
 DEFAULT_BUDGET_S = 10.0
 
@@ -27,7 +29,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("file", type=Path, metavar="FILE.tsp", help="TSPLIB instance")
     parser.add_argument(
         "--time-budget",
-        type=_seconds,
+        type=number,
         default=DEFAULT_BUDGET_S,
         metavar="S",
         help="longest time to take, seconds (default %(default)g); a proven shortest tour ends it sooner",
@@ -43,13 +45,6 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
 
 
-def _seconds(text: str) -> float:
-    seconds = float(text)
-    if not (math.isfinite(seconds) and seconds > 0.0):
-        raise argparse.ArgumentTypeError(f"expected a positive number of seconds, got {text}")
-    return seconds
-
-
 def run(options: argparse.Namespace) -> int:
     """Read, solve, print."""
     begin = time.perf_counter()
@@ -59,6 +54,9 @@ def run(options: argparse.Namespace) -> int:
     from planning.routing.tour import nearest_neighbour, tour_length
     from planning.routing.tsplib import read_instance
 
+    seed = checked_seed(options.seed)
+    if options.time_budget <= 0.0:
+        raise InputError(f"--time-budget: expected a positive number of seconds, got {options.time_budget:g}")
     instance = read_instance(options.file)
     if instance.kind == "CVRP":
         raise InputError(f"{options.file}: a CVRP needs several routes; expected a TSP or ATSP")
@@ -66,14 +64,14 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(f"{options.file}: local-search needs a symmetric instance; add --method pyvrp")
     left_s = options.time_budget - (time.perf_counter() - begin) - START_AND_END_S
     trace = Trace()
-    result = solve_tour(instance.cost, options.method, TimeLimit(left_s), seed=options.seed, trace=trace)
+    result = solve_tour(instance.cost, options.method, TimeLimit(left_s), seed=seed, trace=trace)
     greedy = tour_length(instance.cost, nearest_neighbour(instance.cost))
     answer = {
         "name": instance.name,
         "points": len(instance.ids),
         "length": _number(result.length),
         "method": options.method,
-        "seed": options.seed,
+        "seed": seed,
         "lower_bound": _number(result.lower_bound),
         "gap": result.gap,
         "nearest_neighbour_length": _number(greedy),

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
-import math
 import re
 import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.options import number
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -64,13 +63,13 @@ def _add_place_and_content(command: argparse.ArgumentParser) -> None:
         help="heights are above sea level, the ellipsoid, or what the system says (auto; for --origin the ellipsoid)",
     )
     place(
-        "--ground", type=_number, metavar="Z", help="the ground's third coordinate in the file (default: lowest point)"
+        "--ground", type=number, metavar="Z", help="the ground's third coordinate in the file (default: lowest point)"
     )
     content = command.add_argument_group("what is in the file").add_argument
     content("--building", metavar="ID", help="the building wanted, in a file with many")
     content("--units", default="m", choices=("m", "cm", "mm", "ft", "in", "us-ft"), help="of a mesh file (default m)")
     content("--up", choices=("y", "z"), help="axis that points up in a mesh file (default: y for GLB, else z)")
-    content("--deflection", type=_number, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")
+    content("--deflection", type=number, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")
 
 
 def _add_panels_and_flight(command: argparse.ArgumentParser) -> None:
@@ -84,32 +83,20 @@ def _add_panels_and_flight(command: argparse.ArgumentParser) -> None:
     )
     grid("--rows", type=int, action="append", metavar="N", help="panels upwards, once for all grids or one for each")
     grid("--columns", type=int, action="append", metavar="N", help="panels side by side, likewise")
-    grid("--gap", type=_number, default=0.0, metavar="M", help="width of the mullions between panels (default 0)")
-    grid(
-        "--grid-tolerance", type=_number, default=2.0, metavar="M", help="allowed distance from the mesh (default 2 m)"
-    )
+    grid("--gap", type=number, default=0.0, metavar="M", help="width of the mullions between panels (default 0)")
+    grid("--grid-tolerance", type=number, default=2.0, metavar="M", help="allowed distance from the mesh (default 2 m)")
     flight = command.add_argument_group("airspace and home (local metres east, north, up)").add_argument
     flight("--home", type=_point, metavar="E,N,U", help="take-off place (default: in front of the largest facade)")
-    flight("--airspace-margin", type=_number, default=40.0, metavar="M", help="around the building (default 40 m)")
-    flight("--floor", type=_number, metavar="U", help="of the airspace (default: 2 m above ground)")
-    flight("--ceiling", type=_number, metavar="U", help="of the airspace (default: 30 m above the building)")
-
-
-def _number(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"expected a number, got '{text}'")
-    return value
+    flight("--airspace-margin", type=number, default=40.0, metavar="M", help="around the building (default 40 m)")
+    flight("--floor", type=number, metavar="U", help="of the airspace (default: 2 m above ground)")
+    flight("--ceiling", type=number, metavar="U", help="of the airspace (default: 30 m above the building)")
 
 
 def _point(text: str) -> Number3:
     parts = text.split(",")
     if len(parts) != 3:
         raise argparse.ArgumentTypeError(f"expected three numbers with commas between them, got '{text}'")
-    return _number(parts[0]), _number(parts[1]), _number(parts[2])
+    return number(parts[0]), number(parts[1]), number(parts[2])
 
 
 def _triple(text: str) -> tuple[Number3, Number3, Number3]:
@@ -121,13 +108,15 @@ def _triple(text: str) -> tuple[Number3, Number3, Number3]:
 
 def run(options: argparse.Namespace) -> int:
     """Import a site; returns the exit status."""
+    from groundstation.cli.console import counted, named_like, print_json, print_next, run_job
+    from planning.json_file import check_output
     from planning.site_import.importer import import_site
     from planning.site_import.output import write_imported_site
 
-    if not options.out.parent.is_dir():
-        raise InputError(f"{options.out}: there is no folder '{options.out.parent}' to write it into")
+    check_output(options.out, [options.file])
     started = time.perf_counter()
-    imported = import_site(options.file, _import_options(options))
+    import_options = _import_options(options)
+    imported = run_job("site import", lambda context: import_site(options.file, import_options, context))
     model = write_imported_site(options.out, imported, options.file)
     seconds = time.perf_counter() - started
     site = model.site
@@ -150,15 +139,19 @@ def run(options: argparse.Namespace) -> int:
             "sha256": model.sha256,
             "seconds": round(seconds, 3),
         }
-        print(json.dumps(content, indent=1, allow_nan=False))
+        print_json(content)
         return 0
     listed = ", ".join(f"{facade['id']} {facade['panels']}" for facade in facades[:MAX_LISTED])
     more = f", {len(facades) - MAX_LISTED} smaller ones" if len(facades) > MAX_LISTED else ""
     origin = site.origin
-    print(f"{options.out}: site '{site.name}', panels: {site.n_panels}, by facade: {listed}{more}")
+    print(
+        f"{options.out}: site '{site.name}', {counted(site.n_panels, 'panel')} on {counted(len(facades), 'facade')}: "
+        f"{listed}{more}"
+    )
     print(f"origin {origin.lat_deg:.7f}, {origin.lon_deg:.7f}, {origin.ellipsoid_height_m:.2f} m above the ellipsoid")
     for note in imported.notes:
         print(f"note: {note}", file=sys.stderr)
+    print_next("plan", options.out, "-o", named_like(options.out, ".plan.json"))
     return 0
 
 

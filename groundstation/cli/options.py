@@ -1,0 +1,103 @@
+"""What several commands take in the same way: numbers, aircraft profile, seed; and wrong values in the user's words."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from planning.errors import InputError
+
+LARGEST_SEED = 2**32 - 1
+"""PyVRP's generator takes 32 bits."""
+
+OPTIONS = {
+    "views": "--views",
+    "coverage": "--coverage",
+    "batteries": "--batteries",
+    "time budget": "--time-budget",
+    "min_distance_m": "--min-distance",
+    "max_distance_m": "--max-distance",
+    "section_step_deg": "--step",
+    "battery_reserve": "--reserve",
+    "settle_s": "--settle",
+    "max_speed_m_s": "--speed",
+    "wind_m_s": "--wind",
+}
+"""Options by the name that the records' own checks give a value."""
+
+
+@contextmanager
+def in_words_of_options() -> Iterator[None]:
+    """Turn a record's refusal of a value (`ValueError`) into an `InputError` that names the option typed."""
+    try:
+        yield
+    except ValueError as error:
+        name, colon, rest = str(error).partition(":")
+        raise InputError(f"{OPTIONS.get(name, name)}{colon}{rest}") from error
+
+
+def number(text: str) -> float:
+    """A finite number; for argparse's `type`, so that NaN and infinity are wrong usage like any other word."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a number, got '{text}'")
+    return value
+
+
+def add_profile_argument(parser: Any) -> None:
+    """Add `--profile`, to a parser or a group of one."""
+    parser.add_argument(
+        "--profile",
+        default="m3e",
+        metavar="ID",
+        action=_Profile,
+        help="aircraft and camera (default m3e); '--profile list' shows all",
+    )
+
+
+class _Profile(argparse.Action):
+    """Takes the identifier of a profile, or for `list` prints all and ends."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[Any] | None,
+        option_string: str | None = None,
+    ) -> None:
+        if values == "list":
+            _print_profiles()
+            parser.exit()
+        setattr(namespace, self.dest, values)
+
+
+def _print_profiles() -> None:
+    from planning.catalogue import profiles
+
+    for identifier, profile in profiles().items():
+        aircraft, camera = profile.aircraft, profile.camera
+        low, high = camera.gimbal_pitch_deg
+        print(
+            f"{identifier:<10} {aircraft.name}, {aircraft.endurance_s / 60:.0f} min, {aircraft.max_speed_m_s:g} m/s, "
+            f"wind up to {aircraft.max_wind_m_s:g} m/s; {camera.name}, {camera.image_width_px} x "
+            f"{camera.image_height_px}, {camera.focal_length_mm:g} mm, gimbal {low:g} to {high:g} deg"
+        )
+
+
+def checked_seed(seed: int) -> int:
+    """The seed, where all generators take it.
+
+    Raises
+    ------
+    InputError
+        It is negative or too large.
+    """
+    if not 0 <= seed <= LARGEST_SEED:
+        raise InputError(f"--seed: expected 0 to {LARGEST_SEED}, got {seed}")
+    return seed

@@ -1,0 +1,99 @@
+"""`check`: every rule with its measured value, and status 1 where one is broken."""
+
+import shutil
+
+import pytest
+
+from planning.scenes import write_scene
+
+
+def test_a_good_plan_is_ready_to_fly_and_the_next_command_is_told(reflight, pane):
+    done = reflight("check", pane / "plan.json", pane / "site.json")
+    assert done.status == 0
+    assert done.out.splitlines()[-1] == "ready to fly"
+    assert "smallest distance at a viewpoint" in done.out
+    assert done.err.startswith("next: app.py export ")
+    assert done.err.rstrip("\n").endswith(
+        "--format dji-kmz -o " + str(pane / "plan.json").removesuffix(".json") + ".kmz"
+    )
+
+
+def test_json_lists_all_findings_with_values(reflight, pane):
+    done = reflight("check", pane / "plan.json", pane / "site.json", "--json")
+    assert (done.status, done.err) == (0, "")
+    assert done.json["flyable"] is True
+    by_code = {finding["code"]: finding for finding in done.json["findings"]}
+    assert by_code["distance"]["value"] >= by_code["distance"]["limit"] == 10.0
+    assert {finding["severity"] for finding in done.json["findings"]} == {"ok"}
+
+
+def test_a_broken_rule_is_an_error_with_place_and_status_1(reflight, pane, changed):
+    plan = changed(pane / "plan.json", "viewpoints", 2, "position_enu_m", [0.0, -3.0, 10.0])
+    done = reflight("check", plan, pane / "site.json")
+    assert done.status == 1
+    assert "  ERROR  distance [v0002]: smallest distance at a viewpoint (negative: inside a solid): 3 m" in done.out
+    assert done.out.splitlines()[-1] == "not ready to fly: see the errors above"
+    assert done.err == ""
+    done = reflight("check", plan, pane / "site.json", "--json")
+    assert done.status == 1
+    assert done.json["flyable"] is False
+
+
+def test_a_plan_for_another_site_is_not_ready_to_fly(reflight, pane, tmp_path):
+    other = write_scene("office", tmp_path)
+    done = reflight("check", pane / "plan.json", other)
+    assert done.status == 1
+    assert "not ready to fly" in done.out
+
+
+def test_a_plan_without_views_is_not_ready_to_fly(reflight, pane, changed):
+    plan = changed(changed(pane / "plan.json", "sorties", []), "viewpoints", [])
+    done = reflight("check", plan, pane / "site.json")
+    assert done.status == 1
+    assert "the plan has no sorties" in done.out
+
+
+def test_files_that_are_no_plan_are_refused(reflight, pane, bad_file):
+    assert str(bad_file) in reflight("check", bad_file, pane / "site.json").error
+    assert str(bad_file) in reflight("check", pane / "plan.json", bad_file).error
+
+
+@pytest.mark.parametrize("name", ["missing.json", "."])
+def test_missing_files_and_folders_are_refused(reflight, pane, tmp_path, name):
+    assert "cannot be read" in reflight("check", tmp_path / name, pane / "site.json").error
+    assert "cannot be read" in reflight("check", pane / "plan.json", tmp_path / name).error
+
+
+def test_plan_and_site_in_the_wrong_order_are_noticed(reflight, pane):
+    error = reflight("check", pane / "site.json", pane / "plan.json").error
+    assert "expected 'reflight-plan/1', got 'reflight-site/1'" in error
+
+
+@pytest.mark.parametrize(
+    ("path_and_value", "message"),
+    [
+        (("camera", ...), "missing required field 'camera'"),
+        (("camera", "focal_length_mm", -1), "focal_length_mm: expected a positive number, got -1"),
+        (("viewpoints", 0, "heading_deg", "north"), "viewpoints[0].heading_deg: expected number, got text"),
+        (("viewpoints", 0, "heading_deg", float("inf")), "viewpoints[0].heading_deg: expected a finite number"),
+        (("viewpoints", 1, "id", "v0000"), "expected unique ids, 'v0000' occurs twice"),
+        (("sorties", 0, "viewpoint_ids", ["v9"]), "sorties[0].viewpoint_ids: there is no viewpoint 'v9'"),
+        (("coverage", "covered", 10**9), "covered <= reachable_upper_bound <= total"),
+        (("constraints", "min_distance_m", -1), "min_distance_m: expected 0 or more, got -1"),
+        (("format", "reflight-plan/2"), "expected 'reflight-plan/1', got 'reflight-plan/2'"),
+    ],
+)
+def test_wrong_fields_of_a_plan_are_named(reflight, pane, changed, path_and_value, message):
+    plan = changed(pane / "plan.json", *path_and_value)
+    error = reflight("check", plan, pane / "site.json").error
+    assert str(plan) in error
+    assert message in error
+
+
+def test_a_mesh_that_was_left_behind_is_named_with_what_to_do(reflight, pane, tmp_path):
+    folder = tmp_path / "stick"
+    folder.mkdir()
+    site = shutil.copy(write_scene("roof", tmp_path), folder)
+    error = reflight("check", pane / "plan.json", site).error
+    assert f"{site}: building_mesh: {folder / 'roof.ply'}: there is no such mesh file" in error
+    assert "the folder of the site file" in error

@@ -1,0 +1,204 @@
+"""`export`: every format for every aircraft, one file a sortie, checked files or none."""
+
+import json
+import shutil
+
+import pytest
+
+from groundstation.services.planning import plan_site
+from missions.dji.check import check_dji
+from missions.dji.container import parts_of_kmz
+from missions.formats import read_missions
+from planning.catalogue import profiles
+from planning.findings import is_flyable
+from planning.plan import FlightRules
+from planning.plan_file import read_plan
+from planning.planner import PlanRequest
+from planning.scenes import write_scene
+
+ENDINGS = {
+    "dji-kmz": ".kmz",
+    "mavlink-plan": ".plan",
+    "mavlink-wpl": ".waypoints",
+    "kml": ".kml",
+    "csv": ".csv",
+}
+
+
+@pytest.fixture(scope="module")
+def sorties(tmp_path_factory):
+    """Folder with a plan of several sorties: a large reserve makes the battery small."""
+    folder = tmp_path_factory.mktemp("sorties")
+    site = write_scene("roof", folder).rename(folder / "site.json")
+    request = PlanRequest(n_views=24, rules=FlightRules(battery_reserve=0.93), time_budget_s=5.0)
+    assert len(plan_site(site, request, folder / "plan.json").plan.sorties) > 1
+    return folder
+
+
+@pytest.fixture(scope="module")
+def plans_by_profile(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("profiles")
+    site = write_scene("single-panel", folder)
+    for profile_id in profiles():
+        plan_site(site, PlanRequest(n_views=3, profile_id=profile_id, time_budget_s=5.0), folder / f"{profile_id}.json")
+    return folder
+
+
+@pytest.mark.parametrize("file_format", sorted(ENDINGS))
+@pytest.mark.parametrize("profile_id", sorted(profiles()))
+def test_every_profile_exports_to_every_format_or_is_refused_with_a_reason(
+    reflight, plans_by_profile, tmp_path, profile_id, file_format
+):
+    plan, out = plans_by_profile / f"{profile_id}.json", tmp_path / f"m{ENDINGS[file_format]}"
+    done = reflight("export", plan, "--format", file_format, "-o", out)
+    if file_format == "dji-kmz" and profile_id in ("ardupilot", "px4"):
+        assert "DJI" in done.error
+        assert not out.exists()
+        return
+    assert (done.status, done.out) == (0, f"{out}\n")
+    assert sum(mission.n_photos for mission in read_missions(out)) == 3
+
+
+@pytest.mark.parametrize("file_format", sorted(ENDINGS))
+def test_each_sortie_gets_a_file_and_all_photos_are_in_them(reflight, sorties, tmp_path, file_format):
+    plan = read_plan(sorties / "plan.json")
+    done = reflight(
+        "export", sorties / "plan.json", "--format", file_format, "-o", tmp_path / f"m{ENDINGS[file_format]}", "--json"
+    )
+    assert done.status == 0
+    files = [tmp_path / name for name in done.json["files"]]
+    assert sorted(files) == sorted(tmp_path.iterdir())
+    assert len(files) == (1 if file_format in ("kml", "csv") else len(plan.sorties))
+    assert sum(m.n_photos for file in files for m in read_missions(file)) == len(plan.viewpoints)
+    assert done.json["format"] == file_format
+    assert done.json["heights"] == "above-takeoff"
+
+
+def test_kmz_passes_the_checks_of_its_format_without_an_error(reflight, sorties, tmp_path):
+    out = tmp_path / "m.kmz"
+    assert reflight("export", sorties / "plan.json", "--format", "dji-kmz", "-o", out).status == 0
+    assert is_flyable(check_dji(parts_of_kmz(out.read_bytes())))
+
+
+@pytest.mark.parametrize(
+    ("file_format", "heights", "autopilot"),
+    [
+        ("dji-kmz", "amsl", "px4"),
+        ("dji-kmz", "ellipsoid", "ardupilot"),
+        ("mavlink-plan", "amsl", "px4"),
+        ("mavlink-wpl", "amsl", "ardupilot"),
+    ],
+)
+def test_heights_and_autopilot_can_be_chosen(reflight, pane, tmp_path, file_format, heights, autopilot):
+    out = tmp_path / f"m{ENDINGS[file_format]}"
+    options = ["--heights", heights, "--autopilot", autopilot, "--link-loss", "go-home", "--return-height", 60]
+    assert reflight("export", pane / "plan.json", "--format", file_format, "-o", out, *options).status == 0
+    assert read_missions(out)[0].n_photos == 6
+
+
+def test_mavlink_has_no_heights_above_the_ellipsoid(reflight, pane, tmp_path):
+    error = reflight(
+        "export", pane / "plan.json", "--format", "mavlink-plan", "-o", tmp_path / "m.plan", "--heights", "ellipsoid"
+    ).error
+    assert "expected above-takeoff or amsl" in error
+
+
+@pytest.mark.parametrize("height", [0, -5, 1501])
+def test_return_heights_out_of_range_are_refused(reflight, pane, tmp_path, height):
+    error = reflight(
+        "export", pane / "plan.json", "--format", "dji-kmz", "-o", tmp_path / "m.kmz", "--return-height", height
+    ).error
+    assert f"--return-height: expected a height up to 1500 m, got {height}" in error
+
+
+def test_a_return_height_below_the_building_is_refused_and_nothing_written(reflight, sorties, tmp_path):
+    out = tmp_path / "m.kmz"
+    error = reflight("export", sorties / "plan.json", "--format", "dji-kmz", "-o", out, "--return-height", 11).error
+    assert "below the highest point of the site" in error
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_that_other_programs_do_not_look_for_is_told(reflight, pane, tmp_path):
+    done = reflight("export", pane / "plan.json", "--format", "dji-kmz", "-o", tmp_path / "m.zip")
+    assert done.status == 0
+    assert done.err == "warning: m.zip: other programs look for dji-kmz files with names that end in .kmz\n"
+
+
+@pytest.mark.parametrize(
+    ("out", "message"),
+    [
+        ("plan.json", "would replace"),
+        ("site.json", "would replace"),
+        (".", "this is a folder"),
+        ("no/m.kmz", "no folder"),
+    ],
+)
+def test_an_export_never_replaces_what_it_is_made_from(reflight, pane, tmp_path, out, message):
+    for name in ("plan.json", "site.json"):
+        shutil.copy(pane / name, tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    error = reflight("export", tmp_path / "plan.json", "--format", "csv", "-o", tmp_path / out).error
+    assert message in error
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_the_file_of_a_later_sortie_never_replaces_the_plan(reflight, sorties, tmp_path):
+    plan = tmp_path / "m-2.json"
+    shutil.copy(sorties / "plan.json", plan)
+    before = plan.read_bytes()
+    assert "would replace" in reflight("export", plan, "--format", "dji-kmz", "-o", tmp_path / "m.json").error
+    assert plan.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [plan]
+
+
+def test_the_site_beside_the_plan_is_found_among_other_files(reflight, sorties, tmp_path):
+    for path in sorties.iterdir():
+        shutil.copy(path, tmp_path)
+    (tmp_path / "a.json").mkdir()
+    (tmp_path / "b.json").symlink_to("nowhere")
+    (tmp_path / "c.json").write_bytes(b"\xff")
+    done = reflight("export", tmp_path / "plan.json", "--format", "dji-kmz", "-o", tmp_path / "m.kmz")
+    assert (done.status, done.err) == (0, "")
+    alone = tmp_path / "alone"
+    alone.mkdir()
+    shutil.copy(sorties / "plan.json", alone)
+    done = reflight("export", alone / "plan.json", "--format", "dji-kmz", "-o", tmp_path / "m.kmz")
+    assert done.status == 0
+    assert done.err.startswith("warning: the return height clears the path only, because the site was not given")
+
+
+def test_another_site_is_refused_and_a_changed_one_is_told(reflight, pane, changed, tmp_path):
+    def export_with(site):
+        return reflight("export", pane / "plan.json", "--site", site, "--format", "csv", "-o", tmp_path / "m.csv")
+
+    error = export_with(changed(pane / "site.json", "origin", "lat_deg", 10.0)).error
+    assert "the origin of 'single-panel' is not the one of the plan" in error
+    done = export_with(changed(pane / "site.json", "weather", "fine"))
+    assert done.status == 0
+    assert "the site file of 'single-panel' has changed since this plan was made" in done.err
+
+
+def test_a_plan_that_breaks_a_rule_is_exported_with_a_warning(reflight, pane, tmp_path):
+    content = json.loads((pane / "plan.json").read_text())
+    content["aircraft"]["endurance_s"] = 100
+    plan = tmp_path / "plan.json"
+    plan.write_text(json.dumps(content))
+    done = reflight(
+        "export", plan, "--site", pane / "site.json", "--format", "dji-kmz", "-o", tmp_path / "m.kmz", "--json"
+    )
+    assert done.status == 0
+    (finding,) = (finding for finding in done.json["findings"] if finding["code"] == "not-ready")
+    assert finding["severity"] == "warning"
+    assert "duration with the battery reserve kept" in finding["message"]
+
+
+def test_a_plan_without_sorties_is_refused(reflight, pane, changed, tmp_path):
+    plan = changed(changed(pane / "plan.json", "sorties", []), "viewpoints", [])
+    error = reflight("export", plan, "--format", "dji-kmz", "-o", tmp_path / "m.kmz").error
+    assert "sorties" in error
+    assert not (tmp_path / "m.kmz").exists()
+
+
+def test_files_that_are_no_plan_are_refused(reflight, bad_file, tmp_path):
+    assert str(bad_file) in reflight("export", bad_file, "--format", "kml", "-o", tmp_path / "m.kml").error
+    assert list(tmp_path.iterdir()) == [bad_file]

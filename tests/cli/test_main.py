@@ -1,0 +1,182 @@
+"""The frame around all commands: exit statuses, one line for an error, streams that break, Ctrl-C."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from groundstation.cli.main import main
+from planning.errors import OperationCancelled
+from planning.scenes import write_scene
+from tests.cli.conftest import ROOT
+
+
+def test_version_is_told(reflight):
+    done = reflight("--version")
+    assert done.status == 0
+    assert done.out == "Reflight 0.1.0\n"
+
+
+def test_without_a_command_the_window_opens():
+    assert main([], lambda: 7) == 7
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["fly"],
+        ["plan"],
+        ["plan", "site.json"],
+        ["plan", "site.json", "-o"],
+        ["plan", "site.json", "-o", "p.json", "--method", "magic"],
+        ["plan", "site.json", "-o", "p.json", "--views", "many"],
+        ["plan", "site.json", "-o", "p.json", "--min-distance", "nan"],
+        ["plan", "site.json", "-o", "p.json", "--speed", "inf"],
+        ["plan", "site.json", "-o", "p.json", "--views", "3", "--batteries", "1"],
+        ["check", "plan.json"],
+        ["export", "plan.json", "-o", "m.kmz"],
+        ["export", "plan.json", "-o", "m.kmz", "--format", "zip"],
+        ["import", "--site", "site.json", "-o", "plan.json"],
+        ["site"],
+        ["site", "import", "a.ifc"],
+        ["route"],
+        ["demo", "--scene", "castle"],
+        ["--bogus"],
+    ],
+)
+def test_wrong_usage_ends_with_status_2_and_shows_the_usage(reflight, arguments):
+    done = reflight(*arguments)
+    assert done.status == 2
+    assert done.out == ""
+    assert done.err.startswith("usage: app.py")
+    assert "Traceback" not in done.err
+
+
+@pytest.mark.parametrize("command", ["demo", "site", "plan", "check", "export", "import", "route", "tradeoff"])
+def test_every_command_explains_itself(reflight, command):
+    done = reflight(command, "-h")
+    assert done.status == 0
+    assert done.out.startswith(f"usage: app.py {command}")
+    assert done.err == ""
+
+
+def failing_with(error, monkeypatch):
+    def fail(*_arguments):
+        raise error
+
+    monkeypatch.setattr("groundstation.services.planning.check_files", fail)
+
+
+def test_a_fault_of_the_program_is_one_line_that_says_where_the_traceback_is(reflight, monkeypatch):
+    failing_with(ZeroDivisionError("division\nby zero"), monkeypatch)
+    done = reflight("check", "p.json", "s.json")
+    assert done.status == 1
+    line = done.err.rstrip("\n")
+    assert "\n" not in line
+    assert "ZeroDivisionError: division by zero" in line
+    report = Path(line.rpartition(" with ")[2])
+    assert "Traceback" in report.read_text()
+    report.unlink()
+
+
+def test_debug_shows_the_traceback(reflight, monkeypatch):
+    failing_with(ZeroDivisionError(), monkeypatch)
+    with pytest.raises(ZeroDivisionError):
+        reflight("--debug", "check", "p.json", "s.json")
+    done = reflight("--debug", "plan", "missing.json", "-o", "p.json")
+    assert "Traceback" in done.err
+    assert done.err.splitlines()[-1].startswith("error: missing.json")
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), OperationCancelled("check was cancelled")])
+def test_a_cancelled_command_says_so_and_ends_with_status_1(reflight, monkeypatch, error):
+    failing_with(error, monkeypatch)
+    done = reflight("check", "p.json", "s.json")
+    assert (done.status, done.out, done.err) == (1, "", "cancelled\n")
+
+
+def test_an_error_of_the_system_names_the_file(reflight, monkeypatch):
+    failing_with(PermissionError(13, "Permission denied", "/disk/full"), monkeypatch)
+    assert reflight("check", "p.json", "s.json").error == "error: /disk/full: Permission denied"
+
+
+def test_control_characters_from_a_damaged_file_do_not_reach_the_terminal(reflight, tmp_path):
+    file = tmp_path / "a.tsp"
+    file.write_bytes(b"NAME : x\n\x1b[2J\x07\n")
+    error = reflight("route", file).error
+    assert error.isprintable()
+    assert "[2J" in error
+
+
+def test_a_site_with_characters_the_terminal_lacks_is_no_error(process, pane):
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii:strict"}
+    done = process("check", pane / "plan.json", pane / "größe.json", env=environment)
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: ")
+    assert "gr\\xf6\\xdfe.json: cannot be read" in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="/dev/full exists on Linux only")
+def test_output_that_cannot_be_written_is_one_line_and_status_1(pane):
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "app.py", "check", pane / "plan.json", pane / "site.json"],
+            cwd=ROOT,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: ")
+    assert "No space left on device" in done.stderr.splitlines()[0]
+    assert "Traceback" not in done.stderr
+    assert "Exception ignored" not in done.stderr
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_reader_that_leaves_early_is_no_error_message(pane, unbuffered):
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    done = subprocess.run(
+        [sys.executable, "app.py", "check", pane / "plan.json", pane / "site.json"],
+        cwd=ROOT,
+        stdout=write_end,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+    )
+    os.close(write_end)
+    assert done.returncode == 1
+    assert "Traceback" not in done.stderr
+    assert "error" not in done.stderr
+    assert "Exception ignored" not in done.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="closes file descriptors as a POSIX shell does")
+def test_closed_streams_do_no_harm(pane):
+    line = f'"{sys.executable}" app.py check "{pane / "plan.json"}" "{pane / "site.json"}" >&- 2>&-'
+    assert subprocess.run(line, shell=True, cwd=ROOT, check=False).returncode == 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends SIGINT as a POSIX terminal does")
+def test_ctrl_c_in_the_middle_of_a_plan_leaves_no_file_and_no_traceback(tmp_path):
+    site = write_scene("library", tmp_path)
+    before = set(tmp_path.iterdir())
+    command = [sys.executable, "app.py", "plan", str(site), "-o", str(tmp_path / "plan.json"), "--time-budget", "100"]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        with pytest.raises(subprocess.TimeoutExpired):
+            running.wait(2.0)
+        started = time.perf_counter()
+        running.send_signal(signal.SIGINT)
+        out, err = running.communicate(timeout=60)
+        seconds = time.perf_counter() - started
+    assert running.returncode == 1
+    assert (out, err) == ("", "cancelled\n")
+    assert set(tmp_path.iterdir()) == before
+    assert seconds < 20.0

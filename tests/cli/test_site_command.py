@@ -1,0 +1,119 @@
+"""`site import`: building models become sites with a note for each decision, or are refused with what to add."""
+
+import pytest
+
+from planning.mesh import read_mesh
+from planning.scenes import write_scene
+from planning.site_file import read_site
+
+GRID = ["--panel-grid", "-18,0,0 18,0,0 -18,0,42", "--rows", 14, "--columns", 20]
+PLACE = ["--origin", "-33.8,151.2,5"]
+
+
+@pytest.fixture(scope="module")
+def mesh(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("mesh")
+    write_scene("office", folder)
+    return folder / "office.ply"
+
+
+def test_ifc_becomes_a_site_and_text_tells_panels_place_and_next_command(reflight, shared_data, tmp_path):
+    out = tmp_path / "wall.site.json"
+    done = reflight("site", "import", shared_data / "bim" / "curtain_wall_small.ifc", "-o", out)
+    assert done.status == 0
+    assert f"{out}: site 'curtain_wall_small', 21 panels on 2 facades: A 12, B 9\n" in done.out
+    assert "origin 40.42" in done.out
+    assert "check it, or give --origin" in done.err
+    assert done.err.splitlines()[-1] == f"next: app.py plan {out} -o {tmp_path / 'wall.plan.json'}"
+    assert read_site(out).site.n_panels == 21
+
+
+def test_citygml_becomes_a_site_and_json_tells_it(reflight, shared_data, tmp_path):
+    out = tmp_path / "s.json"
+    file = shared_data / "buildings" / "ingolstadt_lod3" / "4018302.xml"
+    done = reflight("site", "import", file, "-o", out, "--json")
+    assert (done.status, done.err) == (0, "")
+    assert done.json["panels"] == 16
+    assert done.json["facades"] == [{"id": "A", "panels": 9}, {"id": "B", "panels": 7}]
+    assert done.json["sha256"] == read_site(out).sha256
+    assert any("EPSG:32632" in note for note in done.json["notes"])
+
+
+def test_cityjson_without_windows_says_what_to_add_and_takes_it(reflight, shared_data, tmp_path):
+    file, out = shared_data / "buildings" / "cityjson" / "delft_1b.json", tmp_path / "s.json"
+    assert "no building in this file has windows" in reflight("site", "import", file, "-o", out).error
+    assert list(tmp_path.iterdir()) == []
+    grid = "85040.6,447504.6,0 85009.8,447482.7,0 85040.6,447504.6,6"
+    done = reflight("site", "import", file, "-o", out, "--panel-grid", grid, "--rows", 2, "--columns", 12)
+    assert done.status == 0
+    assert "24 panels on 1 facade: A 24" in done.out
+
+
+def test_mesh_south_of_the_equator_with_panels_stated(reflight, mesh, tmp_path):
+    out = tmp_path / "s.json"
+    done = reflight("site", "import", mesh, "-o", out, *PLACE, *GRID, "--gap", 0.1, "--name", "Haus am Fluß", "--json")
+    assert done.status == 0
+    site = read_site(out).site
+    assert (site.name, site.n_panels, site.origin.lat_deg) == ("Haus am Fluß", 280, -33.8)
+    assert done.json["triangles"] == len(read_mesh(mesh).triangles)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (PLACE, "a mesh does not tell windows from walls"),
+        (GRID, "--origin"),
+        ([*PLACE, "--rows", 2], "--rows goes with --panel-grid"),
+        ([*PLACE, *GRID, "--rows", 2, "--rows", 3], "--rows: expected it once, or once for each of 1"),
+        ([*PLACE, *GRID[:2], "--rows", 0, "--columns", 5], "expected 1 to 100000 panels"),
+        ([*PLACE, "--panel-grid", "-18,9,0 18,9,0 -18,9,42", "--rows", 2, "--columns", 2], "9.0 m from the building"),
+        (["--origin", "95,0,0", *GRID], "--origin: lat_deg: expected -90 to 90, got 95"),
+    ],
+)
+def test_meshes_lacking_something_are_refused_with_what_to_add(reflight, mesh, tmp_path, options, message):
+    assert message in reflight("site", "import", mesh, "-o", tmp_path / "s.json", *options).error
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "options", [["--origin", "1,2"], ["--origin", "a,b,c"], ["--origin", "nan,0,0"], ["--panel-grid", "1,2,3"]]
+)
+def test_points_that_are_none_are_wrong_usage(reflight, mesh, tmp_path, options):
+    done = reflight("site", "import", mesh, "-o", tmp_path / "s.json", *options)
+    assert done.status == 2
+    assert "expected" in done.err.splitlines()[-1]
+
+
+@pytest.mark.parametrize("suffix", [".ifc", ".gml", ".xml", ".json", ".obj", ".ply", ".glb", ".stl", ".dwg", ""])
+@pytest.mark.parametrize("content", [b"", bytes(range(256))], ids=["empty", "binary"])
+def test_files_that_are_no_building_are_refused(reflight, tmp_path, suffix, content):
+    file = tmp_path / f"building{suffix}"
+    file.write_bytes(content)
+    assert str(file) in reflight("site", "import", file, "-o", tmp_path / "s.json", *PLACE).error
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize("name", ["missing.ifc", "folder.ifc", "missing.json", "folder.ply"])
+def test_missing_files_and_folders_are_refused(reflight, tmp_path, name):
+    if name.startswith("folder"):
+        (tmp_path / name).mkdir()
+    assert name in reflight("site", "import", tmp_path / name, "-o", tmp_path / "s.json", *PLACE).error
+
+
+@pytest.mark.parametrize(
+    ("out", "message"), [("office.ply", "would replace"), ("no/s.json", "no folder"), (".", "folder")]
+)
+def test_an_import_never_replaces_what_it_reads(reflight, tmp_path, out, message):
+    write_scene("office", tmp_path)
+    before = (tmp_path / "office.ply").read_bytes()
+    assert message in reflight("site", "import", tmp_path / "office.ply", "-o", tmp_path / out, *PLACE, *GRID).error
+    assert (tmp_path / "office.ply").read_bytes() == before
+
+
+def test_the_mesh_of_a_site_beside_its_source_gets_another_name(reflight, tmp_path):
+    write_scene("office", tmp_path)
+    before = (tmp_path / "office.ply").read_bytes()
+    out = tmp_path / "office.json"
+    assert reflight("site", "import", tmp_path / "office.ply", "-o", out, *PLACE, *GRID).status == 0
+    assert (tmp_path / "office.ply").read_bytes() == before
+    assert read_site(out).site.building_mesh != "office.ply"

@@ -1,0 +1,36 @@
+"""The demonstration: everything it says it made is there."""
+
+import pytest
+
+from groundstation.services.demo import EXPORTS, demonstrate
+from planning.errors import InputError, OperationCancelled
+from planning.findings import is_flyable
+from planning.plan_file import read_plan
+from planning.planner import PlanRequest
+
+
+def test_all_files_are_made_and_the_plan_is_ready_to_fly(tmp_path):
+    made = demonstrate(tmp_path / "new" / "demo", "single-panel", PlanRequest(n_views=4, time_budget_s=5.0))
+    assert {made.site_path, made.plan_path, *made.mission_paths} == set((tmp_path / "new" / "demo").iterdir())
+    assert len(made.mission_paths) == len(EXPORTS)
+    assert read_plan(made.plan_path) == made.planned.plan
+    assert is_flyable(made.findings)
+    assert is_flyable(made.export_findings)
+
+
+def test_unknown_sites_and_bad_folders_are_refused(tmp_path):
+    with pytest.raises(InputError, match="there is no bundled site 'castle'; known are: canyon, court"):
+        demonstrate(tmp_path, "castle")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be made"):
+        demonstrate(tmp_path / "file")
+
+
+def test_a_cancelled_demonstration_leaves_no_plan(tmp_path):
+    class Cancelling:
+        def report(self, stage, done, total):
+            raise OperationCancelled("cancelled")
+
+    with pytest.raises(OperationCancelled):
+        demonstrate(tmp_path, "single-panel", monitor=Cancelling())
+    assert not list(tmp_path.glob("*.plan*"))

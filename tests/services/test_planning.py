@@ -1,0 +1,81 @@
+"""Use cases around plans: planning writes what it returns, checks look at files."""
+
+import json
+
+import pytest
+
+from groundstation.services.planning import check_files, finding_summary, plan_site, planned_summary
+from planning.errors import InfeasibleError, InputError, OperationCancelled
+from planning.findings import Finding, Severity, is_flyable
+from planning.plan import Constraints
+from planning.plan_file import read_plan
+from planning.planner import PlanRequest
+from planning.scenes import write_scene
+
+
+@pytest.fixture
+def site(tmp_path):
+    return write_scene("single-panel", tmp_path)
+
+
+def test_the_plan_returned_is_the_plan_written_and_passes_its_check(site, tmp_path):
+    out = tmp_path / "plan.json"
+    planned = plan_site(site, PlanRequest(n_views=4, time_budget_s=5.0), out)
+    assert read_plan(out) == planned.plan
+    assert is_flyable(check_files(out, site))
+
+
+def test_without_an_output_nothing_is_written(site, tmp_path):
+    before = set(tmp_path.iterdir())
+    assert len(plan_site(site, PlanRequest(n_views=2, time_budget_s=5.0), None).plan.viewpoints) == 2
+    assert set(tmp_path.iterdir()) == before
+
+
+def test_impossible_wishes_and_cancelled_work_write_nothing(site, tmp_path):
+    class Cancelling:
+        def report(self, stage, done, total):
+            raise OperationCancelled("cancelled")
+
+    before = set(tmp_path.iterdir())
+    with pytest.raises(InfeasibleError):
+        plan_site(site, PlanRequest(constraints=Constraints(min_distance_m=400.0)), tmp_path / "plan.json")
+    with pytest.raises(OperationCancelled):
+        plan_site(site, PlanRequest(), tmp_path / "plan.json", monitor=Cancelling())
+    with pytest.raises(InputError, match="would replace"):
+        plan_site(site, PlanRequest(), site)
+    assert set(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("request_", "codes"),
+    [
+        (PlanRequest(n_views=3, time_budget_s=5.0), []),
+        (PlanRequest(n_views=2000, time_budget_s=5.0), ["fewer-views"]),
+        (PlanRequest(share=0.5, time_budget_s=5.0), []),
+        (PlanRequest(share=1.0, method="noto", time_budget_s=5.0), ["less-coverage"]),
+    ],
+)
+def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
+    planned = plan_site(site, request_, None)
+    assert [finding.code for finding in planned.findings] == codes
+    for finding in planned.findings:
+        assert finding.value < finding.limit
+
+
+def test_summaries_are_json(site):
+    planned = plan_site(site, PlanRequest(n_views=3, time_budget_s=5.0), None)
+    summary = planned_summary(planned, 1.23456)
+    assert json.loads(json.dumps(summary, allow_nan=False)).keys() == summary.keys()
+    assert summary["seconds"] == 1.235
+    assert [count["covered"] for count in summary["depth"]] == sorted(
+        (count["covered"] for count in summary["depth"]), reverse=True
+    )
+    assert finding_summary(Finding(Severity.WARNING, "code", "text", "place", 1.0, 2.0, "m")) == {
+        "severity": "warning",
+        "code": "code",
+        "message": "text",
+        "place": "place",
+        "value": 1.0,
+        "limit": 2.0,
+        "unit": "m",
+    }
