@@ -13,7 +13,9 @@ setup: $(VENV)/.ready
 
 # CPU torch goes in first: asked for later, as a dependency, pip could choose a CUDA build of several gigabytes.
 $(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
-	.ci/system-libraries
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] not in ((3, 11), (3, 12)))' || \
+		{ echo 'Python 3.11 or 3.12 is needed; name one: make PYTHON=python3.11' >&2; exit 1; }
+	PYTHON=$(PYTHON) .ci/system-libraries
 	test -x $(PY) || $(PYTHON) -m venv $(VENV)
 	$(PY) -m pip install --quiet --upgrade --constraint constraints.txt pip setuptools
 	$(PY) -m pip install --quiet --constraint constraints.txt torch

@@ -202,23 +202,30 @@ def _points_enu_m(mission: ReadMission, origin: Origin, home_height_ellipsoid_m:
 
 
 def _flown_path(mission: ReadMission, points: Sequence[Vec3], home: Vec3) -> list[Vec3]:
-    """From take-off to landing: the waypoints and the pieces that the autopilot flies by itself."""
+    """From take-off to landing: the waypoints and the pieces that the autopilot flies by itself.
+
+    A waypoint with several photos is as many vertices, one a photo, as in plans of our own.
+    """
     first, last = points[0], points[-1]
     climb_z = max(first[2], home[2] + mission.climb_above_takeoff_m)
-    path = [home]
+    before = [home]
     if math.dist(first[:2], home[:2]) > COLUMN_RADIUS_M:
-        path += [(home[0], home[1], climb_z), (first[0], first[1], climb_z)]
-    path += points
+        before += [(home[0], home[1], climb_z), (first[0], first[1], climb_z)]
+    after: list[Vec3] = []
     home_m = math.dist(last[:2], home[:2])
     if home_m <= COLUMN_RADIUS_M and mission.finish is not Finish.HOVER:
-        path.append(home)
+        after = [home]
     elif mission.finish is Finish.RETURN:
         climbs = home_m > RTH_NEAR_M
         return_z = max(last[2], home[2] + mission.return_above_takeoff_m) if climbs else last[2]
-        path += [(last[0], last[1], return_z), (home[0], home[1], return_z), home]
+        after = [(last[0], last[1], return_z), (home[0], home[1], return_z), home]
     elif mission.finish is Finish.LAND:
-        path.append((last[0], last[1], home[2]))
-    return [point for point, _ in itertools.groupby(path)]
+        after = [(last[0], last[1], home[2])]
+    n_extra = [max(0, len(waypoint.photos) - 1) for waypoint in mission.waypoints]
+    path: list[Vec3] = []
+    for point, extra in [*((p, 0) for p in before), *zip(points, n_extra, strict=True), *((p, 0) for p in after)]:
+        path += [point] * (extra + (not path or path[-1] != point))
+    return path
 
 
 def _sortie(path: Sequence[Vec3], views: Sequence[Viewpoint], mission: ReadMission, rules: FlightRules) -> Sortie:

@@ -14,10 +14,6 @@ from planning.plan import Coverage, Viewpoint, viewpoint_arrays
 from planning.reach_kernel import UNREACHABLE
 from planning.reachability import Reachability
 
-POSITION_DECIMALS = 4
-ANGLE_DECIMALS = 3
-"""Of positions (0.1 mm) and angles (0.001 degrees) in plan files."""
-
 
 @dataclass(frozen=True, slots=True)
 class DepthCount:
@@ -52,6 +48,15 @@ def depth(model: CoverageModel, viewpoints: Sequence[Viewpoint], max_views: int 
         DepthCount(model.grid.step_deg, k, int(np.count_nonzero(counts >= k)), model.n_elements)
         for k in range(1, max_views + 1)
     )
+
+
+def nearest_panel_m(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> NDArray[np.float64]:
+    """Distance of each viewpoint to the nearest centroid of the panels it covers, shape (n,); inf where none."""
+    positions = viewpoint_arrays(tuple(viewpoints)).positions_enu_m
+    view, panel = np.nonzero(exact_sections(model, viewpoint_arrays(tuple(viewpoints))) != NOT_SEEN)
+    nearest = np.full(len(positions), np.inf)
+    np.minimum.at(nearest, view, np.linalg.norm(positions[view] - model.frames.centroids[panel], axis=1))
+    return nearest
 
 
 def ground_sampling_m(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> tuple[float, float]:

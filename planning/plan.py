@@ -16,6 +16,10 @@ from planning.effects import Decision
 from planning.frames import Vec3
 from planning.site import Origin, check_point
 
+POSITION_DECIMALS = 4
+ANGLE_DECIMALS = 3
+"""Of positions (0.1 mm) and angles in degrees, in plan files and missions: what was counted is what is flown."""
+
 
 @dataclass(frozen=True, slots=True)
 class Camera:

@@ -16,15 +16,17 @@ from numpy.typing import NDArray
 from planning.catalogue import DEFAULT_PROFILE, Profile, profile
 from planning.coverage.model import Precision
 from planning.errors import InputError
-from planning.evaluate import ANGLE_DECIMALS, POSITION_DECIMALS, DepthCount, coverage, depth
+from planning.evaluate import DepthCount, coverage, depth
 from planning.findings import Finding
 from planning.frames import wrap_heading_rad
 from planning.methods import method_named
-from planning.optimise.budget import views_within_budget
+from planning.optimise.budget import best_flights, views_within_budget
 from planning.optimise.greedy import GreedyParameters, greedy
 from planning.optimise.problem import DEFAULT_SHARE, Goal, Optimiser, ViewProblem, nothing_to_see, take
 from planning.optimise.spacing import merge_close_views
 from planning.plan import (
+    ANGLE_DECIMALS,
+    POSITION_DECIMALS,
     Constraints,
     FlightRules,
     HistoryPoint,
@@ -44,8 +46,8 @@ from planning.space import LEG_MARGIN_M, free_space
 DEFAULT_VIEWS = 560
 """For methods that need a number of views when none is given: the paper's for its planar case."""
 
-ROUTING_SHARE = 0.3
-"""Part of the time budget kept for routing."""
+REACHABILITY_SHARE, ROUTING_SHARE = 0.5, 0.3
+"""Parts of the time budget: what proofs of what can be reached may take at most, and what is kept for routing."""
 
 SHORTEST_ROUTING_S = 1.0
 LONGEST_ROUTING_S = 8.0
@@ -146,7 +148,7 @@ def plan_flight(
         request.constraints,
         precision=request.precision,
         seed=request.seed,
-        stop=any_of(stop, limit),
+        stop=any_of(stop, TimeLimit(REACHABILITY_SHARE * request.time_budget_s)),
         monitor=monitor,
     )
     watch.lap("reachability")
@@ -174,6 +176,8 @@ def plan_flight(
         raise nothing_to_see()
     watch.lap("views")
     flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
+    if request.n_batteries is not None:
+        flights = best_flights(problem.model, views, flights, request.n_batteries)
     watch.lap("routing")
     plan = _plan(site_model, request, chosen_profile, prepared, views, flights, trace)
     watch.lap("certificate")

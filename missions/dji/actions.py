@@ -9,6 +9,7 @@ from missions.dji.catalogue import DjiProfile
 from missions.dji.xml_text import Node, number
 from missions.model import Photo
 from planning.frames import wrap_heading_deg
+from planning.plan import ANGLE_DECIMALS
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w-]")
 
@@ -67,7 +68,9 @@ def _photo_actions(
     photo: Photo, turn_deg: float, profile: DjiProfile, settle_s: float, *, is_template: bool
 ) -> Iterator[list[Node]]:
     path_mode = "clockwise" if turn_deg >= 0 else "counterClockwise"
-    yield _action("rotateYaw", [("aircraftHeading", number(photo.heading_deg, 2)), ("aircraftPathMode", path_mode)])
+    yield _action(
+        "rotateYaw", [("aircraftHeading", number(photo.heading_deg, ANGLE_DECIMALS)), ("aircraftPathMode", path_mode)]
+    )
     yield _action("gimbalRotate", _gimbal_pitch(photo.gimbal_pitch_deg))
     if profile.wide_zoom_mm > 0:
         zoom = number(profile.wide_zoom_mm, 1)
@@ -92,7 +95,7 @@ def _gimbal_pitch(pitch_deg: float) -> list[Node]:
         ("gimbalHeadingYawBase", "north"),
         ("gimbalRotateMode", "absoluteAngle"),
         ("gimbalPitchRotateEnable", "1"),
-        ("gimbalPitchRotateAngle", number(pitch_deg, 2)),
+        ("gimbalPitchRotateAngle", number(pitch_deg, ANGLE_DECIMALS)),
         ("gimbalRollRotateEnable", "0"),
         ("gimbalRollRotateAngle", "0"),
         ("gimbalYawRotateEnable", "0"),

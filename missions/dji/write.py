@@ -22,6 +22,7 @@ from missions.dji.xml_text import Node, number, render
 from missions.heights import altitude_amsl_m
 from missions.legs import leg_lengths_m
 from missions.model import GeoPoint, HeightReference, Mission, Waypoint
+from planning.plan import ANGLE_DECIMALS
 
 MAX_SPEED_M_S = 15.0
 """Highest autoFlightSpeed and globalTransitionalSpeed of the format."""
@@ -244,7 +245,7 @@ def _heading_param(mode: str, angle_deg: float, enable: bool | None) -> list[Nod
     """Heading of a waypoint; templates have no waypointHeadingAngleEnable (`enable` None)."""
     return [
         ("waypointHeadingMode", mode),
-        ("waypointHeadingAngle", number(angle_deg, 2)),
+        ("waypointHeadingAngle", number(angle_deg, ANGLE_DECIMALS)),
         ("waypointPoiPoint", "0.000000,0.000000,0.000000"),
         *([] if enable is None else [("waypointHeadingAngleEnable", "1" if enable else "0")]),
         ("waypointHeadingPathMode", "followBadArc"),

@@ -22,6 +22,7 @@ from missions.legs import leg_lengths_m
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.model import GeoPoint, HeightReference, Mission, Photo
 from planning.frames import wrap_heading_deg
+from planning.plan import ANGLE_DECIMALS
 
 NAN = math.nan
 Params = tuple[float, float, float, float, float, float, float]
@@ -151,7 +152,8 @@ class _Sequence:
         """Items of one photo."""
         self.n_photos += 1
         turn_s, tilt_s = self.turning_s(photo)
-        heading_deg, pitch_deg = round(photo.heading_deg, 2), round(photo.gimbal_pitch_deg, 2)
+        heading_deg = round(photo.heading_deg, ANGLE_DECIMALS)
+        pitch_deg = round(photo.gimbal_pitch_deg, ANGLE_DECIMALS)
         if self.autopilot is Autopilot.ARDUPILOT:
             hold_s = self.ardupilot_hold_s(max(turn_s, tilt_s), leg_s)
             # Before CONDITION_YAW: a gimbal without a pan axis makes the vehicle turn to param 3, to north. And not
