@@ -53,6 +53,10 @@ MISSION_FILTERS = {
 }
 
 
+SIDE_WIDTH_PX = 380
+"""Widest that the form and the chart become: the rest of the width is for the site."""
+
+
 class MainWindow(QMainWindow):
     """One site, one plan, one job at a time."""
 
@@ -113,7 +117,8 @@ class MainWindow(QMainWindow):
             self.addDockWidget(area, dock)
             docks.append(dock)
         self.setCorner(Qt.Corner.BottomLeftCorner, left)
-        self.resizeDocks(docks[:1], [360], Qt.Orientation.Horizontal)
+        for widget in (self._form, self._chart):
+            widget.setMaximumWidth(SIDE_WIDTH_PX)
         self.resizeDocks(docks[2:], [150], Qt.Orientation.Vertical)
 
     def _make_job_bar(self) -> None:
@@ -275,7 +280,7 @@ class MainWindow(QMainWindow):
     def _say_plan(self, planned: Planned) -> None:
         plan, coverage = planned.plan, planned.plan.coverage
         self._say(
-            self.tr("{0} views in {1} sorties, {2:.1f} min; covered {3} of at most {4} reachable sections").format(
+            self.tr("{0} views, sorties: {1}, {2:.1f} min; covered {3} of at most {4} reachable sections").format(
                 len(plan.viewpoints),
                 len(plan.sorties),
                 plan.duration_s / 60.0,

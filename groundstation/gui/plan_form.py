@@ -24,7 +24,8 @@ class PlanForm(QWidget):
         self._value = PlanRequest()
         self._profile = QComboBox()
         for identifier, profile in sorted(profiles().items()):
-            self._profile.addItem(f"{profile.aircraft.name} / {profile.camera.name}", identifier)
+            names = dict.fromkeys([profile.aircraft.name, profile.camera.name])
+            self._profile.addItem(" / ".join(names), identifier)
         self._method = QComboBox()
         self._method.addItems(list(METHODS))
         self._goal = QComboBox()

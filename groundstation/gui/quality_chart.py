@@ -34,6 +34,7 @@ class QualityChart(pg.PlotWidget):  # type: ignore[misc]
         """Another improvement."""
         self._points.append(point)
         self._line.setData([p.t_s for p in self._points], [p.value for p in self._points])
+        self.setXRange(0.0, max(1.0, 1.05 * point.t_s), padding=0.0)
 
     def set_bound(self, sections: int) -> None:
         """Draw the upper bound."""

@@ -76,7 +76,9 @@ class SiteView(QWidget):
                 colour = SORTIES[number % len(SORTIES)]
                 self._plan_actors.append(self._plotter.add_mesh(line, color=colour, line_width=2))
             if plan.viewpoints:
-                self._plan_actors.append(self._plotter.add_mesh(_frusta(plan), color="#1b2733", line_width=1))
+                frusta = _frusta(plan)
+                self._plan_actors.append(self._plotter.add_mesh(frusta, color="#1b2733", line_width=1))
+                self._plotter.reset_camera(bounds=frusta.bounds, render=False)
         self._plotter.render()
 
     def screenshot(self) -> NDArray[np.uint8]:

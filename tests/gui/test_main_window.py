@@ -51,7 +51,7 @@ def test_window_opens_plans_checks_and_exports_a_site(application, window, tmp_p
     window.form().setValue(PlanRequest(n_views=12, time_budget_s=5.0))
     window.plan()
     run_until_idle(application, window)
-    assert "12 views in 1 sorties" in window.messages()
+    assert "12 views, sorties: 1" in window.messages()
     assert "occlusion: off" in window.messages()
     after = window.view().screenshot()
     assert (before.std(axis=(0, 1)) > 5).all(), "the site is not drawn"
@@ -76,7 +76,7 @@ def test_window_answers_while_a_plan_runs_and_cancel_throws_it_away(application,
     window._cancel_job()
     run_until_idle(application, window)
     assert "Plan cancelled" in window.messages()
-    assert "views in" not in window.messages()
+    assert "views, sorties" not in window.messages()
     assert longest < 0.5
 
 
@@ -89,7 +89,7 @@ def test_good_enough_keeps_the_best_so_far(application, window, tmp_path):
         application.processEvents()
     window._stop_here()
     run_until_idle(application, window)
-    assert "40 views in 1 sorties" in window.messages()
+    assert "40 views, sorties: 1" in window.messages()
     assert time.perf_counter() - started < 20.0
 
 
