@@ -7,8 +7,9 @@ For coverage the gap is 1 - covered / bound, for a tour length / bound - 1.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from planning.progress import QualityPoint
 
@@ -65,15 +66,27 @@ def mean_curve(curves: Sequence[Curve]) -> Curve:
     return falling((mean for mean in means if math.isfinite(mean.value)), max(curve.end_s for curve in curves))
 
 
-def winner(curves: Mapping[str, Curve], noise: float) -> str | None:
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Gaps that count as equal: up to `floor` and, of the smaller one, `share` above it."""
+
+    floor: float
+    share: float = 0.0
+
+    def equal_up_to(self, gap: float) -> float:
+        """Largest gap that counts as equal to the smaller `gap`."""
+        return gap + self.floor + self.share * gap
+
+
+def winner(curves: Mapping[str, Curve], noise: Noise) -> str | None:
     """Name of the run with the smallest gap in the end; None where no run found anything.
 
-    Runs within `noise` of the smallest count as equal, and the first to get there wins.
+    Among runs that count as equal to it, the first to get there wins.
     """
     best = min((curve.final_gap for curve in curves.values()), default=math.inf)
     if math.isinf(best):
         return None
-    arrivals = {name: curve.time_to(best + noise) for name, curve in curves.items()}
+    arrivals = {name: curve.time_to(noise.equal_up_to(best)) for name, curve in curves.items()}
     return min((t_s, name) for name, t_s in arrivals.items() if t_s is not None)[1]
 
 
@@ -105,7 +118,7 @@ class Answers:
 
 
 def answers(
-    curves: Mapping[str, Curve], gaps: Sequence[float], noise: float, budgets_s: Sequence[float] = BUDGETS_S
+    curves: Mapping[str, Curve], gaps: Sequence[float], noise: Noise, budgets_s: Sequence[float] = BUDGETS_S
 ) -> Answers:
     """Winner overall and at each budget by the rule of `winner`, and who is first to reach each of `gaps`."""
     by_budget = []
@@ -118,3 +131,20 @@ def answers(
         t_s, first = min(reached) if reached else (None, None)
         by_gap.append(GapAnswer(gap, first, t_s))
     return Answers(winner(curves, noise), tuple(by_budget), tuple(by_gap))
+
+
+def seconds_text(t_s: float) -> str:
+    """Seconds with two digits or more."""
+    return f"{t_s:.0f} s" if t_s >= 100.0 else f"{t_s:.1f} s" if t_s >= 1.0 else f"{t_s:.2g} s"
+
+
+def answers_summary(found: Answers, key: str, value: Callable[[float], float]) -> dict[str, Any]:
+    """Answers as JSON; `value` turns a gap into what is called `key` there."""
+    return {
+        "winner": found.winner,
+        "by_budget": [
+            {"t_s": budget.budget_s, "run": budget.run, key: None if budget.gap is None else value(budget.gap)}
+            for budget in found.by_budget
+        ],
+        "by_quality": [{key: value(goal.gap), "run": goal.run, "t_s": goal.t_s} for goal in found.by_gap],
+    }

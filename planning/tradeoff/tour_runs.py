@@ -6,6 +6,7 @@ enough: its legs lead around the building, and their lengths are the seconds tha
 
 from __future__ import annotations
 
+import importlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,14 +26,14 @@ from planning.routing.tour import tour_length
 from planning.routing.tsplib import read_instance, read_tour, tour_order
 from planning.site import SiteModel
 from planning.space import free_space
-from planning.tradeoff.curves import Curve, falling
+from planning.tradeoff.curves import Curve, Noise, falling
 
 TOUR_METHODS: tuple[TourMethod, ...] = get_args(TourMethod)
 
 TOUR_GAPS = (0.1, 0.05, 0.03, 0.01)
 """Lengths of 10, 5, 3 and 1 % above the reference: when were they reached?"""
 
-TOUR_NOISE = 1e-4
+TOUR_NOISE = Noise(floor=1e-4)
 """Tours whose lengths differ by less than this part count as equally short."""
 
 BOUND_LIMIT_S = 25.0
@@ -80,6 +81,20 @@ class TourRun:
     method: TourMethod
     seed: int
     points: tuple[QualityPoint, ...]
+
+
+def tour_methods(names: Sequence[str]) -> tuple[TourMethod, ...]:
+    """Methods by name.
+
+    Raises
+    ------
+    InputError
+        There is no such method; the message lists those there are.
+    """
+    unknown = next((name for name in names if name not in TOUR_METHODS), None)
+    if unknown is not None:
+        raise InputError(f"there is no routing method '{unknown}'; known are: {', '.join(TOUR_METHODS)}")
+    return tuple(method for method in TOUR_METHODS if method in names)
 
 
 def tsplib_case(path: Path, monitor: Monitor = QUIET) -> TourCase:
@@ -131,8 +146,18 @@ def run_tours(
     seed: int = 0,
     monitor: Monitor = QUIET,
 ) -> tuple[TourRun, ...]:
-    """Each method for so many seconds, one after the other; local search is left out where costs are asymmetric."""
+    """Each method for so many seconds, one after the other; local search is left out where costs are asymmetric.
+
+    Raises
+    ------
+    InputError
+        No method is left.
+    """
+    if any(method.startswith("pyvrp") for method in methods):
+        importlib.import_module("planning.routing.vrp")  # so that the first run does not pay for loading it
     possible = [method for method in methods if method != "local-search" or case.is_symmetric]
+    if not possible:
+        raise InputError(f"{case.name}: local-search needs the same cost in both directions; add the method pyvrp")
     curves = tour_curves(case.cost, seconds, methods=possible, seed=seed, monitor=monitor)
     return tuple(TourRun(case.name, method, seed, tuple(trace.points)) for method, trace in curves.items())
 

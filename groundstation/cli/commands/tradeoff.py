@@ -1,0 +1,277 @@
+"""`tradeoff`: what accuracy costs in time, as a table, a picture and answers to "I have 60 s" and "I want 99 %"."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundstation.cli.commands.plan import add_request_arguments, request_of
+from planning.errors import InputError
+
+if TYPE_CHECKING:
+    from planning.tradeoff.curves import Answers
+    from planning.tradeoff.plan_report import PlanReport
+    from planning.tradeoff.plan_runs import FailedRun, Variants
+    from planning.tradeoff.tour_report import TourReport
+
+DEFAULT_SECONDS = 30.0
+
+PLAN_EPILOG = """what varies, one at a time, all else as the other options say:
+  --methods, --precisions, --steps, --candidates
+Every run gets the same number of views: 560, unless --views, --coverage or --batteries says something else.
+
+The winner has the best final coverage of the sections asked for (--step), counted in float64. Runs that leave at most
+6 % more uncovered than the best are equal, because seeds scatter by that, and the first to get there wins. The final
+views of every run are also counted in the finest sections of any run: does planning with finer sections pay?
+
+Time starts when the site is read. Runs that are timed must not disturb each other, so they follow each other
+(--jobs 1). With more jobs or a cluster the coverage reached counts, not the times.
+
+examples:
+  tradeoff plan office.site.json -o tradeoff --time-budget 30
+  tradeoff plan office.site.json -o tradeoff --views 56 --methods greedy,pso --precisions f32 --steps 30 --seeds 3
+  tradeoff plan court.site.json canyon.site.json -o tradeoff --seeds 10 --jobs 8
+"""
+
+ROUTE_EPILOG = """examples:
+  tradeoff route kroA100.tsp pcb442.tsp -o tradeoff --seconds 10
+  tradeoff route office.plan.json office.site.json -o tradeoff
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command and what it compares."""
+    parser = subparsers.add_parser(
+        "tradeoff",
+        help="see what accuracy costs in time",
+        description="Run methods and settings side by side and write quality against time as a CSV and a picture.",
+    )
+    kinds = parser.add_subparsers(title="what to compare", metavar="WHAT", required=True)
+    _add_plan(kinds)
+    _add_route(kinds)
+
+
+def _add_plan(kinds: Any) -> None:
+    parser = kinds.add_parser(
+        "plan",
+        help="coverage against time of the planner",
+        description="Plan the same site with every method, precision, section step and number of candidates;\n"
+        "write tradeoff-plan.csv and tradeoff-plan.png.",
+        epilog=PLAN_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        conflict_handler="resolve",
+    )
+    parser.set_defaults(run=run_plan)
+    add = parser.add_argument
+    add("site", type=Path, nargs="+", metavar="SITE", help="site file")
+    _add_output(parser)
+    add_request_arguments(parser)
+    varied = parser.add_argument_group("what varies (lists with commas)").add_argument
+    varied("--methods", type=_words, default="greedy,pso,noto,orbit", metavar="LIST", help="default: %(default)s")
+    varied("--precisions", type=_words, default="f32,f64", metavar="LIST", help="default: %(default)s")
+    varied("--steps", type=_numbers, default="30,15,10,5", metavar="LIST", help="degrees (default: %(default)s)")
+    varied("--candidates", type=_counts, default="2000,5000,20000", metavar="LIST", help="default: %(default)s")
+    varied("--seeds", type=_count, default=1, metavar="N", help="runs of each setting, from --seed on (default 1)")
+    where = parser.add_argument_group("where").add_argument
+    where("--jobs", type=_count, default=1, metavar="N", help="runs at a time; 1 (default) is needed to compare times")
+    where("--cluster", metavar="ADDRESS", help="run on a Dask cluster, such as tcp://10.0.0.5:8786")
+
+
+def _add_route(kinds: Any) -> None:
+    parser = kinds.add_parser(
+        "route",
+        help="tour length against time of the routing methods",
+        description="Run every routing method on the tours of TSPLIB files and of plans, beside the proven lower\n"
+        "bound and the known optimum; write tradeoff-route.csv and tradeoff-route.png.\n"
+        "A plan needs its site: name it, or keep it beside the plan.",
+        epilog=ROUTE_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run_route)
+    add = parser.add_argument
+    add("file", type=Path, nargs="+", metavar="FILE", help="TSPLIB file (.tsp, .atsp), plan or site")
+    _add_output(parser)
+    add("--seconds", type=_seconds, default=DEFAULT_SECONDS, metavar="S", help="for each method (default %(default)g)")
+    methods = "nearest-neighbour,local-search,pyvrp,pyvrp-cold"
+    add("--methods", type=_words, default=methods, metavar="LIST", help="default: %(default)s")
+    add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
+
+
+def _add_output(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def _words(text: str) -> tuple[str, ...]:
+    words = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
+    if not words:
+        raise argparse.ArgumentTypeError(f"expected a list such as a,b, got '{text}'")
+    return words
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0.0):
+        raise argparse.ArgumentTypeError(f"expected a number above 0, got '{text}'")
+    return value
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(_seconds(word) for word in _words(text))
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"expected a whole number of 1 or more, got '{text}'")
+    return int(text)
+
+
+def _counts(text: str) -> tuple[int, ...]:
+    return tuple(_count(word) for word in _words(text))
+
+
+def run_plan(options: argparse.Namespace) -> int:
+    """Compare planning settings and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.tradeoff import plan_tradeoff
+    from planning.tradeoff.plan_report import plan_summary
+
+    variants = _variants(options)
+    base = request_of(argparse.Namespace(**{**vars(options), "candidates": None}))
+    made = run_job(
+        "tradeoff plan",
+        lambda context: plan_tradeoff(
+            options.site,
+            base,
+            variants,
+            options.out,
+            n_seeds=options.seeds,
+            n_processes=options.jobs,
+            address=options.cluster,
+            monitor=context,
+        ),
+    )
+    if options.json:
+        reports = [plan_summary(report) for report in made.reports]
+        failed = [{"site": run.site, "run": _failed_name(run), "reason": run.message} for run in made.failed]
+        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), "sites": reports, "failed": failed})
+        return 0
+    if options.jobs > 1 or options.cluster:
+        print("note: the runs shared the machine, so their times cannot be compared", file=sys.stderr)
+    for report in made.reports:
+        _print_plan(report)
+    for run in made.failed:
+        print(f"warning: {run.site}, {_failed_name(run)}: {run.message}", file=sys.stderr)
+    print(f"{made.csv_path}\n{made.picture_path}")
+    return 0
+
+
+def _variants(options: argparse.Namespace) -> Variants:
+    from planning.plan import check_section_step
+    from planning.tradeoff.plan_runs import Variants
+
+    try:
+        for step in options.steps:
+            check_section_step(step)
+        return Variants(options.methods, options.precisions, options.steps, options.candidates)
+    except ValueError as error:
+        raise InputError(str(error)) from error
+
+
+def _failed_name(run: FailedRun) -> str:
+    request = run.request
+    return f"{request.method} {request.precision} {request.constraints.section_step_deg:g}° seed {request.seed}"
+
+
+def _print_plan(report: PlanReport) -> None:
+    from planning.tradeoff.curves import seconds_text
+    from planning.tradeoff.plan_report import plan_title, share_text, time_to_part_s
+
+    step = report.base_step_deg
+    print(plan_title(report))
+    print(f"  at most {report.bounds[step]} of {report.runs[0].total} sections of {step:g}° can be covered")
+    finest = report.steps_deg[-1]
+    in_finest = "" if finest == step else f"in {finest:g}°"
+    print(f"  {'run':<24}{'views':>6}{'covered':>10}{in_finest:>9}{'first':>9}{'best':>9}{'plan ready':>12}")
+    for name in report.names:
+        curve, run = report.curves[step][name], report.of(name)[0]
+        in_finest = "" if finest == step else share_text(report.curves[finest][name].final_gap)
+        first_s, best_s = curve.points[0].t_s, curve.points[-1].t_s
+        print(
+            f"  {name:<24}{run.n_views:>6}{share_text(curve.final_gap):>10}{in_finest:>9}"
+            f"{first_s:>7.2f} s{best_s:>7.2f} s{curve.end_s:>10.1f} s"
+        )
+    last_s = max(curve.end_s for curve in report.curves[step].values())
+    goal = f"of what can be covered in sections of {step:g}°"
+    _print_answers(report.answers[step], share_text, lambda gap: f"{100.0 * (1.0 - gap):g} % {goal}", last_s)
+    gaps = [answer.gap for answer in report.answers[step].by_gap]
+    parts = " / ".join(f"{100.0 * (1.0 - gap):g}" for gap in gaps)
+    winner = report.curves[step][report.winner]
+    times = " / ".join(seconds_text(time_to_part_s(winner, 1.0 - gap)) for gap in gaps)
+    print(f"  '{report.winner}' had {parts} % of its own final coverage after {times}")
+    if finest != step:
+        print(f"  best in sections of {finest:g}°: '{report.answers[finest].winner}'")
+
+
+def _print_answers(found: Answers, text: Callable[[float], str], goal: Callable[[float], str], last_s: float) -> None:
+    """What each budget gives, up to the first at which all runs are over, and when each goal was reached."""
+    from planning.tradeoff.curves import seconds_text
+
+    for budget in found.by_budget:
+        reached = "nothing yet" if budget.gap is None else f"{text(budget.gap)} with '{budget.run}'"
+        print(f"  after {budget.budget_s:>2g} s: {reached}")
+        if budget.budget_s >= last_s:
+            break
+    for wanted in found.by_gap:
+        reached = "not reached" if wanted.t_s is None else f"after {seconds_text(wanted.t_s)} with '{wanted.run}'"
+        print(f"  {goal(wanted.gap)}: {reached}")
+
+
+def run_route(options: argparse.Namespace) -> int:
+    """Compare routing methods and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.tradeoff import route_tradeoff
+    from planning.tradeoff.tour_report import tour_summary
+    from planning.tradeoff.tour_runs import tour_methods
+
+    methods = tour_methods(options.methods)
+    made = run_job(
+        "tradeoff route",
+        lambda context: route_tradeoff(
+            options.file, options.seconds, options.out, methods=methods, seed=options.seed, monitor=context
+        ),
+    )
+    if options.json:
+        tours = [tour_summary(report) for report in made.reports]
+        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), "tours": tours})
+        return 0
+    for report in made.reports:
+        _print_tour(report)
+    print(f"{made.csv_path}\n{made.picture_path}")
+    return 0
+
+
+def _print_tour(report: TourReport) -> None:
+    from planning.tradeoff.curves import seconds_text
+    from planning.tradeoff.tour_report import gap_text, plain, tour_title
+
+    case = report.case
+    optimum = "" if case.optimum is None else f", known optimum {plain(case.optimum)}"
+    print(tour_title(report))
+    print(f"  {report.n_points} points, nothing is shorter than {plain(case.lower_bound)}{optimum}")
+    for method, curve in report.curves.items():
+        if curve.points:
+            length, best_s = plain(report.length_of(method)), curve.points[-1].t_s
+            print(f"  {method:<18}{length:>12}{gap_text(curve.final_gap):>10}  best after {seconds_text(best_s)}")
+        else:
+            print(f"  {method:<18}  found no tour")
+    reference = "lower bound" if case.optimum is None else "optimum"
+    last_s = max(curve.end_s for curve in report.curves.values())
+    _print_answers(report.answers, gap_text, lambda gap: f"within {100.0 * gap:g} % of the {reference}", last_s)

@@ -1,0 +1,40 @@
+"""All benchmarks, in the order of the page."""
+
+from __future__ import annotations
+
+from tests.benchmarks import (
+    baselines,
+    certificates,
+    fresh_process,
+    kernel_speed,
+    mission_files,
+    occlusion_effect,
+    paper_views,
+    plan_routing,
+    precisions,
+    reachable,
+    site_imports,
+    speed_profiles,
+    tradeoffs,
+    tsplib_tours,
+    view_counts,
+)
+from tests.benchmarks.harness import Benchmark
+
+BENCHMARKS: tuple[Benchmark, ...] = (
+    tradeoffs.BENCHMARK,
+    kernel_speed.BENCHMARK,
+    precisions.BENCHMARK,
+    paper_views.BENCHMARK,
+    view_counts.BENCHMARK,
+    baselines.BENCHMARK,
+    occlusion_effect.BENCHMARK,
+    reachable.BENCHMARK,
+    certificates.BENCHMARK,
+    fresh_process.BENCHMARK,
+    tsplib_tours.BENCHMARK,
+    plan_routing.BENCHMARK,
+    speed_profiles.BENCHMARK,
+    site_imports.BENCHMARK,
+    mission_files.BENCHMARK,
+)

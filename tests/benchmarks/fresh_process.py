@@ -1,0 +1,83 @@
+"""Whole commands from a fresh process: wall time and largest memory."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from planning.scenes import write_scene
+from tests.benchmarks.harness import Benchmark, Context, Row
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Finished(NamedTuple):
+    """What a command printed as JSON, its wall time, and the largest resident memory of any of its processes."""
+
+    content: dict[str, Any]
+    seconds: float
+    peak_mib: float
+
+
+def run_command(arguments: Sequence[str | Path]) -> Finished:
+    """Run `app.py` with arguments and `--json`.
+
+    Raises
+    ------
+    RuntimeError
+        It failed; the message is what it wrote to stderr.
+    """
+    command = [sys.executable, "app.py", *map(str, arguments), "--json"]
+    with tempfile.TemporaryDirectory() as folder:
+        measured_path = Path(folder) / "measured.json"
+        helper = [sys.executable, "-m", "tests.benchmarks.measured_process", str(measured_path)]
+        done = subprocess.run([*helper, *command], cwd=ROOT, capture_output=True, text=True, check=True)
+        measured = json.loads(measured_path.read_text("utf-8"))
+    if measured["status"]:
+        raise RuntimeError(done.stderr.strip())
+    return Finished(json.loads(done.stdout), measured["seconds"], measured["peak_mib"])
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """560 views on 280 panels, and 800 views on a tower of 3 640 panels."""
+    cases = (
+        [("office", 560, 20.0, 60.0)] if context.is_quick else [("office", 560, 20.0, 60.0), ("tower", 800, 90.0, 60.0)]
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        for scene, n_views, wanted_s, budget_s in cases:
+            site = write_scene(scene, Path(folder))
+            done = run_command(
+                [
+                    "plan",
+                    site,
+                    "-o",
+                    Path(folder) / "plan.json",
+                    "--views",
+                    str(n_views),
+                    "--time-budget",
+                    str(budget_s),
+                ]
+            )
+            found = done.content
+            what = f"{found['views']} views in {found['sorties']} sorties, from a fresh process"
+            yield Row(scene, what, done.seconds, "s", target=f"under {wanted_s:g} s", met=done.seconds < wanted_s)
+            stages = ", ".join(f"{stage} {seconds:.1f} s" for stage, seconds in found["seconds_by_stage"].items())
+            yield Row(scene, "of it: planning", found["seconds"], "s", against=stages)
+            yield Row(
+                scene, "peak memory", done.peak_mib / 1024.0, "GiB", target="under 4 GiB", met=done.peak_mib < 4096
+            )
+            share = 100.0 * found["covered"] / found["reachable_upper_bound"]
+            yield Row(scene, "covered", share, "% of the bound")
+
+
+BENCHMARK = Benchmark(
+    "fresh-process",
+    "Planned and routed from a fresh process",
+    "`app.py plan` with a budget of 60 s, starting Python, reading the site and writing the plan included.",
+    measure,
+)

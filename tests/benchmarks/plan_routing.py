@@ -1,0 +1,83 @@
+"""Sorties through the views of a plan: ours against the nearest neighbour and PyVRP."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from planning.catalogue import profile
+from planning.optimise.greedy import greedy
+from planning.plan import FlightRules
+from planning.planner import as_written
+from planning.progress import TimeLimit
+from planning.routing import vrp
+from planning.routing.flights import flight_times
+from planning.routing.sorties import SortieProblem, Sorties, plan_sorties, solve_sorties, sortie_durations_s
+from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
+from tests.benchmarks.problems import PLANAR_VIEWS, choose, prepared
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """Number of sorties and time in the air of each method, in the same time."""
+    seconds = 2.0 if context.is_quick else 8.0
+    problem, aircraft = prepared("office").problem, profile("m3e").aircraft
+    views = as_written(problem, choose(greedy, problem, PLANAR_VIEWS, 0)[0])
+    with stopwatch() as elapsed:
+        times = flight_times(problem.roadmap, views, aircraft, FlightRules())
+    n = len(views.heading_rad)
+    yield Row("office", f"table of legs around the building, {n} views", elapsed(), "s")
+    asked = SortieProblem(times.travel_s, times.service_s, times.budget_s, np.ones(n), math.inf)
+    greedy_s, n_greedy = _total_s(asked, nearest_sorties(asked)), len(nearest_sorties(asked))
+    yield Row("office", f"nearest neighbour: {n_greedy} sorties", greedy_s / 60.0, "min")
+    limits = (0.3, 1.0, seconds) if not context.is_quick else (seconds,)
+    ours: Sorties = ()
+    for limit in limits:
+        ours = plan_sorties(times.travel_s, times.service_s, times.budget_s, stop=TimeLimit(limit))
+        total = _total_s(asked, ours)
+        what = f"ours, {limit:g} s: {len(ours)} sorties"
+        yield Row("office", what, total / 60.0, "min", total / greedy_s, "nearest neighbour")
+    start = solve_sorties(asked, max_rounds=0, stop=lambda: True)
+    for is_warm in (True, False):
+        found = vrp.improve_sorties(asked, start, warm=is_warm, stop=TimeLimit(seconds))
+        total = _total_s(asked, found)
+        what = f"PyVRP {'from a 3-opt tour' if is_warm else 'from its own'}, {seconds:g} s: {len(found)} sorties"
+        yield Row("office", what, total / 60.0, "min", total / _total_s(asked, ours), "ours")
+
+
+def _total_s(problem: SortieProblem, sorties: Sorties) -> float:
+    return math.fsum(sortie_durations_s(problem, sorties))
+
+
+def nearest_sorties(problem: SortieProblem) -> Sorties:
+    """Always on to the nearest stop from which home can still be reached; else home, and out again."""
+    left = set(range(1, problem.n_stops + 1))
+    sorties: list[tuple[int, ...]] = []
+    while left:
+        sortie: list[int] = []
+        here, spent_s = 0, 0.0
+        while True:
+            step_s = {
+                stop: problem.travel_s[here, stop] + problem.service_s[stop - 1]
+                for stop in left
+                if spent_s + problem.travel_s[here, stop] + problem.service_s[stop - 1] + problem.travel_s[stop, 0]
+                <= problem.budget_s
+            }
+            if not step_s:
+                break
+            here = min(step_s, key=lambda stop: (step_s[stop], stop))
+            spent_s += step_s[here]
+            sortie.append(here - 1)
+            left.remove(here)
+        sorties.append(tuple(sortie))
+    return tuple(sorties)
+
+
+BENCHMARK = Benchmark(
+    "plan-routing",
+    "Sorties of a plan",
+    "The views of a plan with 560 views on the office, shared out among batteries (75 % of 42 min each). Times are "
+    "those of flying, turning and taking photos, without take-off and landing.",
+    measure,
+)

@@ -1,0 +1,39 @@
+"""Prepared scenes, shared by benchmarks."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from planning.catalogue import profile
+from planning.coverage.model import exact_coverage
+from planning.optimise.problem import Goal, Optimiser, ViewProblem
+from planning.plan import Constraints, ViewpointArrays
+from planning.prepare import Prepared, prepare
+from planning.progress import QUIET, Stop, Trace, never
+from planning.scenes import SCENES
+
+PLANAR_VIEWS, CURVED_VIEWS = 560, 600
+"""The paper's numbers of views for its planar and its curved case (4.2.1); office and library stand for them."""
+
+
+@functools.cache
+def prepared(scene: str, occlusion: str = "auto", step_deg: float = 30.0) -> Prepared:
+    """A bundled scene, ready for optimisation."""
+    constraints = Constraints(section_step_deg=step_deg, occlusion=occlusion)
+    return prepare(SCENES[scene](), profile("m3e").camera, constraints)
+
+
+def covered(problem: ViewProblem, views: ViewpointArrays) -> int:
+    """Sections covered, by the definition in float64."""
+    return int(np.count_nonzero(exact_coverage(problem.model, views)))
+
+
+def choose(
+    method: Optimiser, problem: ViewProblem, n_views: int, seed: int, stop: Stop = never
+) -> tuple[ViewpointArrays, Trace]:
+    """Views of a method, and its coverage against time."""
+    trace = Trace()
+    found = method(problem, Goal(n_views=n_views), seed=seed, stop=stop, trace=trace, monitor=QUIET)
+    return found.views, trace

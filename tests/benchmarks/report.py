@@ -1,0 +1,129 @@
+"""Benchmark results kept as CSV files, and the Markdown page made from all of them.
+
+Each benchmark has a table of its own, `runs.csv` says when each was run and how; so a part can be measured anew without
+losing the others.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+
+from tests.benchmarks.harness import Benchmark, Outcome, Row
+
+HEADER = """# Benchmarks
+
+Written by `make benchmark` (`python -m tests.benchmarks`); do not edit by hand. `--only NAME` measures one part anew
+and keeps the others, `--quick` takes two minutes and writes elsewhere. Sites are those of `planning.scenes`; camera and
+aircraft the DJI M3E; 10 m distance, sections of 30 degrees and float32 unless something else is said.
+
+"Load" is the number of processes that wanted to run in the minute before: above 0.5 or so the times are those of a
+shared machine. Coverage is counted by the definition in float64. Shares are shares of the proven bound on what can be
+covered at all.
+"""
+
+COLUMNS = [field.name for field in fields(Row)]
+RUN_COLUMNS = ["name", "status", "message", "seconds", "is_quick", "machine", "load"]
+
+
+def save(outcome: Outcome, folder: Path) -> None:
+    """Keep the rows and the circumstances of one run."""
+    folder.mkdir(parents=True, exist_ok=True)
+    _write_csv(folder / f"{outcome.name}.csv", COLUMNS, [asdict(row) for row in outcome.rows])
+    runs = {run["name"]: run for run in _read_csv(folder / "runs.csv")}
+    content = asdict(outcome)
+    content["seconds"], content["load"] = f"{outcome.seconds:.0f}", f"{outcome.load:.1f}"
+    runs[outcome.name] = {column: str(content[column]) for column in RUN_COLUMNS}
+    _write_csv(folder / "runs.csv", RUN_COLUMNS, runs.values())
+
+
+def write_page(path: Path, benchmarks: Sequence[Benchmark], folder: Path) -> None:
+    """Write the Markdown page from all results in `folder`."""
+    runs = {run["name"]: run for run in _read_csv(folder / "runs.csv")}
+    known = [benchmark for benchmark in benchmarks if benchmark.name in runs]
+    tables = {benchmark.name: _read_csv(folder / f"{benchmark.name}.csv") for benchmark in known}
+    parts = [HEADER, _machines(runs.values()), _targets(known, tables), _not_done(runs.values())]
+    parts += [_section(benchmark, runs[benchmark.name], tables[benchmark.name], folder) for benchmark in known]
+    path.write_text("\n".join(part for part in parts if part), "utf-8")
+
+
+def _machines(runs: Iterable[Mapping[str, str]]) -> str:
+    machines = sorted({run["machine"] for run in runs})
+    return "Machine: " + "; ".join(machines) + ".\n"
+
+
+def _targets(benchmarks: Sequence[Benchmark], tables: Mapping[str, Sequence[Mapping[str, str]]]) -> str:
+    lines = ["## Targets\n", "| part | on | what | measured | target | |", "| --- | --- | --- | ---: | --- | --- |"]
+    for benchmark in benchmarks:
+        for row in tables[benchmark.name]:
+            if row["met"]:
+                measured = f"{_measured(row)} ({_ratio(row)})" if row["ratio"] else _measured(row)
+                met = "met" if row["met"] == "True" else "**missed**"
+                link = f"[{benchmark.name}](#{benchmark.name})"
+                lines.append(f"| {link} | {row['scene']} | {row['what']} | {measured} | {row['target']} | {met} |")
+    return "\n".join(lines) + "\n" if len(lines) > 3 else ""
+
+
+def _not_done(runs: Iterable[Mapping[str, str]]) -> str:
+    lines = [f"- {run['name']} {run['status']}: {run['message']}" for run in runs if run["status"] != "done"]
+    return "## Not done\n\n" + "\n".join(lines) + "\n" if lines else ""
+
+
+def _section(benchmark: Benchmark, run: Mapping[str, str], rows: Sequence[Mapping[str, str]], folder: Path) -> str:
+    command = f"python -m tests.benchmarks --only {benchmark.name}"
+    quick = " --quick" if run["is_quick"] == "True" else ""
+    lines = [f'<a id="{benchmark.name}"></a>', f"## {benchmark.title}\n", benchmark.about.strip() + "\n"]
+    lines.append(f"`{command}{quick}`: {run['seconds']} s, load {run['load']}.\n")
+    lines += [f"![{benchmark.title}]({folder.name}/{path.name})\n" for path in _pictures(benchmark.name, folder)]
+    if rows:
+        lines += ["| on | what | value | ratio | seeds |", "| --- | --- | ---: | --- | ---: |"]
+        lines += [_line(row) for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def _pictures(name: str, folder: Path) -> list[Path]:
+    return sorted(path for path in folder.glob("*.png") if path.stem == name or path.stem.startswith(f"{name}-"))
+
+
+def _line(row: Mapping[str, str]) -> str:
+    return f"| {row['scene']} | {row['what']} | {_measured(row)} | {_ratio(row)} | {row['seeds']} |"
+
+
+def _ratio(row: Mapping[str, str]) -> str:
+    return f"{number_text(float(row['ratio']))} x {row['against']}" if row["ratio"] else row["against"]
+
+
+def _measured(row: Mapping[str, str]) -> str:
+    try:
+        value = number_text(float(row["value"]))
+    except ValueError:
+        value = row["value"]
+    return f"{value} {row['unit']}".strip()
+
+
+def number_text(value: float) -> str:
+    """Four significant digits, whole numbers in full, thousands apart."""
+    if not math.isfinite(value) or value == 0.0:
+        return f"{value:g}"
+    if value == int(value) and abs(value) < 1e15:
+        return f"{int(value):,}".replace(",", " ")
+    if abs(value) >= 1e4:
+        return f"{float(f'{value:.4g}'):,.0f}".replace(",", " ")
+    return f"{value:.4g}"
+
+
+def _write_csv(path: Path, columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({column: "" if row[column] is None else row[column] for column in columns} for row in rows)
+
+
+def _read_csv(path: Path) -> list[dict[str, str]]:
+    if not path.is_file():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
