@@ -50,8 +50,8 @@ REACHABILITY_SHARE, ROUTING_SHARE = 0.5, 0.3
 """Parts of the time budget: what proofs of what can be reached may take at most, and what is kept for routing."""
 
 SHORTEST_ROUTING_S = 1.0
-LONGEST_ROUTING_S = 8.0
-"""Routing gets at least and at most this long; longer searches shortened tours of 560 views by under 0.3 %."""
+LONGEST_ROUTING_S = 4.0
+"""Routing gets at least and at most this long; 560 views gain nothing more after 1 s (docs/benchmarks.md)."""
 
 
 @dataclass(frozen=True, slots=True)

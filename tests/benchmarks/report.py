@@ -105,11 +105,11 @@ def _measured(row: Mapping[str, str]) -> str:
 
 
 def number_text(value: float) -> str:
-    """Four significant digits, whole numbers in full, thousands apart."""
+    """Four significant digits, whole numbers in full; thousands apart from 10 000 on."""
     if not math.isfinite(value) or value == 0.0:
         return f"{value:g}"
     if value == int(value) and abs(value) < 1e15:
-        return f"{int(value):,}".replace(",", " ")
+        return f"{int(value):,}".replace(",", " ") if abs(value) >= 1e4 else f"{int(value)}"
     if abs(value) >= 1e4:
         return f"{float(f'{value:.4g}'):,.0f}".replace(",", " ")
     return f"{value:.4g}"

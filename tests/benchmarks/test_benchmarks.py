@@ -130,7 +130,8 @@ def test_flight_around_a_building_stops_only_for_photos() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.0, "0"), (9292.0, "9 292"), (12345.678, "12 350"), (0.012345, "0.01235"), (99.99, "99.99")]
+    ("value", "text"),
+    [(0.0, "0"), (9292.0, "9292"), (10080.0, "10 080"), (12345.678, "12 350"), (0.012345, "0.01235"), (99.99, "99.99")],
 )
 def test_numbers_have_four_digits(value: float, text: str) -> None:
     assert number_text(value) == text
