@@ -10,19 +10,21 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from missions.build import COLUMN_RADIUS_M
 from missions.legs import distance_m
 from missions.model import Finish, HeightReference, ReadMission, ReadPhoto
+from planning.catalogue import DEFAULT_PROFILE, profile
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.frames import Vec3
 from planning.mesh import MAX_COORDINATE_M
-from planning.plan import FlightRules, Sortie, Viewpoint
+from planning.plan import Aircraft, FlightRules, Sortie, Viewpoint
 from planning.site import Origin
+from planning.sortie_timing import sortie_flight_path, stopping_duration_s
 
 MAX_DISTANCE_M = 5000.0
 """A mission that never comes this close to home belongs to another site."""
@@ -50,14 +52,19 @@ class PlanParts:
 
 
 def viewpoints_and_sorties(
-    missions: Sequence[ReadMission], origin: Origin, home_enu_m: Vec3, rules: FlightRules | None = None
+    missions: Sequence[ReadMission],
+    origin: Origin,
+    home_enu_m: Vec3,
+    rules: FlightRules | None = None,
+    aircraft: Aircraft | None = None,
 ) -> PlanParts:
     """One sortie per mission, and a viewpoint per photo.
 
     Parameters
     ----------
-    rules
-        For durations, which are estimated by distance over speed and the time each photo takes.
+    rules, aircraft
+        For durations (stopping at every waypoint, at the mission's own speed); by default the usual rules and the
+        default profile's aircraft.
 
     Raises
     ------
@@ -66,7 +73,7 @@ def viewpoints_and_sorties(
     """
     from planning.geodesy.enu import geodetic_from_enu
 
-    rules = rules or FlightRules()
+    rules, aircraft = rules or FlightRules(), aircraft or profile(DEFAULT_PROFILE).aircraft
     lat, lon, height_m = geodetic_from_enu(origin, [home_enu_m])
     home = (float(lat[0]), float(lon[0]), float(height_m[0]))
     ids = _Ids()
@@ -89,7 +96,7 @@ def viewpoints_and_sorties(
                     views.append(Viewpoint(ids.next(photo.viewpoint_id), point, photo.heading_deg, pitch_deg))
         findings += unaimed.findings(mission.name)
         findings += _end_findings(mission)
-        sorties.append(_sortie(path, views, mission, rules))
+        sorties.append(_sortie(path, views, mission, rules, aircraft))
         viewpoints += views
     return PlanParts(tuple(viewpoints), tuple(sorties), tuple(findings))
 
@@ -204,7 +211,7 @@ def _points_enu_m(mission: ReadMission, origin: Origin, home_height_ellipsoid_m:
 def _flown_path(mission: ReadMission, points: Sequence[Vec3], home: Vec3) -> list[Vec3]:
     """From take-off to landing: the waypoints and the pieces that the autopilot flies by itself.
 
-    A waypoint with several photos is as many vertices, one a photo, as in plans of our own.
+    Each photo has a vertex of its own, also where several are taken at one place, as in plans of our own.
     """
     first, last = points[0], points[-1]
     climb_z = max(first[2], home[2] + mission.climb_above_takeoff_m)
@@ -221,15 +228,23 @@ def _flown_path(mission: ReadMission, points: Sequence[Vec3], home: Vec3) -> lis
         after = [(last[0], last[1], return_z), (home[0], home[1], return_z), home]
     elif mission.finish is Finish.LAND:
         after = [(last[0], last[1], home[2])]
-    n_extra = [max(0, len(waypoint.photos) - 1) for waypoint in mission.waypoints]
     path: list[Vec3] = []
-    for point, extra in [*((p, 0) for p in before), *zip(points, n_extra, strict=True), *((p, 0) for p in after)]:
-        path += [point] * (extra + (not path or path[-1] != point))
+    is_free = False
+    n_photos = [len(waypoint.photos) for waypoint in mission.waypoints]
+    for point, n in [*((p, 0) for p in before), *zip(points, n_photos, strict=True), *((p, 0) for p in after)]:
+        is_there = bool(path) and path[-1] == point and (is_free or n == 0)
+        path += [point] * (max(1, n) - is_there)
+        is_free = n == 0 and (is_free or not is_there)
     return path
 
 
-def _sortie(path: Sequence[Vec3], views: Sequence[Viewpoint], mission: ReadMission, rules: FlightRules) -> Sortie:
+def _sortie(
+    path: Sequence[Vec3], views: Sequence[Viewpoint], mission: ReadMission, rules: FlightRules, aircraft: Aircraft
+) -> Sortie:
     length_m = float(sum(math.dist(a, b) for a, b in itertools.pairwise(path)))
-    speed_m_s = mission.speed_m_s or ASSUMED_SPEED_M_S
-    duration_s = rules.takeoff_landing_s + length_m / speed_m_s + len(views) * (rules.settle_s + rules.photo_s)
-    return Sortie(tuple(view.id for view in views), tuple(path), length_m, duration_s)
+    sortie = Sortie(tuple(view.id for view in views), tuple(path), length_m, 0.0)
+    rules = replace(rules, max_speed_m_s=mission.speed_m_s or ASSUMED_SPEED_M_S)
+    timed = sortie_flight_path(sortie, {view.id: view for view in views}, aircraft, rules)
+    if timed is None:
+        return sortie
+    return replace(sortie, duration_s=stopping_duration_s(timed[0], aircraft, rules))

@@ -16,6 +16,7 @@ from planning.optimise.problem import ViewProblem, nothing_to_see
 from planning.plan import Camera, Constraints
 from planning.positions import spread_positions
 from planning.progress import QUIET, Monitor, Stop, never
+from planning.reach_kernel import UNREACHABLE
 from planning.reachability import MAX_CELLS, MAX_POSITIONS, find_reachable
 from planning.routing.roadmap import build_roadmap
 from planning.site import SiteModel, panel_corners
@@ -115,7 +116,7 @@ def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...
     found = []
     space, model = problem.space, problem.model
     inside = space.solids.clearance_m(model.targets_enu_m, 1.0) < 0
-    bounds = (problem.reachability.verdicts != 0).sum(axis=1)
+    n_possible = (problem.reachability.verdicts != UNREACHABLE).sum(axis=1)
     for index, panel in enumerate(site_model.site.panels):
         if inside[index]:
             found.append(
@@ -126,7 +127,7 @@ def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...
                     panel.id,
                 )
             )
-        elif bounds[index] == 0:
+        elif n_possible[index] == 0:
             found.append(
                 Finding(
                     Severity.WARNING,

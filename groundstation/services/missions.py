@@ -178,7 +178,7 @@ def import_missions(
     chosen = profile(profile_id)
     rules = FlightRules()
     read = [mission for path in paths for mission in read_missions(path)]
-    parts = viewpoints_and_sorties(read, site_model.site.origin, site_model.site.home_enu_m, rules)
+    parts = viewpoints_and_sorties(read, site_model.site.origin, site_model.site.home_enu_m, rules, chosen.aircraft)
     prepared = prepare(site_model, chosen.camera, constraints, monitor=monitor)
     plan = Plan(
         site=site_model.site.name,

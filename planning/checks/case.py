@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 
 from planning.coverage.model import CoverageModel
 from planning.findings import Finding, Severity
-from planning.plan import Plan, Sortie, Viewpoint
+from planning.plan import Plan
 from planning.site import SiteModel
 from planning.space import FreeSpace
 
@@ -19,8 +18,6 @@ Array = NDArray[np.float64]
 
 ROUNDING_M = 1e-4
 """Coordinates in plan files are rounded to 0.1 mm; no rule breaks over that."""
-
-SAME_PLACE_M = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,19 +60,3 @@ def judge(
 def _number(value: float, unit: str) -> str:
     """A measured value as a pilot reads it: centimetres are enough, micrometres are noise."""
     return f"{round(value, 3):g} {unit}".rstrip()
-
-
-def photo_vertices(sortie: Sortie, by_id: dict[str, Viewpoint]) -> list[int] | None:
-    """Vertex of each of a sortie's viewpoints, in order; None where one is missing."""
-    found: list[int] = []
-    start = 0
-    for viewpoint_id in sortie.viewpoint_ids:
-        position = by_id[viewpoint_id].position_enu_m
-        for vertex in range(start, len(sortie.path_enu_m)):
-            if math.dist(sortie.path_enu_m[vertex], position) <= SAME_PLACE_M:
-                found.append(vertex)
-                start = vertex + 1
-                break
-        else:
-            return None
-    return found

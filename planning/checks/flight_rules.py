@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from planning.checks.case import SAME_PLACE_M, Array, Case, Rule, judge, photo_vertices
+from planning.checks.case import Array, Case, Rule, judge
 from planning.errors import InfeasibleError
-from planning.evaluate import coverage_counts, ground_sampling_m
+from planning.evaluate import coverage_counts, ground_sampling_m, nearest_panel_m
 from planning.findings import Finding, Severity
-from planning.plan import Sortie, Viewpoint, viewpoint_arrays
+from planning.plan import Sortie, Viewpoint
+from planning.sortie_timing import SAME_PLACE_M, photo_vertices, sortie_flight_path, stopping_duration_s
 from planning.speed_profile import corner_saving_s
-from planning.timing import flight_path, motion_limits, photo_stop_s, stopping_times_s
+from planning.timing import FlightPath, motion_limits, photo_stop_s, stopping_times_s
 
 LENGTH_TOLERANCE = 0.01
 DURATION_TOLERANCE = 0.05
@@ -24,12 +28,19 @@ SHORT_SETTLE_S = 1.0
 
 
 def site_file(case: Case) -> Iterator[Finding]:
-    """The plan was made for this very site file."""
-    if case.plan.site_sha256 and case.site_model.sha256 and case.plan.site_sha256 != case.site_model.sha256:
+    """The plan was made for this very site file; without checksums, for a site of this name."""
+    plan, model = case.plan, case.site_model
+    if plan.site_sha256 and plan.site_sha256 == model.sha256:
+        yield Finding(Severity.OK, "site", "the plan was made for this site file")
+    elif plan.site != model.site.name:
+        text = f"the plan was made for site '{plan.site}', this is '{model.site.name}'; take its own site file"
+        yield Finding(Severity.ERROR, "site", text)
+    elif plan.site_sha256 and model.sha256:
         text = "the site file has changed since this plan was made; what follows is measured on the file as it is now"
         yield Finding(Severity.WARNING, "site", text)
     else:
-        yield Finding(Severity.OK, "site", "the plan was made for this site file")
+        text = f"the plan was made for a site of this name, '{plan.site}'; it does not say for which state of its file"
+        yield Finding(Severity.OK, "site", text)
 
 
 def sorties(case: Case) -> Iterator[Finding]:
@@ -127,27 +138,10 @@ def durations(case: Case) -> Iterator[Finding]:
         return
     yield judge(True, "wind", "expected wind", plan.rules.wind_m_s, plan.aircraft.max_wind_m_s, "m/s")
     usable = plan.aircraft.endurance_s * (1.0 - plan.rules.battery_reserve)
-    by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
-    for number, sortie in enumerate(plan.sorties, 1):
-        place = f"sortie {number}"
-        vertices = photo_vertices(sortie, by_id)
-        if vertices is None or len(sortie.path_enu_m) < 2:
-            continue
-        views = viewpoint_arrays(tuple(by_id[i] for i in sortie.viewpoint_ids))
-        path = np.array(sortie.path_enu_m, np.float64)
-        through = flight_path(
-            path,
-            np.array(vertices, np.int64),
-            views.heading_rad,
-            views.pitch_rad,
-            plan.aircraft,
-            plan.rules,
-            stop_at_corners=False,
-        )
-        stopping_s = float(stopping_times_s(through, limits)[-1] + through.hover_s[-1])
-        ours = plan.rules.takeoff_landing_s + stopping_s
+    for place, sortie, through, _ in _timed_sorties(case):
+        ours = stopping_duration_s(through, plan.aircraft, plan.rules)
         least = (ours - corner_saving_s(through, limits)[0]) * (1.0 - DURATION_TOLERANCE)
-        length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+        length = float(np.linalg.norm(through.deltas_enu_m, axis=1).sum())
         yield judge(
             max(ours, sortie.duration_s) <= usable + 0.01,
             "endurance",
@@ -182,19 +176,42 @@ def durations(case: Case) -> Iterator[Finding]:
         )
 
 
+def _timed_sorties(case: Case) -> Iterator[tuple[str, Sortie, FlightPath, NDArray[np.int64]]]:
+    """Name, record, flight path and photo vertices of each sortie whose path passes all its viewpoints."""
+    plan = case.plan
+    by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
+    for number, sortie in enumerate(plan.sorties, 1):
+        timed = sortie_flight_path(sortie, by_id, plan.aircraft, plan.rules, stop_at_corners=False)
+        if timed is not None:
+            yield f"sortie {number}", sortie, *timed
+
+
+def _between_photos(case: Case) -> Iterator[tuple[float, str]]:
+    """Shortest time between two photos of each sortie as it is commanded, and before which viewpoint.
+
+    Planned stops last at least the camera's interval; missions command the settling time only, so that what planning
+    adds to it is taken off here.
+    """
+    aircraft, rules = case.plan.aircraft, case.plan.rules
+    added_s = photo_stop_s(aircraft, rules) - (rules.settle_s + rules.photo_s)
+    for place, sortie, through, at_photos in _timed_sorties(case):
+        if len(at_photos) > 1:
+            done_s = (stopping_times_s(through, motion_limits(aircraft, rules)) + through.hover_s)[at_photos]
+            shortest = int(np.argmin(np.diff(done_s)))
+            yield float(np.diff(done_s)[shortest]) - added_s, f"{place}, {sortie.viewpoint_ids[shortest + 1]}"
+
+
 def photo_times(case: Case) -> Iterator[Finding]:
     """The camera has time for each photo, and the aircraft time to settle before it."""
     plan = case.plan
-    between = photo_stop_s(plan.aircraft, plan.rules)
-    yield judge(
-        between >= plan.aircraft.min_photo_interval_s,
-        "photo-interval",
-        "shortest time between photos",
-        between,
-        plan.aircraft.min_photo_interval_s,
-        "s",
-        advice="the camera would miss photos",
-    )
+    try:
+        shortest = min(_between_photos(case), default=None)
+    except InfeasibleError:  # no flying in this wind, as `durations` says
+        shortest = None
+    if shortest is not None:
+        (between, place), limit = shortest, plan.aircraft.min_photo_interval_s
+        subject, advice = "shortest time between photos", "the camera would miss photos; hover longer before each"
+        yield judge(between >= limit, "photo-interval", subject, between, limit, "s", place, advice)
     settle, text = plan.rules.settle_s, "hover before each photo"
     advice = "1 to 2 s keep photos sharp"
     yield judge(
@@ -203,29 +220,19 @@ def photo_times(case: Case) -> Iterator[Finding]:
 
 
 def ground_sampling(case: Case) -> Iterator[Finding]:
-    """Pixels on covered panels are as fine as the constraints ask."""
-    _, worst = ground_sampling_m(case.model, case.plan.viewpoints)
-    furthest = case.plan.constraints.max_distance_m
+    """Each photo shows a panel with pixels as fine as the constraints ask; others cover nothing."""
+    furthest, viewpoints = case.plan.constraints.max_distance_m, case.plan.viewpoints
+    _, worst = ground_sampling_m(case.model, viewpoints)
+    text = f"coarsest pixel on a covered panel: {1e3 * worst:.2f} mm"
     if furthest is None:
-        yield Finding(
-            Severity.OK,
-            "gsd",
-            f"coarsest pixel on a covered panel: {1e3 * worst:.2f} mm, no limit set",
-            "",
-            1e3 * worst,
-            None,
-            "mm",
-        )
+        yield Finding(Severity.OK, "gsd", f"{text}, no limit set", "", 1e3 * worst, None, "mm")
         return
-    limit = case.plan.camera.gsd_m(furthest)
-    yield judge(
-        worst <= limit * (1.0 + 1e-9),
-        "gsd",
-        "coarsest pixel on a covered panel",
-        1e3 * worst,
-        1e3 * limit,
-        "mm",
-    )
+    nearest = nearest_panel_m(replace(case.model, max_distance_m=None), viewpoints)
+    seen = [(float(distance), v.id) for distance, v in zip(nearest, viewpoints, strict=True) if distance < math.inf]
+    distance, place = max(seen, default=(0.0, ""))
+    value, limit = 1e3 * case.plan.camera.gsd_m(distance), 1e3 * case.plan.camera.gsd_m(furthest)
+    subject, advice = "finest pixel on a panel, of the coarsest photo", "it covers nothing; take it closer or drop it"
+    yield judge(value <= limit * (1.0 + 1e-9), "gsd", subject, value, limit, "mm", place, advice, Severity.WARNING)
 
 
 def stated_coverage(case: Case) -> Iterator[Finding]:

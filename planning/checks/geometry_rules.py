@@ -6,15 +6,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from planning.checks.case import ROUNDING_M, SAME_PLACE_M, Case, Rule, judge
+from planning.checks.case import ROUNDING_M, Case, Rule, judge
 from planning.findings import Finding, Severity
 from planning.plan import viewpoint_arrays
+from planning.routing.legs import MIN_SPACING_M
+from planning.sortie_timing import SAME_PLACE_M
 
 MAX_ALTITUDE_M = 120.0
 """Height above ground that most civil aviation rules allow without a permit (EASA open category, FAA part 107)."""
 
-MIN_SPACING_M, LONG_LEG_M, MAX_LEG_M = 0.5, 2000.0, 5000.0
-"""Waypoint spacing: DJI firmware refuses under 0.5 m and over 5 km, older ones over 2 km."""
+LONG_LEG_M, MAX_LEG_M = 2000.0, 5000.0
+"""Longest legs: DJI firmware refuses over 5 km, older ones over 2 km."""
 
 
 def viewpoints_in_airspace(case: Case) -> Iterator[Finding]:
@@ -36,8 +38,8 @@ def paths_in_airspace(case: Case) -> Iterator[Finding]:
     for place, path in case.paths():
         outside = np.maximum(np.maximum(low - path, path - high)[:, :2].max(axis=1), path[:, 2] - high[2])
         in_column = np.linalg.norm(path[:, :2] - home[:2], axis=1) <= SAME_PLACE_M
-        below = low[2] - np.minimum(path[:-1, 2], path[1:, 2])
-        below[in_column[:-1] & in_column[1:]] = 0.0
+        floor = np.where(in_column[:-1] & in_column[1:], min(low[2], home[2]), low[2])
+        below = floor - np.minimum(path[:-1, 2], path[1:, 2])
         worst, where = max((worst, where), (float(max(outside.max(), below.max())), place))
     advice = "only the column above home may lie below the airspace"
     yield judge(worst <= ROUNDING_M, "airspace", "paths outside the airspace by", worst, 0.0, "m", where, advice)
@@ -66,7 +68,8 @@ def distances_along_paths(case: Case) -> Iterator[Finding]:
         advice = "the path runs inside a solid" if inside else "plan the route again"
         where = f"{place}, leg {leg + 1}"
         subject = "smallest distance along the path"
-        yield judge(value >= limit - ROUNDING_M, "leg-distance", subject, value, limit, "m", where, advice)
+        kept = value > 0.0 and value >= limit - ROUNDING_M
+        yield judge(kept, "leg-distance", subject, value, limit, "m", where, advice)
 
 
 def no_fly_volumes(case: Case) -> Iterator[Finding]:

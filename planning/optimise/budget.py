@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.coverage.model import Elements
+from planning.coverage.model import CoverageModel, Elements
 from planning.errors import InfeasibleError
 from planning.optimise import cover_kernel as kernel
 from planning.optimise.candidates import Pool, candidate_pool, keep
@@ -19,7 +19,7 @@ from planning.optimise.improve import cover_state
 from planning.optimise.problem import ViewProblem, take
 from planning.plan import Aircraft, FlightRules, ViewpointArrays
 from planning.progress import Monitor, Stop, Trace
-from planning.routing.flights import flight_times
+from planning.routing.flights import Flight, flight_times
 from planning.routing.orienteering import solve_orienteering
 
 Array = NDArray[np.float64]
@@ -47,6 +47,11 @@ class CoverGain:
     def value(self) -> float:
         """Weight covered."""
         return float(kernel.objective(self._state))
+
+    @property
+    def n_covered(self) -> int:
+        """Number of elements covered."""
+        return int(np.count_nonzero(self._state.counts))
 
     def marginals(self) -> Array:
         """What each candidate would add, shape (n,)."""
@@ -103,7 +108,7 @@ def views_within_budget(
         max_stops=max(1, aircraft.max_waypoints - 2),
         seed=seed,
         stop=stop,
-        trace=trace,
+        trace=Trace(trace.clock, lambda _worth: trace.record(gain.n_covered)),
         monitor=monitor,
     )
     chosen = np.array([stop_number for sortie in selection.sorties for stop_number in sortie], np.int64)
@@ -111,7 +116,23 @@ def views_within_budget(
         raise InfeasibleError(
             f"no viewpoint that sees a panel can be reached and left again within {times.budget_s:.0f} s of one battery"
         )
-    return take(pool.views, chosen), min(selection.bound, float(weights.sum()))
+    everything = float(weights[np.unique(pool.elements.items)].sum())
+    return take(pool.views, chosen), min(selection.bound, everything)
+
+
+def best_flights(
+    model: CoverageModel, views: ViewpointArrays, flights: tuple[Flight, ...], n_batteries: int
+) -> tuple[Flight, ...]:
+    """At most `n_batteries` of the flights, in order: those go without which least is lost.
+
+    Views that just fitted into the batteries may need one more once they are rounded, moved together and routed anew.
+    """
+    kept = list(flights)
+    while len(kept) > n_batteries:
+        covered = np.array([model.covered(take(views, flight.views)) for flight in kept])
+        only_here = covered & (covered.sum(axis=0) == 1)
+        del kept[int(np.argmin(only_here.sum(axis=1)))]
+    return tuple(kept)
 
 
 def _shortlist(pool: Pool, weights: Array) -> Pool:

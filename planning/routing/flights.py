@@ -14,12 +14,12 @@ from planning.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing.legs import LegTable, build_leg_table
 from planning.routing.roadmap import Roadmap
 from planning.routing.sorties import Sorties, plan_sorties
+from planning.sortie_timing import stopping_duration_s
 from planning.timing import (
     flight_path,
     motion_limits,
     photo_stop_s,
     round_trip_metric,
-    stopping_times_s,
     usable_battery_s,
     with_turns_s,
 )
@@ -159,6 +159,4 @@ def _draw(
     vertices = np.concatenate(path).round(DECIMALS)
     at_photos = np.array(photo_vertices[:-1])
     timed = flight_path(vertices, at_photos, views.heading_rad[sortie], views.pitch_rad[sortie], aircraft, rules)
-    arrival_s = stopping_times_s(timed, motion_limits(aircraft, rules))
-    duration_s = rules.takeoff_landing_s + float(arrival_s[-1] + timed.hover_s[-1])
-    return Flight(sortie, vertices, at_photos, duration_s)
+    return Flight(sortie, vertices, at_photos, stopping_duration_s(timed, aircraft, rules))

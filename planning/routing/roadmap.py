@@ -32,6 +32,9 @@ SHELL_GAPS_M = (0.05, 0.5, 2.0)
 """How far shell nodes lie outside the minimum distance."""
 
 NEIGHBOURS = 12
+MOST_NEIGHBOURS = 64
+"""Nodes around a point that are tried at most before it counts as out of reach."""
+
 COLUMN_SPACING_M = 4.0
 
 
@@ -56,7 +59,7 @@ class Roadmap:
     def connected_to_home(self, points_enu_m: Array) -> NDArray[np.bool_]:
         """Whether a clear leg joins each allowed point, shape (n, 3), to a node. No means "not found"."""
         connected = np.zeros(len(points_enu_m), np.bool_)
-        for n_tried in (4, 16, 64):
+        for n_tried in (4, 16, MOST_NEIGHBOURS):
             asked = np.flatnonzero(~connected)
             pairs = self.nearest_clear(points_enu_m[asked], n_tried)
             connected[asked[pairs[:, 0]]] = True
@@ -81,7 +84,7 @@ def build_roadmap(space: FreeSpace, seed: int = 0, n_spread: int = N_SPREAD, n_s
     spread = _allowed_part(space, _spread(space, 4 * n_spread, rng))[:n_spread]
     shell = _allowed_part(space, _shell(space, 8 * n_shell, rng))[:n_shell]
     nodes = np.concatenate([column, spread, shell])
-    edges = _clear_edges(space, nodes)
+    edges = _clear_edges(space, nodes, len(column))
     graph = _graph(nodes, edges, leg_length)
     _, label = connected_components(graph, directed=False)
     kept = label == label[0]
@@ -129,13 +132,15 @@ def _allowed_part(space: FreeSpace, points: Array) -> Array:
     return points[space.is_allowed(points)]
 
 
-def _clear_edges(space: FreeSpace, nodes: Array) -> NDArray[np.int64]:
+def _clear_edges(space: FreeSpace, nodes: Array, n_column: int) -> NDArray[np.int64]:
     """Certified edges between neighbouring nodes, and along the column; shape (e, 2)."""
     n_nearest = min(NEIGHBOURS + 1, len(nodes))
     _, near = cKDTree(nodes).query(nodes, n_nearest)
     near = near.reshape(len(nodes), n_nearest)
     pairs = np.stack([np.repeat(np.arange(len(nodes)), n_nearest), near.ravel()], axis=1)
-    pairs = np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0)
+    upwards = np.stack([np.arange(n_column - 1), np.arange(1, n_column)], axis=1)
+    pairs = np.concatenate([upwards, np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1)])
+    pairs = np.unique(pairs, axis=0)
     return pairs[space.legs_clear(nodes[pairs[:, 0]], nodes[pairs[:, 1]])]
 
 

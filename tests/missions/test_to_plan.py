@@ -125,13 +125,17 @@ def test_take_off_point_far_from_home_is_a_warning() -> None:
     assert codes(replace(home, height_ellipsoid_m=home.height_ellipsoid_m + 5.0)) == {"takeoff-lifted"}
 
 
-def test_duration_counts_way_and_photos() -> None:
+def test_durations_are_those_that_a_plan_would_state() -> None:
     rules = FlightRules(settle_s=3.0, photo_s=1.0, takeoff_landing_s=20.0)
     parts = viewpoints_and_sorties([mission(NEAR, FAR, speed_m_s=4.0)], HONG_KONG, HOME, rules)
     (sortie,) = parts.sorties
-    length_m = sum(math.dist(a, b) for a, b in zip(sortie.path_enu_m, sortie.path_enu_m[1:], strict=False))
-    assert sortie.length_m == pytest.approx(length_m)
-    assert sortie.duration_s == pytest.approx(20.0 + length_m / 4.0 + 2 * 4.0)
+    legs_m = [math.dist(a, b) for a, b in zip(sortie.path_enu_m, sortie.path_enu_m[1:], strict=False)]
+    assert sortie.length_m == pytest.approx(sum(legs_m))
+    # Take-off, photos, half a turn to the first of them, and the legs at up to 4 m/s with 2.5 m/s2.
+    least_s = 20.0 + 2 * 4.0 + 3.0 + sum(legs_m) / 4.0
+    assert least_s < sortie.duration_s <= least_s + len(legs_m) * 4.0 / 2.5 + 3.0
+    slower = viewpoints_and_sorties([mission(NEAR, FAR, speed_m_s=1.0)], HONG_KONG, HOME, rules).sorties[0]
+    assert slower.duration_s > sortie.duration_s + sum(legs_m) / 2.0
 
 
 def test_what_was_read_can_be_written_again() -> None:

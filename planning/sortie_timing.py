@@ -1,0 +1,67 @@
+"""How a sortie of a plan is flown and how long it takes, from its record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.plan import Aircraft, FlightRules, Sortie, Viewpoint, viewpoint_arrays
+from planning.timing import FlightPath, flight_path, motion_limits, stopping_times_s
+
+SAME_PLACE_M = 1e-3
+"""Vertices and viewpoints this close together are one place: coordinates in files are rounded to 0.1 mm."""
+
+
+def photo_vertices(sortie: Sortie, by_id: Mapping[str, Viewpoint]) -> NDArray[np.int64] | None:
+    """Vertex of each of a sortie's viewpoints, in order, shape (m,); None where one is missing."""
+    found: list[int] = []
+    start = 0
+    for viewpoint_id in sortie.viewpoint_ids:
+        position = by_id[viewpoint_id].position_enu_m
+        for vertex in range(start, len(sortie.path_enu_m)):
+            if math.dist(sortie.path_enu_m[vertex], position) <= SAME_PLACE_M:
+                found.append(vertex)
+                start = vertex + 1
+                break
+        else:
+            return None
+    return np.array(found, np.int64)
+
+
+def sortie_flight_path(
+    sortie: Sortie,
+    by_id: Mapping[str, Viewpoint],
+    aircraft: Aircraft,
+    rules: FlightRules,
+    *,
+    stop_at_corners: bool = True,
+) -> tuple[FlightPath, NDArray[np.int64]] | None:
+    """Flight path of a sortie and the vertices of its photos; None where the path is none or misses a viewpoint.
+
+    Raises
+    ------
+    InfeasibleError
+        The aircraft cannot fly in the expected wind.
+    """
+    vertices = photo_vertices(sortie, by_id)
+    if vertices is None or len(sortie.path_enu_m) < 2:
+        return None
+    views = viewpoint_arrays(tuple(by_id[viewpoint_id] for viewpoint_id in sortie.viewpoint_ids))
+    path = np.array(sortie.path_enu_m, np.float64)
+    angles = views.heading_rad, views.pitch_rad
+    return flight_path(path, vertices, *angles, aircraft, rules, stop_at_corners=stop_at_corners), vertices
+
+
+def stopping_duration_s(flown: FlightPath, aircraft: Aircraft, rules: FlightRules) -> float:
+    """Duration of a sortie that stops at every vertex, take-off and landing included, seconds.
+
+    Raises
+    ------
+    InfeasibleError
+        The aircraft cannot fly in the expected wind.
+    """
+    arrival_s = stopping_times_s(flown, motion_limits(aircraft, rules))
+    return rules.takeoff_landing_s + float(arrival_s[-1] + flown.hover_s[-1])
