@@ -49,9 +49,11 @@ def judge(
     place: str = "",
     advice: str = "",
     severity: Severity = Severity.ERROR,
+    *,
+    least: bool = False,
 ) -> Finding:
-    """A finding about one measured value: OK where `kept`."""
-    text = f"{subject}: {_number(value, unit)}, limit {_number(limit, unit)}"
+    """A finding about one measured value: OK where `kept`. The limit is the most allowed, or else the `least`."""
+    text = f"{subject}: {_number(value, unit)}, {'at least' if least else 'at most'} {_number(limit, unit)}"
     if kept:
         return Finding(Severity.OK, code, text, place, value, limit, unit)
     return Finding(severity, code, f"{text}{'; ' + advice if advice else ''}", place, value, limit, unit)

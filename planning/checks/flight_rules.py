@@ -94,7 +94,9 @@ def gimbal_and_heading(case: Case) -> Iterator[Finding]:
     if pitches:
         (lowest, first), (highest, last) = min(pitches), max(pitches)
         advice = "the camera would stop at its limit and look elsewhere"
-        yield judge(lowest >= low - 1e-6, "gimbal", "lowest gimbal pitch", lowest, low, "deg", first, advice)
+        yield judge(
+            lowest >= low - 1e-6, "gimbal", "lowest gimbal pitch", lowest, low, "deg", first, advice, least=True
+        )
         yield judge(highest <= high + 1e-6, "gimbal", "highest gimbal pitch", highest, high, "deg", last, advice)
     odd = [v.id for v in case.plan.viewpoints if not -180.0 < v.heading_deg <= 180.0]
     yield judge(
@@ -162,6 +164,7 @@ def durations(case: Case) -> Iterator[Finding]:
             place,
             "it is too optimistic for this path",
             Severity.WARNING,
+            least=True,
         )
         yield judge(
             abs(sortie.length_m - length) <= LENGTH_TOLERANCE * max(length, 1.0),
@@ -211,11 +214,17 @@ def photo_times(case: Case) -> Iterator[Finding]:
     if shortest is not None:
         (between, place), limit = shortest, plan.aircraft.min_photo_interval_s
         subject, advice = "shortest time between photos", "the camera would miss photos; hover longer before each"
-        yield judge(between >= limit, "photo-interval", subject, between, limit, "s", place, advice)
-    settle, text = plan.rules.settle_s, "hover before each photo"
-    advice = "1 to 2 s keep photos sharp"
+        yield judge(between >= limit, "photo-interval", subject, between, limit, "s", place, advice, least=True)
     yield judge(
-        settle >= SHORT_SETTLE_S, "settle", text, settle, SHORT_SETTLE_S, "s", advice=advice, severity=Severity.WARNING
+        plan.rules.settle_s >= SHORT_SETTLE_S,
+        "settle",
+        "hover before each photo",
+        plan.rules.settle_s,
+        SHORT_SETTLE_S,
+        "s",
+        advice="1 to 2 s keep photos sharp",
+        severity=Severity.WARNING,
+        least=True,
     )
 
 

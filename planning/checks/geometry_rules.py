@@ -54,7 +54,7 @@ def distances_at_viewpoints(case: Case) -> Iterator[Finding]:
     nearest = int(np.argmin(clearance))
     value, place = float(clearance[nearest]), case.plan.viewpoints[nearest].id
     subject = "smallest distance at a viewpoint (negative: inside a solid)"
-    yield judge(value >= limit - ROUNDING_M, "distance", subject, value, limit, "m", place, "move it away")
+    yield judge(value >= limit - ROUNDING_M, "distance", subject, value, limit, "m", place, "move it away", least=True)
 
 
 def distances_along_paths(case: Case) -> Iterator[Finding]:
@@ -69,7 +69,7 @@ def distances_along_paths(case: Case) -> Iterator[Finding]:
         where = f"{place}, leg {leg + 1}"
         subject = "smallest distance along the path"
         kept = value > 0.0 and value >= limit - ROUNDING_M
-        yield judge(kept, "leg-distance", subject, value, limit, "m", where, advice)
+        yield judge(kept, "leg-distance", subject, value, limit, "m", where, advice, least=True)
 
 
 def no_fly_volumes(case: Case) -> Iterator[Finding]:
@@ -84,7 +84,9 @@ def no_fly_volumes(case: Case) -> Iterator[Finding]:
         inside = bool((solids.clearance_m(path, 1.0) < 0).any())
         value = -1.0 if inside else float(along[leg])
         where, subject = f"{place}, leg {leg + 1}", "smallest distance to a no-fly volume (negative: inside)"
-        yield judge(value > 0.0, "no-fly", subject, value, 0.0, "m", where, "the path enters a no-fly volume")
+        yield judge(
+            value > 0.0, "no-fly", subject, value, 0.0, "m", where, "the path enters a no-fly volume", least=True
+        )
 
 
 def altitude(case: Case) -> Iterator[Finding]:
@@ -108,7 +110,8 @@ def leg_lengths(case: Case) -> Iterator[Finding]:
         shortest, longest = float(flown.min()), float(flown.max())
         advice = f"{int((flown < MIN_SPACING_M).sum())} legs are shorter than DJI firmware likes"
         kept = shortest >= MIN_SPACING_M
-        yield judge(kept, "leg-spacing", "shortest leg", shortest, MIN_SPACING_M, "m", place, advice, Severity.WARNING)
+        judged = "shortest leg", shortest, MIN_SPACING_M, "m", place, advice, Severity.WARNING
+        yield judge(kept, "leg-spacing", *judged, least=True)
         severity = Severity.ERROR if longest > MAX_LEG_M else Severity.WARNING
         kept, advice = longest <= LONG_LEG_M, "autopilots refuse it"
         yield judge(kept, "leg-spacing", "longest leg", longest, LONG_LEG_M, "m", place, advice, severity)
