@@ -65,7 +65,7 @@ class PlanRequest:
     n_batteries
         Best coverage within so many sorties.
     profile_id
-        Aircraft and camera, from the catalogue.
+        Aircraft and camera: see `planning.catalogue.profile`.
     time_budget_s
         Wall time for the whole plan; the search ends earlier when it finds nothing more.
     """
@@ -91,6 +91,8 @@ class PlanRequest:
             raise ValueError(f"coverage: expected more than 0 and at most 1, got {self.share}")
         if self.n_batteries is not None and not 1 <= self.n_batteries <= 100:
             raise ValueError(f"batteries: expected 1 to 100, got {self.n_batteries}")
+        if not 0 <= self.seed < 2**32:
+            raise ValueError(f"seed: expected 0 to {2**32 - 1}, got {self.seed}")
         if not self.time_budget_s > 0.0:
             raise ValueError(f"time budget: expected more than 0 s, got {self.time_budget_s}")
 
@@ -270,7 +272,7 @@ def _plan(
         home_enu_m=site.home_enu_m,
         rules=request.rules,
         effects=prepared.effects,
-        profile=request.profile_id,
+        profile=chosen_profile.id,
     )
 
 

@@ -57,7 +57,7 @@ def add_profile_argument(parser: Any) -> None:
         default="m3e",
         metavar="ID",
         action=_Profile,
-        help="aircraft and camera (default m3e); '--profile list' shows all",
+        help="aircraft and camera (default m3e), or a .toml file with your own; '--profile list' shows all",
     )
 
 

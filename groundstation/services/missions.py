@@ -195,7 +195,7 @@ def import_missions(
         home_enu_m=site_model.site.home_enu_m,
         rules=rules,
         effects=prepared.effects,
-        profile=profile_id,
+        profile=chosen.id,
     )
     write_plan(out, plan)
     return plan, parts.findings

@@ -49,6 +49,10 @@ class GreedyParameters:
     improve: bool = True
     certify: bool = True
 
+    def __post_init__(self) -> None:
+        if self.n_candidates < 1:
+            raise ValueError(f"n_candidates: expected 1 or more, got {self.n_candidates}")
+
 
 def greedy(
     problem: ViewProblem,
