@@ -106,7 +106,8 @@ class Planned:
     findings
         What the pilot should know about the site.
     bound_for_views
-        Upper bound on what as many views of the same candidates could cover; None where the method has none.
+        Upper bound on the sections that as many views of the same candidates could cover; None where the method has
+        none, and where sections are weighted.
     n_undecided
         Sections that count as reachable although no viewpoint that sees them was found.
     depth
@@ -173,6 +174,8 @@ def plan_flight(
     else:
         found = optimiser(problem, _goal(request), seed=request.seed, stop=choosing, trace=trace, monitor=monitor)
         views, bound = found.views, found.bound
+    if request.greedy.solid_angle_weights:
+        bound = None
     views = merge_close_views(problem, as_written(problem, views))
     if len(views.heading_rad) == 0:
         raise nothing_to_see()

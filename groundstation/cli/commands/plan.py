@@ -185,6 +185,9 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     print(
         f"no flight can cover more than {coverage.reachable_upper_bound}, so this is {share:.2f} % of what is possible"
     )
+    bound = planned.bound_for_views
+    if bound is not None and coverage.covered < bound < coverage.reachable_upper_bound:
+        print(f"no choice of as many viewpoints from those compared covers more than {math.floor(bound)}")
     twice = next((count for count in planned.depth if count.n_views == 2), None)
     if twice is not None:
         print(f"seen at least twice: {twice.covered} sections")
