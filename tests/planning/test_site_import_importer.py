@@ -253,7 +253,7 @@ def test_text_says_what_was_made_and_notes_go_to_the_error_stream(
     arguments = ["site", "import", str(tower), "-o", str(tower.with_name("s.json")), "--origin=1,2,3", *GRID]
     assert main(arguments, no_window) == 0
     streams = capsys.readouterr()
-    assert "panels: 12, by facade: A 12" in streams.out
+    assert "12 panels on 1 facade: A 12" in streams.out
     assert "note: home:" in streams.err
 
 
