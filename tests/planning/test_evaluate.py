@@ -1,0 +1,82 @@
+"""What views cover, how often and how finely, against the contract's own words."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+
+from planning.catalogue import profile
+from planning.coverage.model import CoverageModel
+from planning.coverage.sections import SectionGrid, panel_frames
+from planning.evaluate import coverage, coverage_counts, depth, ground_sampling_m, nearest_panel_m
+from planning.occlusion import line_of_sight
+from planning.plan import Viewpoint
+from planning.reach_kernel import REACHABLE, UNREACHABLE
+from planning.reachability import Reachability
+from planning.site import panel_corners
+from tests.planning.plan_cases import kiosk, seen_by_contract, solid_triangles
+
+CAMERA = profile("m3e").camera
+
+
+@functools.cache
+def model(step_deg: float = 30.0, occlusion: bool = False, max_distance_m: float | None = None) -> CoverageModel:
+    sight = line_of_sight(solid_triangles(kiosk())) if occlusion else None
+    frames = panel_frames(panel_corners(kiosk().site))
+    return CoverageModel(frames, CAMERA, SectionGrid(step_deg), max_distance_m=max_distance_m, sight=sight)
+
+
+@functools.cache
+def viewpoints(n: int = 60) -> tuple[Viewpoint, ...]:
+    rng = np.random.default_rng(1)
+    positions = rng.uniform([-30, -35, 3], [35, 0, 30], (n, 3))
+    to_middle = np.array([0.0, 2.0, 4.5]) - positions
+    heading = np.degrees(np.arctan2(to_middle[:, 0], to_middle[:, 1])) + rng.normal(size=n) * 10.0
+    pitch = np.degrees(np.arctan2(to_middle[:, 2], np.hypot(*to_middle[:, :2].T)))
+    return tuple(
+        Viewpoint(f"v{i:04d}", tuple(map(float, positions[i])), float(heading[i]), float(pitch[i]))  # type: ignore[arg-type]
+        for i in range(n)
+    )
+
+
+@pytest.mark.parametrize("occlusion", [False, True])
+@pytest.mark.parametrize("step_deg", [30.0, 15.0, 90.0])
+def test_counts_are_those_of_the_contract(step_deg: float, occlusion: bool) -> None:
+    counts = coverage_counts(model(step_deg, occlusion), viewpoints())
+    seen = seen_by_contract(kiosk(), CAMERA, viewpoints(), step_deg, occlusion)
+    found = {(int(j), int(k)): int(counts[j, k]) for j, k in zip(*np.nonzero(counts), strict=True)}
+    assert found == dict(seen)
+    for count in depth(model(step_deg, occlusion), viewpoints()):
+        assert count.covered == sum(times >= count.n_views for times in seen.values())
+        assert (count.step_deg, count.total) == (step_deg, counts.size)
+
+
+def test_bound_holds_even_for_viewpoints_that_break_the_rules_it_rests_on() -> None:
+    shape = (len(model().frames), model().grid.n_sections)
+    nothing = Reachability(np.full(shape, UNREACHABLE, np.int8), np.full((*shape, 3), np.nan), 0.0)
+    measured = coverage(model(), viewpoints(), nothing)
+    assert 0 < measured.covered == measured.reachable_upper_bound < measured.total
+    everything = Reachability(np.full(shape, REACHABLE, np.int8), np.full((*shape, 3), np.nan), 0.0)
+    assert coverage(model(), (), everything).reachable_upper_bound == model().n_elements
+
+
+def test_pixels_follow_from_distances() -> None:
+    one = Viewpoint("v", (0.0, -12.29, 4.5), 0.0, 0.0)  # 12.29 m in front of the middle panel: 3.2766 mm a pixel
+    narrow = model()
+    best, worst = ground_sampling_m(narrow, (one,))
+    assert best == pytest.approx(17.3e-3 / 5280.0 * 1000.0)
+    furthest = max(np.linalg.norm(np.array([x, 0.0, z]) - one.position_enu_m) for x in (-4, 0, 4) for z in (1.5, 7.5))
+    assert worst == pytest.approx(CAMERA.gsd_m(furthest))
+    assert nearest_panel_m(narrow, (one,)) == pytest.approx([12.29])
+    away = Viewpoint("w", (0.0, -12.0, 4.5), 180.0, 0.0)
+    assert nearest_panel_m(narrow, (one, away)).tolist() == [pytest.approx(12.29), np.inf]
+    assert nearest_panel_m(model(max_distance_m=12.0), (one,)).tolist() == [np.inf]
+
+
+def test_no_viewpoints_cover_nothing() -> None:
+    assert coverage_counts(model(), ()).sum() == 0
+    assert ground_sampling_m(model(), ()) == (np.inf, 0.0)
+    assert nearest_panel_m(model(), ()).shape == (0,)
+    assert [count.covered for count in depth(model(), (), 2)] == [0, 0]
