@@ -16,19 +16,21 @@ SAME_PLACE_M = 1e-3
 
 
 def photo_vertices(sortie: Sortie, by_id: Mapping[str, Viewpoint]) -> NDArray[np.int64] | None:
-    """Vertex of each of a sortie's viewpoints, in order, shape (m,); None where one is missing."""
-    found: list[int] = []
-    start = 0
+    """Vertex of each of a sortie's viewpoints, in order, shape (m,); None where one is missing.
+
+    Viewpoints at one place have a vertex each where the path has as many there, else they share one.
+    """
+    path, found = sortie.path_enu_m, [-1]
     for viewpoint_id in sortie.viewpoint_ids:
-        position = by_id[viewpoint_id].position_enu_m
-        for vertex in range(start, len(sortie.path_enu_m)):
-            if math.dist(sortie.path_enu_m[vertex], position) <= SAME_PLACE_M:
-                found.append(vertex)
-                start = vertex + 1
-                break
-        else:
+        position, last = by_id[viewpoint_id].position_enu_m, found[-1]
+        at = (v for v in range(last + 1, len(path)) if math.dist(path[v], position) <= SAME_PLACE_M)
+        vertex = next(at, None)
+        if vertex != last + 1 and last >= 0 and math.dist(path[last], position) <= SAME_PLACE_M:
+            vertex = last
+        if vertex is None:
             return None
-    return np.array(found, np.int64)
+        found.append(vertex)
+    return np.array(found[1:], np.int64)
 
 
 def sortie_flight_path(
@@ -41,6 +43,8 @@ def sortie_flight_path(
 ) -> tuple[FlightPath, NDArray[np.int64]] | None:
     """Flight path of a sortie and the vertices of its photos; None where the path is none or misses a viewpoint.
 
+    A vertex that several photos share is repeated, so that each has one.
+
     Raises
     ------
     InfeasibleError
@@ -50,7 +54,10 @@ def sortie_flight_path(
     if vertices is None or len(sortie.path_enu_m) < 2:
         return None
     views = viewpoint_arrays(tuple(by_id[viewpoint_id] for viewpoint_id in sortie.viewpoint_ids))
-    path = np.array(sortie.path_enu_m, np.float64)
+    repeats = np.maximum(1, np.bincount(vertices, minlength=len(sortie.path_enu_m)))
+    path = np.repeat(np.array(sortie.path_enu_m, np.float64), repeats, axis=0)
+    first = np.cumsum(repeats) - repeats
+    vertices = first[vertices] + np.arange(len(vertices)) - np.searchsorted(vertices, vertices)
     angles = views.heading_rad, views.pitch_rad
     return flight_path(path, vertices, *angles, aircraft, rules, stop_at_corners=stop_at_corners), vertices
 
