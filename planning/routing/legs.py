@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
+from scipy.spatial.distance import cdist
 
 from planning.errors import InfeasibleError
 from planning.jit import chunks
@@ -151,9 +152,8 @@ def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], me
     all_points = np.concatenate([points, nodes])
     column = np.stack([np.zeros(roadmap.n_column, np.int64), n + np.arange(roadmap.n_column)], axis=1)
     joined = _joined(roadmap, points[1:]) + np.array([1, n])
-    nearest = np.argsort(np.where(straight, np.linalg.norm(points[:, None] - points[None], axis=2), np.inf), axis=1)[
-        :, :ROADMAP_NEIGHBOURS
-    ]
+    distance = np.where(straight, cdist(points, points), np.inf)
+    nearest = np.argpartition(distance, min(ROADMAP_NEIGHBOURS, n) - 1, axis=1)[:, :ROADMAP_NEIGHBOURS]
     a = np.repeat(np.arange(n), nearest.shape[1])
     direct = np.stack([a, nearest.ravel()], axis=1)
     direct = direct[straight[direct[:, 0], direct[:, 1]]]
