@@ -32,8 +32,8 @@ CHECKS = {
 }
 """The checks of each format; for our own two, what reading finds."""
 
-LOST = 0.002
-"""Part of the coverage: missions hold angles to 0.01 degrees, and a centroid on the edge of a picture may fall out."""
+MOVED = 1
+"""Sections: coordinates in missions are rounded to about 0.1 mm, and one on a border may change sides."""
 
 
 @pytest.fixture
@@ -66,4 +66,4 @@ def test_office_goes_from_ifc_to_every_mission_file_and_back(reflight, office, t
         done = reflight("import", *files, "--site", site, "-o", back, "--profile", profile, "--json")
         assert done.status == 0, done.err
         assert done.json["views"] == len(original.viewpoints)
-        assert abs(done.json["covered"] - original.coverage.covered) <= LOST * original.coverage.covered
+        assert abs(done.json["covered"] - original.coverage.covered) <= MOVED
