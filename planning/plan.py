@@ -16,6 +16,8 @@ from planning.effects import Decision
 from planning.frames import Vec3
 from planning.site import Origin, check_point
 
+PLAN_FORMAT = "reflight-plan/1"
+
 POSITION_DECIMALS = 4
 ANGLE_DECIMALS = 3
 """Of positions (0.1 mm) and angles in degrees, in plan files and missions: what was counted is what is flown."""
@@ -231,7 +233,7 @@ class Plan:
     sorties: tuple[Sortie, ...]
     coverage: Coverage
     history: tuple[HistoryPoint, ...] = ()
-    format: str = "reflight-plan/1"
+    format: str = PLAN_FORMAT
     origin: Origin | None = None
     """Of the site; without it (plans of other programs) export needs the site file."""
     home_enu_m: Vec3 | None = None
@@ -241,8 +243,8 @@ class Plan:
     """Identifier of the aircraft-and-camera profile in the catalogue, empty when they were given by hand."""
 
     def __post_init__(self) -> None:
-        if self.format != "reflight-plan/1":
-            raise ValueError(f"format: expected 'reflight-plan/1', got '{self.format}'")
+        if self.format != PLAN_FORMAT:
+            raise ValueError(f"format: expected '{PLAN_FORMAT}', got '{self.format}'")
         if self.home_enu_m is not None:
             check_point(self.home_enu_m, "home_enu_m")
         ids = [viewpoint.id for viewpoint in self.viewpoints]

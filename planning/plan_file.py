@@ -9,9 +9,7 @@ from typing import Any
 import msgspec
 
 from planning.json_file import expect_format, read_json, to_record, write_atomically
-from planning.plan import Plan
-
-FORMAT = "reflight-plan/1"
+from planning.plan import PLAN_FORMAT, Plan
 
 
 def read_plan(path: Path) -> Plan:
@@ -23,7 +21,7 @@ def read_plan(path: Path) -> Plan:
         The file is missing or wrong; the message names the file, the field and what was expected.
     """
     content = read_json(path)
-    expect_format(content, FORMAT, path)
+    expect_format(content, PLAN_FORMAT, path)
     return to_record(content, Plan, path)
 
 

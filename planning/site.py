@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from planning.frames import Vec3
 from planning.mesh import MAX_COORDINATE_M, TriangleMesh, box_mesh, extrude
 
+SITE_FORMAT = "reflight-site/1"
+
 MIN_PANEL_AREA_M2 = 1e-4
 """Smaller panels are degenerate: no pane is under 1 cm x 1 cm."""
 
@@ -193,11 +195,11 @@ class Site:
     home_enu_m: Vec3
     building_mesh: str | None = None
     obstacles: tuple[Obstacle, ...] = ()
-    format: str = "reflight-site/1"
+    format: str = SITE_FORMAT
 
     def __post_init__(self) -> None:
-        if self.format != "reflight-site/1":
-            raise ValueError(f"format: expected 'reflight-site/1', got '{self.format}'")
+        if self.format != SITE_FORMAT:
+            raise ValueError(f"format: expected '{SITE_FORMAT}', got '{self.format}'")
         check_point(self.home_enu_m, "home_enu_m")
         if not any(facade.panels for facade in self.facades):
             raise ValueError("facades: expected at least one panel, got none")

@@ -12,9 +12,7 @@ import msgspec
 from planning.errors import InputError
 from planning.json_file import expect_format, read_json, to_record, write_atomically
 from planning.mesh import TriangleMesh, empty_mesh, read_mesh
-from planning.site import Obstacle, Site, SiteModel, box_geometry
-
-FORMAT = "reflight-site/1"
+from planning.site import SITE_FORMAT, Obstacle, Site, SiteModel, box_geometry
 
 
 def read_site(path: Path) -> SiteModel:
@@ -26,7 +24,7 @@ def read_site(path: Path) -> SiteModel:
         The file or a mesh is missing or wrong; the message names the file, the field and what was expected.
     """
     content = read_json(path)
-    expect_format(content, FORMAT, path)
+    expect_format(content, SITE_FORMAT, path)
     site = to_record(content, Site, path)
     folder = path.parent
     name = site.building_mesh

@@ -18,6 +18,7 @@ OPTIONS = {
     "coverage": "--coverage",
     "batteries": "--batteries",
     "time budget": "--time-budget",
+    "seed": "--seed",
     "min_distance_m": "--min-distance",
     "max_distance_m": "--max-distance",
     "section_step_deg": "--step",

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from groundstation.services.missions import export_plan
+from groundstation.services.missions import SUFFIXES, export_plan
 from groundstation.services.planning import plan_site
-from missions.model import FileFormat
 from planning.checks import check_plan
 from planning.errors import InputError
 from planning.findings import Finding
@@ -16,14 +15,6 @@ from planning.planner import Planned, PlanRequest
 from planning.progress import QUIET, Monitor
 from planning.scenes import write_scene
 from planning.site_file import read_site
-
-EXPORTS = (
-    (FileFormat.DJI_KMZ, ".kmz"),
-    (FileFormat.MAVLINK_PLAN, ".plan"),
-    (FileFormat.MAVLINK_WPL, ".waypoints"),
-    (FileFormat.KML, ".kml"),
-    (FileFormat.CSV, ".csv"),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +49,7 @@ def demonstrate(
     findings = check_plan(read_plan(plan_path), read_site(site_path), monitor)
     missions: list[Path] = []
     export_findings: list[Finding] = []
-    for file_format, suffix in EXPORTS:
+    for file_format, (suffix, *_) in SUFFIXES.items():
         monitor.report("exporting", len(missions), 0)
         paths, found = export_plan(plan_path, file_format, folder / f"{scene}{suffix}", site_path)
         missions += paths

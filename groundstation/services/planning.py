@@ -94,6 +94,6 @@ def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
 
 
 def finding_summary(finding: Finding) -> dict[str, Any]:
-    """A finding as JSON; values that are not finite are left out."""
+    """A finding as JSON."""
     content: dict[str, Any] = msgspec.to_builtins(finding)
     return content

@@ -19,12 +19,12 @@ from typing import Any
 from groundstation.services.missions import find_site
 from planning.errors import InfeasibleError, InputError
 from planning.json_file import read_json
-from planning.plan import Plan
+from planning.plan import PLAN_FORMAT, Plan
 from planning.plan_file import read_plan
 from planning.planner import DEFAULT_VIEWS, PlanRequest
 from planning.progress import QUIET, Monitor
 from planning.routing.methods import TourMethod
-from planning.site import SiteModel
+from planning.site import SITE_FORMAT, SiteModel
 from planning.site_file import read_site
 from planning.sweep import sweep
 from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, GapAxis, Panel, draw
@@ -181,9 +181,9 @@ def _plans_with_sites(paths: Sequence[Path]) -> list[tuple[Plan, SiteModel]]:
     for path in paths:
         content = read_json(path)
         kind = content.get("format") if isinstance(content, dict) else None
-        if kind == "reflight-plan/1":
+        if kind == PLAN_FORMAT:
             plans.append((path, read_plan(path)))
-        elif kind == "reflight-site/1":
+        elif kind == SITE_FORMAT:
             sites.append(read_site(path))
         else:
             raise InputError(f"{path}: expected a TSPLIB file (.tsp, .atsp), a plan or a site, found format {kind!r}")

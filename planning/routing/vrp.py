@@ -155,51 +155,6 @@ def improve_sorties(
     return min(sorties, found, key=quality)
 
 
-def collect_prizes(
-    travel_s: Floats,
-    service_s: Floats,
-    budget_s: float,
-    n_sorties: int,
-    prizes: Floats,
-    *,
-    seed: int = 0,
-    max_iterations: int | None = None,
-    stop: Stop = never,
-    trace: Trace | None = None,
-    monitor: Monitor = QUIET,
-) -> Sorties:
-    """PyVRP's sorties that collect the most prizes, of equals the shortest; a stop may be left out.
-
-    Parameters
-    ----------
-    travel_s, service_s, budget_s
-        As in `planning.routing.orienteering.solve_orienteering`.
-    prizes
-        Shape (n,), none negative.
-    """
-    n = len(service_s)
-    collected = float(prizes.sum())
-    if n == 0 or collected == 0.0:
-        return ()
-    scale = _scale(n_sorties * budget_s)
-    limit = math.floor(scale * budget_s)
-    prize_scale = min(2.0 * n_sorties * limit / float(prizes[prizes > 0.0].min()), 1e15 / collected)
-    data = _problem_data(
-        duration=np.minimum(np.ceil(scale * travel_s), 2 * limit + 1),
-        clients=[
-            pyvrp.Client(
-                i + 1, service_duration=math.ceil(scale * service), prize=round(prize_scale * prize), required=False
-            )
-            for i, (service, prize) in enumerate(zip(service_s, prizes, strict=True))
-        ],
-        depots=[pyvrp.Depot(0)],
-        vehicle=pyvrp.VehicleType(n_sorties, shift_duration=limit, unit_distance_cost=0, unit_duration_cost=1),
-    )
-    record = _recorder(trace, lambda solution: solution.prizes() / prize_scale)
-    best = _run(data, None, seed, max_iterations, stop, record, monitor)
-    return tuple(tuple(visits) for visits in _visits(best)) if best.is_feasible() else ()
-
-
 def _scale(largest_total: float) -> float:
     """Whole numbers per unit, so that no total overflows."""
     return min(FINEST, LARGEST_TOTAL / max(largest_total, 1e-9))

@@ -2,7 +2,8 @@
 
 import pytest
 
-from groundstation.services.demo import EXPORTS, demonstrate
+from groundstation.services.demo import demonstrate
+from missions.model import FileFormat
 from planning.errors import InputError, OperationCancelled
 from planning.findings import is_flyable
 from planning.plan_file import read_plan
@@ -12,7 +13,7 @@ from planning.planner import PlanRequest
 def test_all_files_are_made_and_the_plan_is_ready_to_fly(tmp_path):
     made = demonstrate(tmp_path / "new" / "demo", "single-panel", PlanRequest(n_views=4, time_budget_s=5.0))
     assert {made.site_path, made.plan_path, *made.mission_paths} == set((tmp_path / "new" / "demo").iterdir())
-    assert len(made.mission_paths) == len(EXPORTS)
+    assert len(made.mission_paths) == len(FileFormat)
     assert read_plan(made.plan_path) == made.planned.plan
     assert is_flyable(made.findings)
     assert is_flyable(made.export_findings)

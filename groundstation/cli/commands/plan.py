@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import add_profile_argument, checked_seed, in_words_of_options, number
+from groundstation.cli.options import add_profile_argument, in_words_of_options, number
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
             ),
             greedy=GreedyParameters(n_candidates, solid_angle_weights=options.weights == "solid-angle"),
             precision=options.precision,
-            seed=checked_seed(options.seed),
+            seed=options.seed,
             time_budget_s=options.time_budget,
         )
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.plan import add_request_arguments, request_of
+from groundstation.cli.options import checked_seed
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -241,11 +242,11 @@ def run_route(options: argparse.Namespace) -> int:
     from planning.tradeoff.tour_report import tour_summary
     from planning.tradeoff.tour_runs import tour_methods
 
-    methods = tour_methods(options.methods)
+    methods, seed = tour_methods(options.methods), checked_seed(options.seed)
     made = run_job(
         "tradeoff route",
         lambda context: route_tradeoff(
-            options.file, options.seconds, options.out, methods=methods, seed=options.seed, monitor=context
+            options.file, options.seconds, options.out, methods=methods, seed=seed, monitor=context
         ),
     )
     if options.json:
