@@ -138,11 +138,17 @@ def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> Triangl
     return TriangleMesh(np.where(np.isfinite(vertices), vertices, 0.0), triangles)
 
 
-def write_mesh(path: Path, mesh: TriangleMesh) -> None:
-    """Write a binary PLY file."""
+def ply_bytes(mesh: TriangleMesh) -> bytes:
+    """Content of a binary PLY file; coordinates in single precision."""
     import trimesh
 
-    trimesh.Trimesh(mesh.vertices_enu_m, mesh.triangles, process=False).export(path, file_type="ply")
+    content: bytes = trimesh.Trimesh(mesh.vertices_enu_m, mesh.triangles, process=False).export(file_type="ply")
+    return content
+
+
+def write_mesh(path: Path, mesh: TriangleMesh) -> None:
+    """Write a binary PLY file."""
+    path.write_bytes(ply_bytes(mesh))
 
 
 def closed_parts(corners_enu_m: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from groundstation.services.project_file import SITE_FOLDER
 from missions.encode import DEFAULT_OPTIONS, ExportOptions, default_autopilot, encode
 from missions.formats import read_missions, sortie_path, write_files
 from missions.model import FileFormat
@@ -41,7 +42,7 @@ IMPORTED = "imported"
 
 
 def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> SiteModel | None:
-    """The site that a plan was made for: the one named, or the one beside the plan with the plan's checksum.
+    """The site that a plan was made for: the one named, or one beside it or in its project with the plan's checksum.
 
     Raises
     ------
@@ -63,7 +64,9 @@ def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> Sit
 def _site_beside(plan: Plan, plan_path: Path) -> Path | None:
     if not plan.site_sha256:
         return None
-    return next((path for path in sorted(plan_path.parent.glob("*.json")) if _is_site_of(path, plan)), None)
+    folder = plan_path.resolve().parent
+    candidates = [*sorted(folder.glob("*.json")), *sorted((folder.parent / SITE_FOLDER).glob("*.json"))]
+    return next((path for path in candidates if _is_site_of(path, plan)), None)
 
 
 def _is_site_of(path: Path, plan: Plan) -> bool:

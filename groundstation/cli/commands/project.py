@@ -1,0 +1,178 @@
+"""`project`: a folder with a site, its plans and what belongs to them, as the window keeps it."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from groundstation.services.project import OpenedProject
+
+EPILOG = """examples:
+  project new my-building --site office.site.json --name 'My building'
+  plan my-building/site/site.json -o south.plan.json
+  project add my-building south.plan.json
+  project show my-building
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "project",
+        help="keep a site and its plans together in a project folder",
+        description="Make, show, fill and bring up to date the project folders that the window works on.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
+    new = _add_action(actions, "new", run_new, "make a project of a site file; the file is copied")
+    new.add_argument("--site", type=Path, required=True, metavar="SITE", help="site file")
+    new.add_argument("--name", default="", help="name of the project (default: the folder's)")
+    show = _add_action(actions, "show", run_show, "say what is in a project")
+    show.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+    add = _add_action(actions, "add", run_add, "add plans to a project; the files are copied")
+    add.add_argument("plans", type=Path, nargs="+", metavar="PLAN", help="plan file")
+    _add_action(actions, "migrate", run_migrate, "bring a project of an older version, or loose files, up to date")
+
+
+def _add_action(actions: Any, name: str, run: Any, text: str) -> argparse.ArgumentParser:
+    command: argparse.ArgumentParser = actions.add_parser(name, help=text, description=f"{text.capitalize()}.")
+    command.add_argument("folder", type=Path, metavar="FOLDER", help="folder of the project")
+    command.set_defaults(run=run)
+    return command
+
+
+def run_new(options: argparse.Namespace) -> int:
+    """Make a project; returns the exit status."""
+    from groundstation.cli.console import print_next
+    from groundstation.services.document import Document
+    from groundstation.services.project import create_project, open_project
+    from planning.site_file import read_site
+
+    create_project(options.folder, Document(read_site(options.site)), name=options.name, site_source=options.site)
+    project = open_project(options.folder)
+    _print(project)
+    print_next("plan", options.folder / project.record.site, "-o", "plan.json")
+    return 0
+
+
+def run_show(options: argparse.Namespace) -> int:
+    """Show a project; returns the exit status."""
+    from groundstation.cli.console import print_findings, print_json, print_next
+    from groundstation.services.planning import finding_summary
+    from groundstation.services.project import open_project
+    from groundstation.services.project_migration import VERSION
+    from groundstation.services.recovery import find_recovery
+
+    project = open_project(options.folder)
+    recovery = find_recovery(project.folder)
+    if options.json:
+        content = _summary(project)
+        content["notes"] = [finding_summary(note) for note in project.notes]
+        content["unsaved_work"] = None if recovery is None else list(recovery.changes)
+        print_json(content)
+        return 0
+    _print(project)
+    if recovery is not None:
+        print("unsaved: " + (recovery.problem or f"{', '.join(recovery.changes)}; open the project in the window"))
+    print_findings(project.notes)
+    if project.version < VERSION:
+        print_next("project", "migrate", options.folder)
+    return 0
+
+
+def run_add(options: argparse.Namespace) -> int:
+    """Add plans to a project; returns the exit status."""
+    from groundstation.cli.console import counted, print_findings, print_next
+    from groundstation.services.project import open_project, save_project
+    from groundstation.services.project_lock import lock_project
+    from groundstation.services.project_plans import add_plans
+
+    with lock_project(_folder_of_project(options.folder)) as lock:
+        project = open_project(lock.folder)
+        document, notes = add_plans(project.document, options.plans)
+        save_project(lock.folder, document)
+    print_findings((*project.notes, *notes))
+    print(f"{options.folder}: {counted(len(options.plans), 'plan')} added, {len(document.plans)} in the project")
+    print_next("project", "show", options.folder)
+    return 0
+
+
+def run_migrate(options: argparse.Namespace) -> int:
+    """Save a project in the present format; returns the exit status."""
+    from groundstation.cli.console import print_findings
+    from groundstation.services.project import open_project, save_project
+    from groundstation.services.project_lock import lock_project
+    from groundstation.services.project_migration import FORMAT, VERSION
+
+    with lock_project(_folder_of_project(options.folder)) as lock:
+        project = open_project(lock.folder)
+        if project.version < VERSION:
+            save_project(lock.folder, project.document)
+    print_findings(note for note in project.notes if note.code not in ("loose-files", "old-format"))
+    if project.version == VERSION:
+        print(f"{options.folder}: in format '{FORMAT}{VERSION}' already, nothing to do")
+    else:
+        print(f"{options.folder}: now in format '{FORMAT}{VERSION}' (see project.json)")
+    return 0
+
+
+def _folder_of_project(path: Path) -> Path:
+    """Folder of a project that can be read: nothing else gets a lock file."""
+    from groundstation.services.project_file import project_folder, read_index
+
+    folder = project_folder(path)
+    read_index(folder)
+    return folder
+
+
+def _summary(project: OpenedProject) -> dict[str, Any]:
+    record, document = project.record, project.document
+    site = document.site
+    files = {plan.id: plan.file for plan in record.plans}
+    return {
+        "folder": str(project.folder),
+        "name": project.name,
+        "version": project.version,
+        "site": None
+        if site is None
+        else {"file": record.site, "name": site.site.name, "panels": site.site.n_panels, "sha256": site.sha256},
+        "plans": [
+            {
+                "id": entry.id,
+                "title": entry.title,
+                "file": files[entry.id],
+                "method": entry.plan.method,
+                "views": len(entry.plan.viewpoints),
+                "covered": entry.plan.coverage.covered,
+                "reachable_upper_bound": entry.plan.coverage.reachable_upper_bound,
+                "sorties": len(entry.plan.sorties),
+                "duration_s": round(entry.plan.duration_s, 1),
+                "is_current": entry.id == document.current_plan_id,
+            }
+            for entry in document.plans
+        ],
+    }
+
+
+def _print(project: OpenedProject) -> None:
+    from groundstation.cli.console import counted
+    from groundstation.services.units import minutes_text
+
+    content = _summary(project)
+    print(f"project: {content['name']}")
+    site = content["site"]
+    if site is None:
+        print("site:    none yet")
+    else:
+        print(f"site:    {site['name']}, {counted(site['panels'], 'panel')} ({site['file']})")
+    print(f"plans:   {len(content['plans'])}")
+    for plan in content["plans"]:
+        bound = plan["reachable_upper_bound"]
+        share = f", {100.0 * plan['covered'] / bound:.1f} % of what is possible" if bound else ""
+        print(
+            f"  {plan['title']}: {counted(plan['views'], 'view')}{share}, {counted(plan['sorties'], 'sortie')} in "
+            f"{minutes_text(plan['duration_s'])} ({plan['method']}, {plan['file']})"
+        )

@@ -1,0 +1,209 @@
+"""Projects: a folder with a site, the plans made for it and what belongs to them (docs/projects.md)."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import msgspec
+
+from groundstation.services.document import Document
+from groundstation.services.project_file import (
+    FOLDERS,
+    PlanRecord,
+    ProjectIndex,
+    ProjectRecord,
+    is_project,
+    project_folder,
+    read_index,
+)
+from groundstation.services.project_migration import FORMAT, VERSION
+from groundstation.services.project_plans import plan_file, read_entry, read_request
+from groundstation.services.project_store import PROJECT_FILE, current_path, in_words, settle
+from groundstation.services.project_writing import site_to_write, write_project
+from planning.errors import InputError
+from planning.findings import Finding, Severity
+from planning.planner import PlanRequest
+from planning.site import SiteModel
+from planning.site_file import read_site
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenedProject:
+    """A project as it was read.
+
+    Parameters
+    ----------
+    record
+        What its project.json says, in the present shape: the files it consists of.
+    notes
+        What the user should know: plans left out, migration, a folder that cannot be written.
+    version
+        Format of the folder; see `groundstation.services.project_migration`.
+    """
+
+    folder: Path
+    name: str
+    document: Document
+    record: ProjectRecord
+    notes: tuple[Finding, ...]
+    version: int
+
+
+def open_project(path: Path) -> OpenedProject:
+    """Read a project; nothing is written.
+
+    Parameters
+    ----------
+    path
+        Its folder, or its project.json.
+
+    Raises
+    ------
+    InputError
+        There is no project, a newer version wrote it, project.json is wrong or the site cannot be read; the message
+        names the file. A plan that cannot be read is left out, with a note.
+    """
+    folder = project_folder(path)
+    index = read_index(folder)
+    record = index.record
+    notes = [*_migration_notes(folder, index)]
+    if not os.access(folder, os.W_OK):
+        text = f"{folder}: this folder cannot be written; changes can only be saved as another project"
+        notes.append(Finding(Severity.WARNING, "read-only", text))
+    site = None if not record.site else _read_site(folder, record)
+    entries = []
+    for plan in record.plans:
+        entry, found = read_entry(folder, plan)
+        notes += found
+        entries += [] if entry is None else [entry]
+    ids = [entry.id for entry in entries]
+    current = record.current_plan_id if record.current_plan_id in ids else (ids[-1] if ids else "")
+    request, found = read_request(record.request, "the next plan")
+    notes += found
+    document = Document(site, tuple(entries), current, PlanRequest() if request is None else request)
+    return OpenedProject(folder, record.name or folder.resolve().name, document, record, tuple(notes), index.version)
+
+
+def _migration_notes(folder: Path, index: ProjectIndex) -> Iterator[Finding]:
+    if index.version == 0:
+        text = (
+            f"{folder}: there is no {PROJECT_FILE} here, so '{index.record.site}' and the plans beside it (found: "
+            f"{len(index.record.plans)}) were taken as a project; saving makes it one, with copies of its own"
+        )
+        yield Finding(Severity.NOTE, "loose-files", text)
+    elif index.version < VERSION:
+        text = (
+            f"{folder}: this project is in format '{FORMAT}{index.version}'; saving brings it to '{FORMAT}{VERSION}' "
+            f"and keeps the old {PROJECT_FILE} beside it"
+        )
+        yield Finding(Severity.NOTE, "old-format", text)
+
+
+def _read_site(folder: Path, record: ProjectRecord) -> SiteModel:
+    path = current_path(folder, record.site, record.site_sha256)
+    try:
+        return read_site(path)
+    except InputError as error:
+        raise InputError(
+            f"{error}; a project cannot be opened without its site: put the file back from a copy, or make a new "
+            "project with 'project new' and add the plans to it"
+        ) from error
+
+
+def create_project(folder: Path, document: Document, *, name: str = "", site_source: Path | None = None) -> Document:
+    """Make a new project; returns the document as `save_project` does.
+
+    Parameters
+    ----------
+    folder
+        Made where it is missing. Other files in it stay untouched.
+    site_source
+        As for `save_project`.
+
+    Raises
+    ------
+    InputError
+        There is a project already, or the folder cannot be made or written.
+    """
+    if is_project(folder):
+        raise InputError(f"{folder}: there is a project here already; open it, or name another folder")
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: expected a folder for the project, found a file; name another folder")
+    made = [path for path in (folder, *(folder / part for part in FOLDERS)) if not path.exists()]
+    try:
+        with in_words(folder):
+            for path in made:
+                path.mkdir(parents=True, exist_ok=True)
+        return save_project(folder, document, name=name, site_source=site_source)
+    except BaseException:
+        for path in reversed(made):
+            with contextlib.suppress(OSError):  # what cannot be removed holds something, or was never made
+                path.rmdir()
+        raise
+
+
+def save_project(folder: Path, document: Document, *, name: str = "", site_source: Path | None = None) -> Document:
+    """Write a document as a project, whole or not at all; only files that have changed are written.
+
+    A file that another program has changed since the last save is not replaced: what belongs there gets another name.
+
+    Parameters
+    ----------
+    folder
+        Of the project; exists.
+    name
+        Of the project; empty to leave it as it is (a new project is called like its folder).
+    site_source
+        Site file that the document's site was read from, where it is neither the project's own nor the document's
+        `site_source`. While the site has not changed, its file is taken over byte for byte, so that plans made for it
+        still know it by its checksum.
+
+    Returns
+    -------
+    document
+        As it was written: the site has the checksum of its file, and names and coordinates of its meshes as the mesh
+        files hold them. The very same object where nothing of it is different.
+
+    Raises
+    ------
+    InputError
+        Something cannot be written (the project is as it was then), holds NaN or infinity, or the project in the
+        folder cannot be read or is of a newer version.
+    """
+    present = _present(folder)
+    if present is not None:
+        settle(folder, present.record.checksums())
+    before = ProjectRecord() if present is None else present.record
+    sources = [source for source in (site_source, document.site_source) if source is not None]
+    site = None if document.site is None else site_to_write(folder, document.site, before, sources)
+    files = {} if site is None else dict(site.files)
+    plans: list[PlanRecord] = []
+    for entry in document.plans:
+        plan, content = plan_file(folder, entry, before, {plan.file for plan in plans})
+        plans.append(plan)
+        if content is not None:
+            files[plan.file] = content
+    record = ProjectRecord(
+        name=name or before.name or folder.resolve().name,
+        site="" if site is None else site.file,
+        site_sha256="" if site is None else site.sha256,
+        plans=tuple(plans),
+        current_plan_id=document.current_plan_id,
+        request=msgspec.to_builtins(document.request),
+    )
+    write_project(folder, present, record, files, site)
+    return document if site is None or site.model is document.site else replace(document, site=site.model)
+
+
+def _present(folder: Path) -> ProjectIndex | None:
+    """The project in a folder as it is now: also loose files, which a first save takes over; None for neither."""
+    try:
+        return read_index(folder)
+    except InputError:
+        if is_project(folder):
+            raise
+        return None

@@ -1,0 +1,154 @@
+"""After a crash: finding the copy of unsaved work that `groundstation.services.autosave` kept, and taking it over."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+
+from groundstation.services.autosave import AUTOSAVE_FOLDER, HEADER_FILE, UNSAVED_FOLDER, AutosaveHeader
+from groundstation.services.document import Document, PlanEntry
+from groundstation.services.project import OpenedProject, open_project
+from groundstation.services.project_file import read_index
+from groundstation.services.project_lock import lock_holder
+from groundstation.services.project_site import same_site
+from groundstation.services.project_store import in_words
+from groundstation.services.settings import data_folder
+from planning.errors import InputError
+from planning.json_file import read_json, to_record
+
+DAMAGED_FOLDER = ".autosave-damaged"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recovery:
+    """A copy of work that was not saved when Reflight ended.
+
+    Parameters
+    ----------
+    folder
+        Of the project, or the place of work that never had one.
+    saved_at
+        When the copy was written; None where that cannot be read.
+    changes
+        What is different from the project as it is saved, for the user.
+    is_of_saved_state
+        Whether the project has stayed as it was when the work began; recovering takes other changes back where not.
+    copy
+        The copy as it was read; None where it is damaged.
+    problem
+        What is wrong with a damaged copy; empty for one that is whole.
+    """
+
+    folder: Path
+    saved_at: datetime | None
+    changes: tuple[str, ...]
+    is_of_saved_state: bool
+    copy: OpenedProject | None
+    problem: str = ""
+
+
+def find_recovery(folder: Path) -> Recovery | None:
+    """The copy of unsaved work in a project's folder, damaged or not; never raises for one that is damaged.
+
+    None where there is none, where it differs in nothing from the project, and where another Reflight that is running
+    has the project open: the copy is its own then.
+    """
+    place = folder / AUTOSAVE_FOLDER
+    if not (place / HEADER_FILE).exists():
+        return None
+    holder = lock_holder(folder)
+    if holder is not None and not holder.is_this_process:
+        return None
+    try:
+        header = to_record(read_json(place / HEADER_FILE), AutosaveHeader, place / HEADER_FILE)
+        copy = open_project(place)
+    except InputError as error:
+        problem = f"{error}; this copy of unsaved work is damaged and cannot be taken over"
+        return Recovery(folder, None, (), False, None, problem)
+    changes = _changes(folder, copy)
+    if not changes:
+        return None
+    saved_at = datetime.fromisoformat(header.saved_at)
+    return Recovery(folder, saved_at, changes, header.based_on == _saved_state(folder), copy)
+
+
+def find_unsaved() -> tuple[Recovery, ...]:
+    """Copies of work that never had a project, from the user's data folder, oldest first."""
+    places = sorted((data_folder() / UNSAVED_FOLDER).glob("*"))
+    found = [find_recovery(place) for place in places if place.is_dir()]
+    return tuple(recovery for recovery in found if recovery is not None)
+
+
+def recover(recovery: Recovery) -> OpenedProject:
+    """The unsaved work, to be opened as changes of its project that are not saved yet. The copy stays where it is.
+
+    Raises
+    ------
+    InputError
+        The copy is damaged.
+    """
+    if recovery.copy is None:
+        raise InputError(recovery.problem)
+    return replace(recovery.copy, folder=recovery.folder)
+
+
+def discard_recovery(recovery: Recovery) -> None:
+    """Clear a copy away that is not wanted; a damaged one is kept aside as `.autosave-damaged`, in place of the last.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written.
+    """
+    place = recovery.folder / AUTOSAVE_FOLDER
+    with in_words(place):
+        if recovery.problem:
+            shutil.rmtree(recovery.folder / DAMAGED_FOLDER, ignore_errors=True)
+            place.replace(recovery.folder / DAMAGED_FOLDER)
+        elif recovery.folder.parent == data_folder() / UNSAVED_FOLDER:
+            shutil.rmtree(recovery.folder)
+        else:
+            shutil.rmtree(place)
+
+
+def _saved_state(folder: Path) -> str:
+    try:
+        return read_index(folder).sha256
+    except InputError:
+        return ""
+
+
+def _changes(folder: Path, copy: OpenedProject) -> tuple[str, ...]:
+    try:
+        saved = open_project(folder).document
+    except InputError as error:
+        if copy.document.site is None and not copy.document.plans:
+            return ()
+        return (f"all of it: no project can be opened in its folder ({error})",)
+    left_out = {note.place for note in copy.notes if note.code == "plan-left-out"}
+    return tuple(_differences(saved, copy.document, left_out))
+
+
+def _differences(before: Document, after: Document, left_out: set[str]) -> list[str]:
+    found = [] if same_site(before.site, after.site) else ["the site"]
+    for entry in after.plans:
+        known = before.entry(entry.id)
+        if known is None:
+            found.append(f"plan '{entry.title}' is new")
+        elif not _same_entry(known, entry):
+            found.append(f"plan '{entry.title}' was changed")
+    for entry in before.plans:
+        if after.entry(entry.id) is None and entry.id not in left_out:
+            found.append(f"plan '{entry.title}' was removed")
+    return found if before.request == after.request else [*found, "what is asked of the next plan"]
+
+
+def _same_entry(one: PlanEntry, other: PlanEntry) -> bool:
+    return (one.title, one.plan, one.request, one.bound_for_views) == (
+        other.title,
+        other.plan,
+        other.request,
+        other.bound_for_views,
+    )

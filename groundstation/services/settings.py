@@ -1,0 +1,172 @@
+"""The user's settings: one TOML file, with unknown keys and wrong values refused by name."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from groundstation.services.units import UnitSystem
+from planning.catalogue import DEFAULT_PROFILE
+from planning.errors import InputError
+from planning.json_file import read_toml, to_record, write_atomically
+
+CONFIG_VARIABLE = "REFLIGHT_CONFIG_DIR"
+"""Environment variable that names the folder for settings and data, for tests and for a program on a stick."""
+
+MAX_RECENT_PROJECTS = 10
+
+HEADER = """\
+# Settings of Reflight. Edit them while no window is open; what they mean is in docs/projects.md.
+# theme: system, light, dark, sunlight; language: system, en, de; units: metric, imperial
+# text_scale: 0.8 to 2.0; autosave_s: 5 to 3600, or 0 for never; map_tiles: an MBTiles file, or empty
+
+"""
+
+
+class Theme(StrEnum):
+    """Colours of the window."""
+
+    SYSTEM = "system"
+    LIGHT = "light"
+    DARK = "dark"
+    SUNLIGHT = "sunlight"
+
+
+class Language(StrEnum):
+    """Language of the window."""
+
+    SYSTEM = "system"
+    ENGLISH = "en"
+    GERMAN = "de"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the user has chosen.
+
+    Parameters
+    ----------
+    text_scale
+        Of all text, 1 as the system has it.
+    autosave_s
+        Seconds between copies of unsaved work, 0 for none.
+    recent_projects
+        Folders, the latest first.
+    map_tiles
+        Path of an MBTiles file for maps without network; empty for none.
+    default_profile
+        Aircraft and camera that a new plan starts with: see `planning.catalogue.profile`.
+    window_layouts
+        Layout of the window as text, by its size ("1280x720").
+    """
+
+    theme: Theme = Theme.SYSTEM
+    language: Language = Language.SYSTEM
+    units: UnitSystem = UnitSystem.METRIC
+    text_scale: float = 1.0
+    autosave_s: float = 30.0
+    recent_projects: tuple[str, ...] = ()
+    map_tiles: str = ""
+    default_profile: str = DEFAULT_PROFILE
+    window_layouts: Mapping[str, str] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        if not 0.8 <= self.text_scale <= 2.0:
+            raise ValueError(f"text_scale: expected 0.8 to 2.0, got {self.text_scale:g}")
+        if not (self.autosave_s == 0.0 or 5.0 <= self.autosave_s <= 3600.0):
+            raise ValueError(f"autosave_s: expected 5 to 3600, or 0 for never, got {self.autosave_s:g}")
+        if len(self.recent_projects) > MAX_RECENT_PROJECTS:
+            raise ValueError(
+                f"recent_projects: expected at most {MAX_RECENT_PROJECTS} folders, got {len(self.recent_projects)}"
+            )
+        if not self.default_profile:
+            raise ValueError("default_profile: expected the name of an aircraft profile, got an empty text")
+        for size in self.window_layouts:
+            if re.fullmatch(r"[1-9]\d{1,4}x[1-9]\d{1,4}", size) is None:
+                raise ValueError(f"window_layouts: expected sizes such as 1280x720, got '{size}'")
+
+    def with_recent(self, folder: Path) -> Settings:
+        """With a project as the latest one; a folder whose name is no valid text is not kept, TOML cannot hold it."""
+        name = str(folder.resolve())
+        if name.encode(errors="replace").decode() != name:
+            return self
+        others = tuple(known for known in self.recent_projects if known != name)
+        return replace(self, recent_projects=(name, *others)[:MAX_RECENT_PROJECTS])
+
+    def without_recent(self, folder: str) -> Settings:
+        """Without a project that is not there any more."""
+        return replace(self, recent_projects=tuple(known for known in self.recent_projects if known != folder))
+
+
+CHOICES: dict[str, type[StrEnum]] = {"theme": Theme, "language": Language, "units": UnitSystem}
+
+
+def settings_path() -> Path:
+    """Where the settings are: in the user's folder for settings, or where REFLIGHT_CONFIG_DIR says."""
+    import platformdirs
+
+    chosen = os.environ.get(CONFIG_VARIABLE)
+    folder = Path(chosen) if chosen else platformdirs.user_config_path("reflight", appauthor=False)
+    return folder / "settings.toml"
+
+
+def data_folder() -> Path:
+    """Where Reflight keeps what belongs to no project: the user's data folder, or `data` in REFLIGHT_CONFIG_DIR."""
+    import platformdirs
+
+    chosen = os.environ.get(CONFIG_VARIABLE)
+    return Path(chosen) / "data" if chosen else platformdirs.user_data_path("reflight", appauthor=False)
+
+
+def read_settings(path: Path) -> Settings:
+    """Settings from a file; all as they are at first where there is no file.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not TOML, a key is unknown, or a value has the wrong type or is out of range.
+    """
+    if not path.exists():
+        return Settings()
+    content = read_toml(path, dict[str, Any])
+    known = [setting.name for setting in fields(Settings)]
+    for key, value in content.items():
+        if key not in known:
+            close = difflib.get_close_matches(key, known, 1)
+            hint = f"; is '{close[0]}' meant?" if close else ""
+            raise InputError(f"{path}: {key}: expected one of {', '.join(known)}, found an unknown key{hint}")
+        if key in CHOICES and value not in list(CHOICES[key]):
+            raise InputError(f"{path}: {key}: expected {' or '.join(CHOICES[key])}, got {value!r}")
+    return to_record(content, Settings, path)
+
+
+def write_settings(path: Path, settings: Settings, *, replace_unreadable: bool = False) -> None:
+    """Write settings, whole or not at all; the folder is made where it is missing.
+
+    Parameters
+    ----------
+    replace_unreadable
+        The user has agreed that a file with mistakes may go; without that it is left as it is.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written, or has mistakes that the user may want to correct.
+    """
+    if not replace_unreadable:
+        read_settings(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{path.parent}: this folder cannot be made ({error.strerror or error})") from error
+    import tomli_w
+
+    write_atomically(path, (HEADER + tomli_w.dumps(msgspec.to_builtins(settings))).encode())
