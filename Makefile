@@ -1,4 +1,4 @@
-# make setup | demo | test | test-all | check | benchmark: each does all the set-up it needs.
+# make setup | demo | test | test-all | check | benchmark | translations: each does all the set-up it needs.
 PYTHON ?= python3
 VENV := .venv
 ifeq ($(OS),Windows_NT)
@@ -6,8 +6,9 @@ PY := $(VENV)/Scripts/python.exe
 else
 PY := $(VENV)/bin/python
 endif
+TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 
-.PHONY: setup demo test test-all check benchmark format clean
+.PHONY: setup demo test test-all check benchmark format translations clean
 
 setup: $(VENV)/.ready
 
@@ -44,6 +45,11 @@ benchmark: setup
 format: setup
 	$(PY) -m ruff format .
 	$(PY) -m ruff check --fix .
+
+# Brings the texts of the window into the files for Qt Linguist, and compiles these; new texts stay unfinished.
+translations: setup
+	$(VENV)/bin/pyside6-lupdate $$(find groundstation/gui -name '*.py' | sort) -no-obsolete -locations none -ts $(TEXTS)
+	$(VENV)/bin/pyside6-lrelease $(TEXTS)
 
 clean:
 	rm -rf $(VENV) demo-out benchmark-out

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import sys
 
-from groundstation.cli.main import main
+from groundstation.cli.main import WindowWish, main
 
 
-def open_window() -> int:
-    """Open the window; Qt is imported here and not before."""
+def open_window(wish: WindowWish) -> int:
+    """Open the window, or take pictures of it; Qt is imported here and not before."""
+    if wish.screenshots is not None:
+        from groundstation.gui.start import take_pictures
+
+        return take_pictures(wish.screenshots, wish.site)
     from groundstation.gui.start import run_window
 
-    return int(run_window())
+    return run_window(wish.open)
 
 
 if __name__ == "__main__":

@@ -94,7 +94,7 @@ def _encode_dji(missions: Sequence[Mission], options: ExportOptions) -> EncodedF
     from missions.dji.write import DjiOptions, kmz_bytes
 
     created_ms = round(options.clock() * 1000.0)
-    rth_height_m, findings = _return_height(missions, options)
+    rth_height_m, findings = return_height(missions, options)
     dji_options = DjiOptions(rth_height_m, created_ms, options.height_reference, options.link_loss)
     contents = [kmz_bytes(mission, dji_options) for mission in missions]
     for mission, content in zip(missions, contents, strict=True):
@@ -102,7 +102,7 @@ def _encode_dji(missions: Sequence[Mission], options: ExportOptions) -> EncodedF
     return EncodedFiles(tuple(contents), tuple(findings))
 
 
-def _return_height(missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:
+def return_height(missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:
     """Height above take-off at which an aircraft that leaves its mission flies home, and what there is to say of it."""
     path_m = max(m.height_above_takeoff_m(w.position) for m in missions for w in m.waypoints)
     if options.site is None:

@@ -25,20 +25,65 @@ class DepthCount:
     total: int
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Sight:
+    """What one view covers.
+
+    Parameters
+    ----------
+    elements
+        Panel * n_sections + section of each panel that it covers, shape (k,), rising.
+    nearest_m, furthest_m
+        Distances to the centroids of the nearest and the furthest of these panels; inf and 0 where there is none.
+    """
+
+    elements: NDArray[np.int32]
+    nearest_m: float
+    furthest_m: float
+
+
+def sights(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> tuple[Sight, ...]:
+    """What each viewpoint covers, by the definition; the same whichever others are asked for with it."""
+    views = viewpoint_arrays(tuple(viewpoints))
+    sections = exact_sections(model, views)
+    view, panel = np.nonzero(sections != NOT_SEEN)
+    elements = (panel * model.grid.n_sections + sections[view, panel]).astype(np.int32)
+    distances = np.linalg.norm(views.positions_enu_m[view] - model.frames.centroids[panel], axis=1)
+    nearest, furthest = np.full(len(sections), np.inf), np.zeros(len(sections))
+    np.minimum.at(nearest, view, distances)
+    np.maximum.at(furthest, view, distances)
+    ends = np.cumsum(np.bincount(view, minlength=len(sections)))
+    return tuple(
+        Sight(elements[start:end].copy(), float(near), float(far))
+        for start, end, near, far in zip(ends - np.diff(ends, prepend=0), ends, nearest, furthest, strict=True)
+    )
+
+
+def section_counts(model: CoverageModel, seen: Sequence[Sight]) -> NDArray[np.int64]:
+    """Number of views that cover each section, shape (m, n_sections), from what each covers."""
+    elements = np.concatenate([np.zeros(0, np.int32), *(sight.elements for sight in seen)])
+    return np.bincount(elements, minlength=model.n_elements).reshape(len(model.frames), model.grid.n_sections)
+
+
 def coverage_counts(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> NDArray[np.int64]:
     """Number of viewpoints that cover each section, shape (m, n_sections)."""
     return exact_coverage(model, viewpoint_arrays(tuple(viewpoints)))
 
 
 def coverage(model: CoverageModel, viewpoints: Sequence[Viewpoint], reachability: Reachability) -> Coverage:
-    """Covered sections beside the bound on what is reachable.
+    """Covered sections beside the bound on what is reachable; see `coverage_of_counts`."""
+    return coverage_of_counts(coverage_counts(model, viewpoints), reachability)
+
+
+def coverage_of_counts(counts: NDArray[np.int64], reachability: Reachability) -> Coverage:
+    """Covered sections beside the bound on what is reachable, from the views of each section, (m, n_sections).
 
     Viewpoints of other programs may break the rules that the bound rests on (stand too close, leave the airspace);
     sections that such a viewpoint covers count as reachable.
     """
-    covered = coverage_counts(model, viewpoints) > 0
+    covered = counts > 0
     bound = covered | (reachability.verdicts != UNREACHABLE)
-    return Coverage(int(covered.sum()), model.n_elements, int(bound.sum()))
+    return Coverage(int(covered.sum()), counts.size, int(bound.sum()))
 
 
 def depth(model: CoverageModel, viewpoints: Sequence[Viewpoint], max_views: int = 4) -> tuple[DepthCount, ...]:
@@ -52,11 +97,7 @@ def depth(model: CoverageModel, viewpoints: Sequence[Viewpoint], max_views: int 
 
 def nearest_panel_m(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> NDArray[np.float64]:
     """Distance of each viewpoint to the nearest centroid of the panels it covers, shape (n,); inf where none."""
-    positions = viewpoint_arrays(tuple(viewpoints)).positions_enu_m
-    view, panel = np.nonzero(exact_sections(model, viewpoint_arrays(tuple(viewpoints))) != NOT_SEEN)
-    nearest = np.full(len(positions), np.inf)
-    np.minimum.at(nearest, view, np.linalg.norm(positions[view] - model.frames.centroids[panel], axis=1))
-    return nearest
+    return np.array([sight.nearest_m for sight in sights(model, viewpoints)], np.float64)
 
 
 def ground_sampling_m(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> tuple[float, float]:
@@ -65,9 +106,6 @@ def ground_sampling_m(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> 
     Measured across the line of sight at the centroid; on the pane itself it is larger by 1 / cos(theta) in one
     direction. (inf, 0) when nothing is covered.
     """
-    views = viewpoint_arrays(tuple(viewpoints))
-    view, panel = np.nonzero(exact_sections(model, views) != NOT_SEEN)
-    if len(view) == 0:
-        return np.inf, 0.0
-    distances = np.linalg.norm(views.positions_enu_m[view] - model.frames.centroids[panel], axis=1)
-    return model.camera.gsd_m(float(distances.min())), model.camera.gsd_m(float(distances.max()))
+    seen = sights(model, viewpoints)
+    nearest = min((sight.nearest_m for sight in seen), default=np.inf)
+    return model.camera.gsd_m(nearest), model.camera.gsd_m(max((sight.furthest_m for sight in seen), default=0.0))

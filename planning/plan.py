@@ -166,6 +166,8 @@ class Viewpoint:
     position_enu_m: Vec3
     heading_deg: float
     gimbal_pitch_deg: float
+    locked: bool = False
+    """To be kept as it is: planning again keeps it, and it is not moved or deleted by hand."""
 
     def __post_init__(self) -> None:
         if not self.id:

@@ -29,6 +29,9 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
     """Content of `plan.json`; optional fields that are not set are left out."""
     content: dict[str, Any] = msgspec.to_builtins(plan)
     content = {"format": content.pop("format"), **content}
+    for viewpoint in content["viewpoints"]:
+        if not viewpoint["locked"]:
+            del viewpoint["locked"]
     return {key: value for key, value in content.items() if value is not None}
 
 

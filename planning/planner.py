@@ -11,40 +11,31 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from planning.catalogue import DEFAULT_PROFILE, Profile, profile
-from planning.coverage.model import Precision
+from planning.catalogue import Profile, profile
 from planning.errors import InputError
 from planning.evaluate import DepthCount, coverage, depth
 from planning.findings import Finding
-from planning.frames import wrap_heading_rad
 from planning.methods import method_named
-from planning.optimise.budget import best_flights, views_within_budget
-from planning.optimise.greedy import GreedyParameters, greedy
-from planning.optimise.problem import DEFAULT_SHARE, Goal, Optimiser, ViewProblem, nothing_to_see, take
+from planning.optimise.budget import best_flights, views_within_budget, with_fewer_views
+from planning.optimise.greedy import greedy
+from planning.optimise.locked import locked_views
+from planning.optimise.problem import Goal, Optimiser, ViewProblem, nothing_to_see
 from planning.optimise.spacing import merge_close_views
 from planning.plan import (
-    ANGLE_DECIMALS,
-    POSITION_DECIMALS,
-    Constraints,
-    FlightRules,
     HistoryPoint,
     Plan,
-    Sortie,
-    Viewpoint,
     ViewpointArrays,
     viewpoint_arrays,
 )
+from planning.plan_records import as_written, plan_records
 from planning.prepare import Prepared, prepare
 from planning.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
+from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, PlanRequest
 from planning.routing.flights import Flight, flight_times, plan_flights
 from planning.routing.roadmap import build_roadmap
 from planning.site import SiteModel
-from planning.space import LEG_MARGIN_M, free_space
-
-DEFAULT_VIEWS = 560
-"""For methods that need a number of views when none is given: the paper's for its planar case."""
+from planning.space import free_space
 
 REACHABILITY_SHARE, ROUTING_SHARE = 0.5, 0.3
 """Parts of the time budget: what proofs of what can be reached may take at most, and what is kept for routing."""
@@ -52,49 +43,6 @@ REACHABILITY_SHARE, ROUTING_SHARE = 0.5, 0.3
 SHORTEST_ROUTING_S = 1.0
 LONGEST_ROUTING_S = 4.0
 """Routing gets at least and at most this long; 560 views gain nothing more after 1 s (docs/benchmarks.md)."""
-
-
-@dataclass(frozen=True, slots=True)
-class PlanRequest:
-    """What is wanted. At most one of `n_views`, `share` and `n_batteries` is set.
-
-    Parameters
-    ----------
-    share
-        Of what can be covered, 0 to 1, with as few views as possible.
-    n_batteries
-        Best coverage within so many sorties.
-    profile_id
-        Aircraft and camera: see `planning.catalogue.profile`.
-    time_budget_s
-        Wall time for the whole plan; the search ends earlier when it finds nothing more.
-    """
-
-    method: str = "greedy"
-    n_views: int | None = None
-    share: float | None = None
-    n_batteries: int | None = None
-    profile_id: str = DEFAULT_PROFILE
-    constraints: Constraints = Constraints()
-    rules: FlightRules = FlightRules()
-    greedy: GreedyParameters = GreedyParameters()
-    precision: Precision = "f32"
-    seed: int = 0
-    time_budget_s: float = 60.0
-
-    def __post_init__(self) -> None:
-        if sum(value is not None for value in (self.n_views, self.share, self.n_batteries)) > 1:
-            raise ValueError("expected at most one of a number of views, a share and a number of batteries")
-        if self.n_views is not None and not 1 <= self.n_views <= 20_000:
-            raise ValueError(f"views: expected 1 to 20000, got {self.n_views}")
-        if self.share is not None and not 0.0 < self.share <= 1.0:
-            raise ValueError(f"coverage: expected more than 0 and at most 1, got {self.share}")
-        if self.n_batteries is not None and not 1 <= self.n_batteries <= 100:
-            raise ValueError(f"batteries: expected 1 to 100, got {self.n_batteries}")
-        if not 0 <= self.seed < 2**32:
-            raise ValueError(f"seed: expected 0 to {2**32 - 1}, got {self.seed}")
-        if not self.time_budget_s > 0.0:
-            raise ValueError(f"time budget: expected more than 0 s, got {self.time_budget_s}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +62,8 @@ class Planned:
         Sections covered once, twice and so on.
     seconds
         Wall time by stage, in order.
+    prepared
+        The site as it was prepared: planning again with it saves that time.
     """
 
     plan: Plan
@@ -122,30 +72,81 @@ class Planned:
     n_undecided: int
     depth: tuple[DepthCount, ...]
     seconds: dict[str, float] = field(hash=False)
+    prepared: Prepared = field(repr=False, compare=False)
 
 
 def plan_flight(
     site_model: SiteModel,
     request: PlanRequest,
     *,
+    prepared: Prepared | None = None,
     stop: Stop = never,
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
 ) -> Planned:
     """Plan a flight. When `stop` asks for an end, the best views so far are routed and returned.
 
+    Parameters
+    ----------
+    prepared
+        The site as an earlier plan left it, where it fits the request (`Prepared.unfit_for`).
+
     Raises
     ------
+    ValueError
+        The site was prepared for something else.
     InputError
-        There is no such method or profile, or the method cannot do what is asked.
+        There is no such method or profile, the method cannot do what is asked, or a locked viewpoint cannot be flown.
     InfeasibleError
         The site, the aircraft or the battery does not allow any flight; the message says what does not.
     """
     trace = Trace() if trace is None else trace
-    chosen_profile, optimiser = profile(request.profile_id), _optimiser(request)
+    chosen_profile = profile(request.profile_id)
+    _check_method(request)
     limit = TimeLimit(request.time_budget_s)
     watch = _StopWatch()
-    prepared = prepare(
+    if prepared is None:
+        prepared = _prepared(site_model, request, chosen_profile, stop, monitor)
+    else:
+        prepared = _fitting(prepared, site_model, request, chosen_profile)
+    watch.lap("reachability")
+    trace.record_bound(prepared.problem.reachability.upper_bound)
+    routing_s = float(np.clip(ROUTING_SHARE * request.time_budget_s, SHORTEST_ROUTING_S, LONGEST_ROUTING_S))
+    choosing = any_of(stop, TimeLimit(max(0.1, limit.remaining_s() - routing_s)))
+    problem = prepared.problem
+    views, bound = _choose(problem, request, chosen_profile, choosing, trace, monitor)
+    if request.greedy.solid_angle_weights:
+        bound = None
+    n_locked = len(request.locked)
+    views = merge_close_views(problem, as_written(problem, views, n_locked), n_fixed=n_locked)
+    if len(views.heading_rad) == 0:
+        raise nothing_to_see()
+    watch.lap("views")
+    flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
+    while request.n_batteries is not None and len(flights) > request.n_batteries:
+        flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked)
+        if len(flights) > request.n_batteries:  # all of them have locked views
+            views = with_fewer_views(problem.model, views, n_locked)
+            flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
+    watch.lap("routing")
+    plan = _plan(site_model, request, chosen_profile, prepared, views, flights, trace)
+    watch.lap("certificate")
+    reachability = problem.reachability
+    return Planned(
+        plan,
+        prepared.findings,
+        bound,
+        reachability.n_undecided,
+        depth(problem.model, plan.viewpoints),
+        watch.seconds,
+        prepared,
+    )
+
+
+def _prepared(
+    site_model: SiteModel, request: PlanRequest, chosen_profile: Profile, stop: Stop, monitor: Monitor
+) -> Prepared:
+    return prepare(
         site_model,
         chosen_profile.camera,
         request.constraints,
@@ -154,51 +155,52 @@ def plan_flight(
         stop=any_of(stop, TimeLimit(REACHABILITY_SHARE * request.time_budget_s)),
         monitor=monitor,
     )
-    watch.lap("reachability")
-    routing_s = float(np.clip(ROUTING_SHARE * request.time_budget_s, SHORTEST_ROUTING_S, LONGEST_ROUTING_S))
-    choosing = any_of(stop, TimeLimit(max(0.1, limit.remaining_s() - routing_s)))
-    problem = prepared.problem
-    bound: float | None
+
+
+def _fitting(prepared: Prepared, site_model: SiteModel, request: PlanRequest, chosen_profile: Profile) -> Prepared:
+    """A prepared site as it was handed over, under the site's present checksum."""
+    wanted = (site_model, chosen_profile.camera, request.constraints, request.precision, request.seed)
+    differs = prepared.unfit_for(*wanted)
+    if differs:
+        raise ValueError(f"prepared: the site was prepared for another {differs}")
+    return prepared if prepared.site_model is site_model else replace(prepared, site_model=site_model)
+
+
+def _choose(
+    problem: ViewProblem, request: PlanRequest, chosen_profile: Profile, stop: Stop, trace: Trace, monitor: Monitor
+) -> tuple[ViewpointArrays, float | None]:
+    """Views, the locked ones first, and an upper bound on what as many could cover."""
+    locked = locked_views(problem, request.locked)
     if request.n_batteries is not None:
-        views, bound = views_within_budget(
+        return views_within_budget(
             problem,
             chosen_profile.aircraft,
             request.rules,
             request.n_batteries,
             request.greedy,
             seed=request.seed,
-            stop=choosing,
+            stop=stop,
             trace=trace,
             monitor=monitor,
+            locked=locked,
         )
-    else:
-        found = optimiser(problem, _goal(request), seed=request.seed, stop=choosing, trace=trace, monitor=monitor)
-        views, bound = found.views, found.bound
-    if request.greedy.solid_angle_weights:
-        bound = None
-    views = merge_close_views(problem, as_written(problem, views))
-    if len(views.heading_rad) == 0:
-        raise nothing_to_see()
-    watch.lap("views")
-    flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
-    if request.n_batteries is not None:
-        flights = best_flights(problem.model, views, flights, request.n_batteries)
-    watch.lap("routing")
-    plan = _plan(site_model, request, chosen_profile, prepared, views, flights, trace)
-    watch.lap("certificate")
-    reachability = problem.reachability
-    return Planned(
-        plan, prepared.findings, bound, reachability.n_undecided, depth(problem.model, plan.viewpoints), watch.seconds
-    )
+    optimiser = _optimiser(request, locked)
+    found = optimiser(problem, _goal(request), seed=request.seed, stop=stop, trace=trace, monitor=monitor)
+    return found.views, found.bound
 
 
-def _optimiser(request: PlanRequest) -> Optimiser:
-    optimiser = method_named(request.method)
+def _check_method(request: PlanRequest) -> None:
+    method_named(request.method)
     if request.method != "greedy" and request.n_batteries is not None:
         raise InputError(f"method '{request.method}' cannot plan for a number of batteries; 'greedy' can")
+    if request.method != "greedy" and request.locked:
+        raise InputError(f"method '{request.method}' cannot keep locked viewpoints; 'greedy' can, or unlock them")
+
+
+def _optimiser(request: PlanRequest, locked: ViewpointArrays) -> Optimiser:
     if request.method == "greedy":
-        return partial(greedy, parameters=request.greedy)
-    return optimiser
+        return partial(greedy, parameters=request.greedy, locked=locked)
+    return method_named(request.method)
 
 
 def _goal(request: PlanRequest) -> Goal:
@@ -209,20 +211,6 @@ def _goal(request: PlanRequest) -> Goal:
             raise InputError("method 'pso' needs a number of views (--views N); it cannot look for the fewest")
         return Goal(n_views=DEFAULT_VIEWS)
     return Goal(share=DEFAULT_SHARE if request.share is None else request.share)
-
-
-def as_written(problem: ViewProblem, views: ViewpointArrays) -> ViewpointArrays:
-    """Views as a plan file holds them: rounded, pitch within the gimbal's range, none twice, all flyable."""
-    low, high = np.array(problem.model.camera.gimbal_pitch_deg)
-    positions = views.positions_enu_m.round(POSITION_DECIMALS)
-    heading_deg = np.degrees(wrap_heading_rad(views.heading_rad)).round(ANGLE_DECIMALS)
-    heading_deg = np.where(heading_deg <= -180.0, 180.0, heading_deg)
-    pitch_deg = np.clip(np.degrees(views.pitch_rad).round(ANGLE_DECIMALS), low, high)
-    _, first = np.unique(np.column_stack([positions, heading_deg, pitch_deg]), axis=0, return_index=True)
-    rounded = ViewpointArrays(positions, np.radians(heading_deg), np.radians(pitch_deg))
-    kept: NDArray[np.int64] = np.sort(first)
-    kept = kept[problem.flyable(positions[kept], LEG_MARGIN_M)]
-    return take(rounded, kept)
 
 
 def _route(
@@ -256,7 +244,7 @@ def _plan(
     flights: tuple[Flight, ...],
     trace: Trace,
 ) -> Plan:
-    viewpoints, sorties = plan_records(views, flights)
+    viewpoints, sorties = plan_records(views, flights, request.locked)
     site, problem = site_model.site, prepared.problem
     points = [HistoryPoint(round(point.t_s, 4), int(point.value)) for point in trace.points]
     return Plan(
@@ -277,25 +265,6 @@ def _plan(
         effects=prepared.effects,
         profile=chosen_profile.id,
     )
-
-
-def plan_records(
-    views: ViewpointArrays, flights: tuple[Flight, ...]
-) -> tuple[tuple[Viewpoint, ...], tuple[Sortie, ...]]:
-    """Viewpoints in the order of flight, named v0000 and on, and sorties."""
-    viewpoints: list[Viewpoint] = []
-    sorties = []
-    for flight in flights:
-        ids = []
-        for view in flight.views:
-            ids.append(f"v{len(viewpoints):04d}")
-            x, y, z = (float(value) for value in views.positions_enu_m[view])
-            heading = round(float(np.degrees(views.heading_rad[view])), ANGLE_DECIMALS)
-            pitch = round(float(np.degrees(views.pitch_rad[view])), ANGLE_DECIMALS)
-            viewpoints.append(Viewpoint(ids[-1], (x, y, z), heading, pitch))
-        path = tuple((float(x), float(y), float(z)) for x, y, z in flight.path_enu_m)
-        sorties.append(Sortie(tuple(ids), path, round(flight.length_m, 3), round(flight.duration_s, 2)))
-    return tuple(viewpoints), tuple(sorties)
 
 
 def share_out_anew(plan: Plan, site_model: SiteModel, max_views: int, monitor: Monitor = QUIET) -> Plan:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from planning.coverage.model import CoverageModel, Precision
+from planning.coverage.model import CoverageModel
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.effects import Decision, Wish, decide
 from planning.errors import InfeasibleError
@@ -18,6 +18,7 @@ from planning.positions import spread_positions
 from planning.progress import QUIET, Monitor, Stop, never
 from planning.reach_kernel import UNREACHABLE
 from planning.reachability import MAX_CELLS, MAX_POSITIONS, find_reachable
+from planning.request import Precision
 from planning.routing.roadmap import build_roadmap
 from planning.site import SiteModel, panel_corners
 from planning.space import FreeSpace, free_space
@@ -32,18 +33,56 @@ class Prepared:
 
     Parameters
     ----------
+    site_model
+        The site that was prepared.
     constraints
         As asked for, with occlusion as it was decided.
     effects
         Decisions of all effects.
     findings
         What the pilot should know about the site: panels that nobody can see, distances that had to be lowered.
+    seed
+        Of everything random in it.
+    is_cut_short
+        Whether it was stopped before everything was decided that could be.
     """
 
+    site_model: SiteModel
     problem: ViewProblem
     constraints: Constraints
     effects: tuple[Decision, ...]
     findings: tuple[Finding, ...]
+    seed: int = 0
+    is_cut_short: bool = False
+
+    def unfit_for(
+        self, site_model: SiteModel, camera: Camera, constraints: Constraints, precision: Precision, seed: int
+    ) -> str:
+        """What preparing with these arguments would do otherwise; empty where it comes to the same.
+
+        The site's checksum does not matter: it changes when the site is saved.
+        """
+        is_by_user = any(effect.decided_by == "user" for effect in self.effects)
+        asked = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
+        differs = {
+            "site": not is_same_place(site_model, self.site_model),
+            "camera": camera != self.problem.model.camera,
+            "constraints": constraints != asked,
+            "precision": precision != self.problem.model.precision,
+            "seed": seed != self.seed,
+        }
+        return ", ".join(name for name, is_other in differs.items() if is_other)
+
+
+def is_same_place(first: SiteModel, second: SiteModel) -> bool:
+    """Whether two sites have the same content and geometry; checksums, which change with saving, do not matter."""
+    if first is second:
+        return True
+    meshes = zip((first.building, *first.obstacles), (second.building, *second.obstacles), strict=True)
+    return first.site == second.site and all(
+        a is b or (np.array_equal(a.vertices_enu_m, b.vertices_enu_m) and np.array_equal(a.triangles, b.triangles))
+        for a, b in meshes
+    )
 
 
 def coverage_model(
@@ -100,11 +139,12 @@ def prepare(
             "widen the airspace or lower the minimum distance"
         )
     reachability = find_reachable(model, space, seed, max_positions, max_cells, stop, monitor)
+    is_cut_short = stop()
     if reachability.upper_bound == 0:
         raise nothing_to_see()
     monitor.report("finding ways around", 0, 1)
     problem = ViewProblem(model, space, reachability, build_roadmap(space, seed))
-    return Prepared(problem, decided, (decision,), _findings(site_model, problem))
+    return Prepared(site_model, problem, decided, (decision,), _findings(site_model, problem), seed, is_cut_short)
 
 
 def _wish(constraints: Constraints) -> Wish:

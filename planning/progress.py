@@ -98,13 +98,17 @@ class Trace:
     ----------
     clock
         Source of time; its value at construction is t = 0.
-    observer
-        Called with every recorded point, in the thread that does the work.
+    observer, bound_observer
+        Called with every recorded point and bound, in the thread that does the work.
+    bound
+        What no result can be better than, as far as it is known; None before anything is.
     """
 
     clock: Clock = time.perf_counter
     observer: Callable[[QualityPoint], None] | None = None
+    bound_observer: Callable[[float], None] | None = None
     points: list[QualityPoint] = field(default_factory=list)
+    bound: float | None = None
     _start_s: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -120,3 +124,9 @@ class Trace:
         self.points.append(point)
         if self.observer is not None:
             self.observer(point)
+
+    def record_bound(self, value: float) -> None:
+        """Note a bound that is now known; a later one is tighter."""
+        self.bound = value
+        if self.bound_observer is not None:
+            self.bound_observer(value)

@@ -210,8 +210,8 @@ def _branch_and_bound(
     frames, grid = model.frames, model.grid
     panels = np.concatenate([frames.centroids, frames.normals, frames.tangents, frames.bitangents], axis=1)
     all_bounds = np.array([grid.bounds_rad(section) for section in range(grid.n_sections)])
-    limits = _limits(model, space)
-    solids, no_fly = _bodies(space.solids, model.sight is not None), _bodies(space.no_fly, False)
+    limits = reach_limits(model, space)
+    solids, no_fly = reach_bodies(space.solids, model.sight is not None), reach_bodies(space.no_fly, False)
 
     def decide(elements: NDArray[np.int64], smallest_m: float, n_cells: int) -> None:
         found, verdict = np.full((len(elements), 3), np.nan), np.empty(len(elements), np.int8)
@@ -231,7 +231,8 @@ def _branch_and_bound(
             run_parallel(decide, [(part, smallest_m, int(share * max_cells)) for part in parts])
 
 
-def _limits(model: CoverageModel, space: FreeSpace) -> Limits:
+def reach_limits(model: CoverageModel, space: FreeSpace) -> Limits:
+    """What the compiled search must know of camera, airspace and distances."""
     lowest, highest = elevation_range_rad(model.camera)
     return Limits(
         low=space.low_enu_m,
@@ -247,7 +248,8 @@ def _limits(model: CoverageModel, space: FreeSpace) -> Limits:
     )
 
 
-def _bodies(solids: Solids, with_groups: bool) -> Bodies:
+def reach_bodies(solids: Solids, with_groups: bool) -> Bodies:
+    """Solids as the compiled search takes them; groups of convex parts are needed for occlusion only."""
     n = len(solids.part)
     group = np.arange(n)
     if with_groups:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from pathlib import Path
 from typing import Any
 
@@ -66,8 +65,18 @@ def _without_none(fields: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in fields.items() if value is not None}
 
 
+def site_bytes(site: Site) -> bytes:
+    """The site file of a site, as `write_site` writes it."""
+    return msgspec.json.format(msgspec.json.encode(site_to_json(site)), indent=1)
+
+
+def site_sha256(site: Site) -> str:
+    """SHA-256 of the site file that `write_site` would write, hexadecimal."""
+    return hashlib.sha256(site_bytes(site)).hexdigest()
+
+
 def write_site(path: Path, site: Site) -> str:
     """Write a site file, whole or not at all; returns the SHA-256 of what was written. Meshes are not touched."""
-    text = json.dumps(site_to_json(site), indent=1, allow_nan=False)
-    write_atomically(path, text.encode())
-    return hashlib.sha256(text.encode()).hexdigest()
+    content = site_bytes(site)
+    write_atomically(path, content)
+    return hashlib.sha256(content).hexdigest()

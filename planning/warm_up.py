@@ -10,11 +10,12 @@ import numpy as np
 from planning import smooth_path
 from planning.catalogue import DEFAULT_PROFILE, profile
 from planning.checks import check_plan
-from planning.coverage.model import CoverageModel, Precision
+from planning.coverage.model import CoverageModel
 from planning.coverage.sections import PanelFrames, SectionGrid, panel_frames
-from planning.optimise.greedy import GreedyParameters
+from planning.insight import warm_up as insight
 from planning.plan import Constraints, ViewpointArrays
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
+from planning.request import GreedyParameters, PlanRequest, Precision
 from planning.routing import lower_bound, orienteering, sorties, tour
 from planning.scenes import SCENES
 from planning.site import panel_corners
@@ -38,7 +39,7 @@ def compile_kernels() -> None:
     for request in requests:
         check_plan(plan_flight(model, request).plan, model)
     _count_coverage(panel_frames(panel_corners(model.site)))
-    for module in (lower_bound, orienteering, smooth_path, sorties, tour):
+    for module in (insight, lower_bound, orienteering, smooth_path, sorties, tour):
         module.compile_kernels()
 
 

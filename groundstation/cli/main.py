@@ -11,6 +11,7 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -36,6 +37,29 @@ class _Version(argparse.Action):
         parser.exit()
 
 
+@dataclass(frozen=True, slots=True)
+class WindowWish:
+    """What the window is wanted for.
+
+    Parameters
+    ----------
+    open
+        Project folder or site file to begin with.
+    screenshots
+        Folder for pictures of every tab and state; the window closes by itself then.
+    site
+        Site file to take the pictures of.
+    """
+
+    open: Path | None = None
+    screenshots: Path | None = None
+    site: Path | None = None
+
+
+OpenWindow = Callable[[WindowWish], int]
+"""Opens the window and returns the exit status once it is closed."""
+
+
 def build_parser() -> argparse.ArgumentParser:
     """Parser with every module of `groundstation.cli.commands` as a command; none of them imports anything heavy."""
     parser = _Parser(
@@ -45,13 +69,17 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    window = parser.add_argument_group("the window")
+    window.add_argument("--open", type=Path, metavar="PATH", help="project folder or site file to begin with")
+    window.add_argument("--screenshots", type=Path, metavar="DIR", help="save pictures of every tab and state, and end")
+    window.add_argument("--site", type=Path, dest="pictured_site", metavar="SITE", help="site file for --screenshots")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND")
     for module in pkgutil.iter_modules(commands.__path__):
         importlib.import_module(f"{commands.__name__}.{module.name}").add_parser(subparsers)
     return parser
 
 
-def main(arguments: Sequence[str], open_window: Callable[[], int]) -> int:
+def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
     """Run one command, or the window without one; returns 0 done, 1 bad input or impossible, 2 wrong usage."""
     _make_streams_safe()
     status = _run(arguments, open_window)
@@ -76,12 +104,18 @@ def _make_streams_safe() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def _run(arguments: Sequence[str], open_window: Callable[[], int]) -> int:
+def _run(arguments: Sequence[str], open_window: OpenWindow) -> int:
     debug = "--debug" in arguments
     try:
-        options = build_parser().parse_args(arguments)
+        parser = build_parser()
+        options = parser.parse_args(arguments)
+        wish = WindowWish(options.open, options.screenshots, options.pictured_site)
+        if wish.site is not None and wish.screenshots is None:
+            parser.error("--site without a command is for --screenshots")
         if not hasattr(options, "run"):
-            return open_window()
+            return open_window(wish)
+        if wish != WindowWish():
+            parser.error("--open and --screenshots are for the window, which opens without a command")
         return int(options.run(options))
     except SystemExit as stop:
         return int(stop.code or 0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.services.jobs import JobEvent, JobImproved, JobProgress, JobRunner, JobStateChanged
+from groundstation.services.jobs import JobBounded, JobEvent, JobImproved, JobProgress, JobRunner, JobStateChanged
 
 
 class JobBridge(QObject):
@@ -13,6 +13,7 @@ class JobBridge(QObject):
     state_changed = Signal(object)
     progressed = Signal(object)
     improved = Signal(object)
+    bounded = Signal(object)
 
     def __init__(self, runner: JobRunner, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -30,3 +31,5 @@ class JobBridge(QObject):
             self.progressed.emit(event)
         elif isinstance(event, JobImproved):
             self.improved.emit(event)
+        elif isinstance(event, JobBounded):
+            self.bounded.emit(event)

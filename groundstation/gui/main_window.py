@@ -1,305 +1,222 @@
-"""The first window: open a site, see it in 3-D, plan with progress and cancel, check, export.
+"""The main window: tabs along the pilot's work around one shared view, the job bar, messages, and the menus.
 
-It holds no domain decisions: every action calls a use case of `groundstation.services` on a job, and shows its events.
+It arranges; what happens in a tab is the tab's own matter, and what happens to the project is in `project_actions`.
 """
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterable
 
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QAction, QCloseEvent
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QAction, QCloseEvent, QShowEvent
 from PySide6.QtWidgets import (
-    QDockWidget,
-    QFileDialog,
-    QLabel,
+    QHBoxLayout,
     QMainWindow,
-    QPlainTextEdit,
-    QProgressBar,
-    QPushButton,
-    QToolBar,
+    QScrollArea,
+    QSplitter,
+    QStackedWidget,
+    QTabBar,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
 )
 
-from groundstation.gui.job_bridge import JobBridge
-from groundstation.gui.plan_form import PlanForm
-from groundstation.gui.quality_chart import QualityChart
-from groundstation.gui.site_view import SiteView
-from groundstation.services.jobs import (
-    Job,
-    JobContext,
-    JobImproved,
-    JobProgress,
-    JobRunner,
-    JobState,
-    JobStateChanged,
-)
-from groundstation.services.missions import export_plan
-from groundstation.services.planning import check_files, plan_site
-from missions.model import FileFormat
-from planning.findings import Severity, is_flyable
-from planning.planner import Planned
-from planning.scenes import SCENES, write_scene
-from planning.site_file import read_site
+from groundstation.gui.job_bar import JobBar
+from groundstation.gui.message_area import MessageArea
+from groundstation.gui.scrolling import scrolled
+from groundstation.gui.stage import Stage
+from groundstation.gui.tabs import Place, Tab, TabSpec, find_tabs
+from groundstation.gui.workspace import Workspace
 
-MISSION_FILTERS = {
-    "DJI (*.kmz)": FileFormat.DJI_KMZ,
-    "QGroundControl (*.plan)": FileFormat.MAVLINK_PLAN,
-    "Waypoints (*.waypoints)": FileFormat.MAVLINK_WPL,
-    "KML (*.kml)": FileFormat.KML,
-    "CSV (*.csv)": FileFormat.CSV,
-}
-
-
-SIDE_WIDTH_PX = 380
-"""Widest that the form and the chart become: the rest of the width is for the site."""
+SIDE_WIDTH_PX, DETAIL_WIDTH_PX = 300, 330
+BOTTOM_HEIGHT_PX = 190
+"""First sizes of what stands around the shared view, at 1280 x 720."""
 
 
 class MainWindow(QMainWindow):
-    """One site, one plan, one job at a time."""
+    """The window.
 
-    def __init__(self, runner: JobRunner) -> None:
+    Signals
+    -------
+    tabShown(str)
+        Name of the tab that came to the front.
+    closing(QCloseEvent)
+        Ignore the event to stay.
+    """
+
+    tabShown = Signal(str)  # noqa: N815  (Qt's own way of naming)
+    closing = Signal(object)
+
+    def __init__(self, workspace: Workspace) -> None:
         super().__init__()
-        self.setWindowTitle("Reflight")
-        self._runner = runner
-        self._bridge = JobBridge(runner, self)
-        self._scratch = tempfile.TemporaryDirectory(prefix="reflight-")
-        self._site_path: Path | None = None
-        self._plan_path: Path | None = None
-        self._job: Job[Any] | None = None
-        self._when_done: Callable[[Any], None] | None = None
-        self._view = SiteView(self)
-        self.setCentralWidget(self._view)
-        self._form = PlanForm()
-        self._chart = QualityChart()
-        self._messages = QPlainTextEdit()
-        self._messages.setReadOnly(True)
-        self._messages.setMaximumBlockCount(2000)
-        self._make_actions()
-        self._make_docks()
-        self._make_job_bar()
-        self._bridge.state_changed.connect(self._show_state)
-        self._bridge.progressed.connect(self._show_progress)
-        self._bridge.improved.connect(self._show_improvement)
-        self._update_actions()
+        self._workspace = workspace
+        self._specs = find_tabs()
+        self._tabs: dict[str, Tab] = {}
+        self._shown: TabSpec | None = None
+        self._was_shown = False
+        self.stage = Stage(workspace)
+        self.messages = MessageArea(workspace)
+        self.job_bar = JobBar(workspace)
+        self._make_layout()
+        self._bar.currentChanged.connect(self._tab_chosen)
 
-    def _make_actions(self) -> None:
-        bar = QToolBar(self.tr("Main"), self)
-        bar.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextOnly)
-        self.addToolBar(bar)
+    def _make_layout(self) -> None:
+        self._bar = QTabBar()
+        self._bar.setExpanding(False)
+        self._bar.setDrawBase(False)
+        self._bar.setUsesScrollButtons(True)
+        for number, spec in enumerate(self._specs):
+            self._bar.addTab(spec.shown_title())
+            self._bar.setTabToolTip(number, self.tr("{0} (Ctrl+{1})").format(spec.shown_tip(), number + 1))
+        self._left, self._right, self._bottom = QStackedWidget(), QStackedWidget(), QStackedWidget()
+        # The left side is as high as the window: forms are long. The lists below need width more.
+        beside = 1280 - SIDE_WIDTH_PX
+        self._view_and_right = _splitter(
+            Qt.Orientation.Horizontal, (self.stage, self._right), (beside - DETAIL_WIDTH_PX, DETAIL_WIDTH_PX), 0
+        )
+        self._over_bottom = _splitter(
+            Qt.Orientation.Vertical, (self._view_and_right, self._bottom), (450, BOTTOM_HEIGHT_PX), 0
+        )
+        self._around = _splitter(Qt.Orientation.Horizontal, (self._left, self._over_bottom), (SIDE_WIDTH_PX, beside), 1)
+        self._pages = QStackedWidget()
+        self._pages.addWidget(self._around)
+        page = QWidget()
+        layout = QVBoxLayout(page)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        self._top = QHBoxLayout()
+        self._top.addWidget(self._bar, 1)
+        layout.addLayout(self._top)
+        layout.addWidget(self._pages, 1)
+        below = QHBoxLayout()
+        below.addWidget(self.messages, 1)
+        below.addWidget(self.job_bar, 1)
+        layout.addLayout(below)
+        self.setCentralWidget(page)
 
-        def action(text: str, shortcut: str, slot: Callable[[], None]) -> QAction:
-            made = QAction(text, self)
-            made.setShortcut(shortcut)
-            made.triggered.connect(lambda _checked=False: slot())
-            bar.addAction(made)
-            return made
+    def add_quick_actions(self, actions: Iterable[QAction]) -> None:
+        """Put large buttons for actions beside the tabs: what is needed everywhere must be hit by a finger."""
+        for action in actions:
+            button = QToolButton()
+            button.setDefaultAction(action)
+            self._top.addWidget(button)
 
-        action(self.tr("Open site..."), "Ctrl+O", self._choose_site)
-        action(self.tr("Bundled site"), "Ctrl+B", self._open_bundled)
-        self._plan_action = action(self.tr("Plan"), "Ctrl+P", self.plan)
-        self._check_action = action(self.tr("Check"), "Ctrl+K", self.check)
-        self._export_action = action(self.tr("Export..."), "Ctrl+E", self._choose_export)
+    def tab_names(self) -> tuple[str, ...]:
+        """Names of all tabs, in order."""
+        return tuple(spec.name for spec in self._specs)
 
-    def _make_docks(self) -> None:
-        left, bottom = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.BottomDockWidgetArea
-        docks = []
-        for title, widget, area in (
-            (self.tr("Plan for"), self._form, left),
-            (self.tr("Quality against time"), self._chart, left),
-            (self.tr("Messages"), self._messages, bottom),
-        ):
-            dock = QDockWidget(title, self)
-            dock.setObjectName(title)
-            dock.setWidget(widget)
-            self.addDockWidget(area, dock)
-            docks.append(dock)
-        self.setCorner(Qt.Corner.BottomLeftCorner, left)
-        for widget in (self._form, self._chart):
-            widget.setMaximumWidth(SIDE_WIDTH_PX)
-        self.resizeDocks(docks[2:], [150], Qt.Orientation.Vertical)
+    def specs(self) -> tuple[TabSpec, ...]:
+        """All tabs, in order."""
+        return self._specs
 
-    def _make_job_bar(self) -> None:
-        self._stage, self._bar = QLabel(), QProgressBar()
-        self._enough = QPushButton(self.tr("Good enough, stop here"))
-        self._cancel = QPushButton(self.tr("Cancel"))
-        self._enough.clicked.connect(self._stop_here)
-        self._cancel.clicked.connect(self._cancel_job)
-        for widget in (self._stage, self._bar, self._enough, self._cancel):
-            self.statusBar().addPermanentWidget(widget)
+    def tab(self, name: str) -> Tab:
+        """A tab by its name; made when it was not yet."""
+        if name not in self._tabs:
+            spec = next(spec for spec in self._specs if spec.name == name)
+            made = self._tabs[name] = spec.make(self._workspace, self.stage)
+            if spec.place is Place.WHOLE_PAGE:
+                self._pages.addWidget(made.left)
+            else:
+                self._left.addWidget(scrolled(made.left))
+                if made.right is not None:
+                    self._right.addWidget(made.right)
+                if made.bottom is not None:
+                    self._bottom.addWidget(made.bottom)
+            for action in made.actions():
+                self.addAction(action)
+        return self._tabs[name]
 
-    def open_site(self, path: Path) -> None:
-        """Read a site and show it."""
+    def show_tab(self, name: str) -> None:
+        """Bring a tab to the front."""
+        self._bar.setCurrentIndex(self.tab_names().index(name))
+        if self._shown is None:
+            self._tab_chosen(self._bar.currentIndex())
 
-        def opened(model: Any) -> None:
-            self._site_path, self._plan_path = path, None
-            self._view.show_site(model)
-            site = model.site
-            self._say(self.tr("{0}: {1} panels on {2} facades").format(site.name, site.n_panels, len(site.facades)))
+    def shown_tab(self) -> str:
+        """Name of the tab at the front."""
+        return "" if self._shown is None else self._shown.name
 
-        self._start(self.tr("Open site"), lambda _context: read_site(path), opened)
-
-    def plan(self) -> None:
-        """Plan the site that is open, with what the form says."""
-        if self._site_path is None:
+    def _tab_chosen(self, index: int) -> None:
+        spec = self._specs[index]
+        if spec is self._shown:
             return
-        site_path, request = self._site_path, self._form.value()
-        out = Path(self._scratch.name) / "window.plan.json"
-        self._chart.clear_points()
+        if self._shown is not None:
+            self._tabs[self._shown.name].hidden()
+        tab = self.tab(spec.name)
+        self._shown = spec
+        if spec.place is Place.WHOLE_PAGE:
+            self._pages.setCurrentWidget(tab.left)
+        else:
+            self._pages.setCurrentWidget(self._around)
+            self._left.setCurrentWidget(_scroll_area_of(tab.left))
+            for stack, widget in ((self._right, tab.right), (self._bottom, tab.bottom)):
+                stack.setVisible(widget is not None)
+                if widget is not None:
+                    stack.setCurrentWidget(widget)
+        for name, made in self._tabs.items():
+            for action in made.actions():
+                action.setEnabled(name == spec.name)
+        tab.shown()
+        self.tabShown.emit(spec.name)
 
-        def work(context: JobContext) -> Planned:
-            return plan_site(site_path, request, out, stop=context.stop, trace=context.trace, monitor=context)
+    def layout_text(self) -> str:
+        """Sizes of everything that can be resized, as text for the settings."""
+        parts = (self.saveGeometry(), *(splitter.saveState() for splitter in self._splitters()))
+        return ";".join(bytes(part.toBase64().data()).decode() for part in parts)
 
-        def planned(result: Planned) -> None:
-            self._plan_path = out
-            self._view.show_plan(result.plan)
-            self._chart.set_bound(result.plan.coverage.reachable_upper_bound)
-            self._say_plan(result)
+    def set_layout_text(self, text: str) -> None:
+        """Take sizes over that `layout_text` gave; texts of anything else change nothing."""
+        from PySide6.QtCore import QByteArray
 
-        self._start(self.tr("Plan"), work, planned)
+        parts = [QByteArray.fromBase64(part.encode()) for part in text.split(";")]
+        if len(parts) == 1 + len(self._splitters()):
+            self.restoreGeometry(parts[0])
+            for splitter, part in zip(self._splitters(), parts[1:], strict=True):
+                splitter.restoreState(part)
 
-    def check(self) -> None:
-        """Check the plan at hand."""
-        if self._site_path is None or self._plan_path is None:
-            return
-        site_path, plan_path = self._site_path, self._plan_path
+    def _splitters(self) -> tuple[QSplitter, ...]:
+        return self._around, self._over_bottom, self._view_and_right
 
-        def checked(findings: Any) -> None:
-            for finding in findings:
-                if finding.severity is not Severity.OK:
-                    self._say(f"{finding.severity}: {finding.message}")
-            kept = sum(finding.severity is Severity.OK for finding in findings)
-            verdict = self.tr("ready to fly") if is_flyable(findings) else self.tr("NOT ready to fly")
-            self._say(self.tr("{0} of {1} rules kept: {2}").format(kept, len(findings), verdict))
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Paint first; what takes long comes after."""
+        super().showEvent(event)
+        if not self._was_shown:
+            self._was_shown = True
+            if self._shown is None:
+                self._tab_chosen(max(0, self._bar.currentIndex()))
+            QTimer.singleShot(0, self.stage, self.stage.prepare_scene)
 
-        self._start(self.tr("Check"), lambda context: check_files(plan_path, site_path, context), checked)
-
-    def export(self, path: Path, file_format: FileFormat) -> None:
-        """Write the plan at hand as mission files."""
-        if self._site_path is None or self._plan_path is None:
-            return
-        site_path, plan_path = self._site_path, self._plan_path
-
-        def exported(result: Any) -> None:
-            paths, findings = result
-            for finding in findings:
-                if finding.severity is not Severity.OK:
-                    self._say(f"{finding.severity}: {finding.message}")
-            self._say(self.tr("written: {0}").format(", ".join(str(written) for written in paths)))
-
-        self._start(self.tr("Export"), lambda _context: export_plan(plan_path, file_format, path, site_path), exported)
-
-    def messages(self) -> str:
-        """All messages so far."""
-        return self._messages.toPlainText()
-
-    def form(self) -> PlanForm:
-        """The form for what is wanted."""
-        return self._form
-
-    def view(self) -> SiteView:
-        """The 3-D view."""
-        return self._view
-
-    def is_busy(self) -> bool:
-        """Whether a job is running."""
-        return self._job is not None
+    def retire(self) -> None:
+        """Make room for another window on the same workspace: jobs go on, nobody is asked."""
+        self.stage.close_views()
+        self.hide()
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Cancel what runs, then go."""
-        self._cancel_job()
-        if self._job is not None:
-            self._job.wait(10.0)
-        self._bridge.close()
-        self._view.close_view()
-        self._scratch.cleanup()
+        """Ask those who have something to lose, end the jobs, free the 3-D view."""
+        event.accept()
+        self.closing.emit(event)
+        if not event.isAccepted():
+            return
+        self._workspace.close()
+        self.stage.close_views()
         super().closeEvent(event)
 
-    def _choose_site(self) -> None:
-        name, _ = QFileDialog.getOpenFileName(self, self.tr("Open site"), "", self.tr("Sites (*.json)"))
-        if name:
-            self.open_site(Path(name))
 
-    def _open_bundled(self) -> None:
-        from PySide6.QtWidgets import QInputDialog
+def _splitter(
+    orientation: Qt.Orientation, widgets: tuple[QWidget, ...], sizes_px: tuple[int, ...], growing: int
+) -> QSplitter:
+    """Widgets beside or above each other; the `growing` one gets what the window has more than the first sizes."""
+    splitter = QSplitter(orientation)
+    for number, widget in enumerate(widgets):
+        splitter.addWidget(widget)
+        splitter.setStretchFactor(number, int(number == growing))
+    splitter.setSizes(list(sizes_px))
+    splitter.setHandleWidth(6)
+    splitter.setChildrenCollapsible(False)
+    return splitter
 
-        name, ok = QInputDialog.getItem(self, self.tr("Bundled site"), self.tr("Site"), list(SCENES), 0, False)
-        if ok:
-            self.open_site(write_scene(name, Path(self._scratch.name)))
 
-    def _choose_export(self) -> None:
-        name, chosen = QFileDialog.getSaveFileName(self, self.tr("Export"), "", ";;".join(MISSION_FILTERS))
-        if name:
-            self.export(Path(name), MISSION_FILTERS[chosen])
-
-    def _start(self, name: str, work: Callable[[JobContext], Any], when_done: Callable[[Any], None]) -> None:
-        if self._job is not None:
-            self._say(self.tr("Wait for the running job, or cancel it first."))
-            return
-        self._when_done = when_done
-        self._job = self._runner.submit(name, work)
-        self._update_actions()
-
-    def _stop_here(self) -> None:
-        if self._job is not None:
-            self._job.stop()
-
-    def _cancel_job(self) -> None:
-        if self._job is not None:
-            self._runner.cancel(self._job)
-
-    def _show_state(self, event: JobStateChanged) -> None:
-        if self._job is None or event.job_id != self._job.id:
-            return
-        if event.state in (JobState.QUEUED, JobState.RUNNING):
-            return
-        done, self._job, self._when_done = self._when_done, None, None
-        self._stage.clear()
-        self._bar.setRange(0, 1)
-        self._bar.setValue(0)
-        if event.state is JobState.SUCCEEDED and done is not None:
-            done(event.result)
-        elif event.state is JobState.FAILED:
-            self._say(self.tr("{0} failed: {1}").format(event.name, event.error))
-        elif event.state is JobState.CANCELLED:
-            self._say(self.tr("{0} cancelled").format(event.name))
-        self._update_actions()
-
-    def _show_progress(self, event: JobProgress) -> None:
-        left = "" if event.remaining_s is None else self.tr(", {0:.0f} s left").format(event.remaining_s)
-        self._stage.setText(f"{event.name}: {event.stage}{left}")
-        self._bar.setRange(0, 1000 if event.total > 0 else 0)
-        if event.total > 0:
-            self._bar.setValue(int(1000 * min(1.0, event.done / event.total)))
-
-    def _show_improvement(self, event: JobImproved) -> None:
-        self._chart.add_point(event.point)
-
-    def _say_plan(self, planned: Planned) -> None:
-        plan, coverage = planned.plan, planned.plan.coverage
-        self._say(
-            self.tr("{0} views, sorties: {1}, {2:.1f} min; covered {3} of at most {4} reachable sections").format(
-                len(plan.viewpoints),
-                len(plan.sorties),
-                plan.duration_s / 60.0,
-                coverage.covered,
-                coverage.reachable_upper_bound,
-            )
-        )
-        for decision in plan.effects:
-            self._say(str(decision))
-        for finding in planned.findings:
-            self._say(f"{finding.severity}: {finding.message}")
-
-    def _say(self, text: str) -> None:
-        self._messages.appendPlainText(text)
-
-    def _update_actions(self) -> None:
-        idle = self._job is None
-        self._plan_action.setEnabled(idle and self._site_path is not None)
-        self._check_action.setEnabled(idle and self._plan_path is not None)
-        self._export_action.setEnabled(idle and self._plan_path is not None)
-        for widget in (self._bar, self._enough, self._cancel):
-            widget.setVisible(not idle)
+def _scroll_area_of(widget: QWidget) -> QScrollArea:
+    area = widget.parentWidget().parentWidget()
+    assert isinstance(area, QScrollArea)
+    return area

@@ -1,23 +1,63 @@
-"""Start the window."""
+"""Start the window, or take pictures of it."""
 
 from __future__ import annotations
 
 import sys
+from pathlib import Path
+
+from groundstation.gui.virtual_screen import has_screen, start_virtual_screen
+from planning.errors import InputError
 
 
-def run_window() -> int:
-    """Open the main window and run until it is closed; returns the exit status."""
+def run_window(path: Path | None = None) -> int:
+    """Open the main window and run until it is closed; returns the exit status.
+
+    Parameters
+    ----------
+    path
+        Project folder or site file to begin with.
+
+    Raises
+    ------
+    InputError
+        There is no screen, or nothing at that path.
+    """
+    if not has_screen():
+        raise InputError(
+            "there is no screen for the window (DISPLAY and WAYLAND_DISPLAY are not set); run it on a desktop, or use "
+            "the commands (app.py -h)"
+        )
+    if path is not None and not path.exists():
+        raise InputError(f"{path}: there is no such project folder or site file")
+    from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QApplication
 
-    from groundstation.gui.main_window import MainWindow
-    from groundstation.services.jobs import JobRunner
+    from groundstation.gui.desk import Desk
 
     application = QApplication.instance() or QApplication(sys.argv[:1])
+    assert isinstance(application, QApplication)
     application.setApplicationName("Reflight")
-    runner = JobRunner()
-    window = MainWindow(runner)
-    window.resize(1400, 900)
-    window.show()
+    desk = Desk(application)
+    desk.show()
+    if path is not None:
+        QTimer.singleShot(0, lambda: desk.open_path(path))
     status = int(application.exec())
-    runner.shutdown()
+    desk.close()
     return status
+
+
+def take_pictures(folder: Path, site: Path | None) -> int:
+    """Save pictures of every tab and state; on a machine without a screen, on a virtual one. Returns the exit status.
+
+    Raises
+    ------
+    InputError
+        There is no screen, the site cannot be read, or the folder not written.
+    """
+    if not has_screen():
+        start_virtual_screen()
+    from groundstation.gui.screenshots import take_screenshots
+
+    n_pictures = take_screenshots(folder, site)
+    sys.stdout.write(f"{folder}: {n_pictures} pictures\n")
+    return 0

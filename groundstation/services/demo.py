@@ -11,8 +11,9 @@ from planning.checks import check_plan
 from planning.errors import InputError
 from planning.findings import Finding
 from planning.plan_file import read_plan
-from planning.planner import Planned, PlanRequest
+from planning.planner import Planned
 from planning.progress import QUIET, Monitor
+from planning.request import PlanRequest
 from planning.scenes import write_scene
 from planning.site_file import read_site
 

@@ -12,7 +12,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from planning.plan import Plan, Sortie, Viewpoint
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.site import SiteModel
 
 

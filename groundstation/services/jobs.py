@@ -78,6 +78,13 @@ class JobImproved(JobEvent):
     point: QualityPoint
 
 
+@dataclass(frozen=True, slots=True)
+class JobBounded(JobEvent):
+    """It is known that no result can be better than `bound`."""
+
+    bound: float
+
+
 Listener = Callable[[JobEvent], None]
 
 
@@ -89,7 +96,7 @@ class JobContext:
         self._start_s = clock()
         self._stage, self._stage_start_s, self._last_published_s = "", self._start_s, -1.0
         self.stop = job.stop_request
-        self.trace = Trace(clock, self._improved)
+        self.trace = Trace(clock, self._improved, self._bounded)
 
     def report(self, stage: str, done: float, total: float) -> None:
         """Publish progress, at most 20 times a second within a stage; raises `OperationCancelled` after a cancel."""
@@ -107,6 +114,9 @@ class JobContext:
 
     def _improved(self, point: QualityPoint) -> None:
         self._publish(JobImproved(self._job.id, self._job.name, point))
+
+    def _bounded(self, bound: float) -> None:
+        self._publish(JobBounded(self._job.id, self._job.name, bound))
 
 
 @dataclass(eq=False)

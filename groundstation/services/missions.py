@@ -7,38 +7,28 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from groundstation.services.mission_files import (
+    MAVLINK_FORMATS,
+    SUFFIXES,
+    missions_as_plan,
+    readiness,
+    within_item_limit,
+)
 from groundstation.services.project_file import SITE_FOLDER
-from missions.encode import DEFAULT_OPTIONS, ExportOptions, default_autopilot, encode
-from missions.formats import read_missions, sortie_path, write_files
+from missions.encode import DEFAULT_OPTIONS, ExportOptions, encode
+from missions.formats import sortie_path, write_files
 from missions.model import FileFormat
-from missions.to_plan import viewpoints_and_sorties
-from planning.catalogue import DEFAULT_PROFILE, profile
-from planning.checks import check_plan
+from planning.catalogue import DEFAULT_PROFILE
 from planning.errors import InputError
-from planning.evaluate import coverage
 from planning.findings import Finding, Severity
 from planning.json_file import check_output
-from planning.plan import Constraints, FlightRules, Plan
+from planning.plan import Constraints, Plan
 from planning.plan_file import read_plan, write_plan
-from planning.planner import share_out_anew
-from planning.prepare import prepare
 from planning.progress import QUIET, Monitor
 from planning.site import SiteModel
 from planning.site_file import read_site
 
-MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
-
-SUFFIXES = {
-    FileFormat.DJI_KMZ: (".kmz",),
-    FileFormat.MAVLINK_PLAN: (".plan",),
-    FileFormat.MAVLINK_WPL: (".waypoints", ".txt"),
-    FileFormat.KML: (".kml",),
-    FileFormat.CSV: (".csv",),
-}
-"""How the names of files end that other programs offer to open."""
-
-IMPORTED = "imported"
-"""Method written into plans that come from mission files."""
+__all__ = ["SUFFIXES", "export_plan", "find_site", "import_missions"]
 
 
 def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> SiteModel | None:
@@ -104,11 +94,11 @@ def export_plan(
     if site_model is not None:
         origin = site_model.site.origin if origin is None else origin
         home = site_model.site.home_enu_m if home is None else home
-        findings += _readiness(plan, site_model)
+        findings += readiness(plan, site_model)
     elif home is None and plan.sorties and plan.sorties[0].path_enu_m:
         home = plan.sorties[0].path_enu_m[0]
     if file_format in MAVLINK_FORMATS and site_model is not None:
-        plan, shared_out = _within_item_limit(plan, site_model, options)
+        plan, shared_out = within_item_limit(plan, site_model, options)
         findings += shared_out
     encoded = encode(plan, origin, home, file_format, replace(options, site=site_model))
     for number in range(2, len(encoded.contents) + 1):
@@ -121,40 +111,6 @@ def _name_findings(out: Path, file_format: FileFormat) -> Iterator[Finding]:
     if out.suffix.lower() not in suffixes:
         text = f"{out.name}: other programs look for {file_format} files with names that end in {' or '.join(suffixes)}"
         yield Finding(Severity.WARNING, "file-name", text)
-
-
-def _readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
-    """What the pilot must know of a plan before it flies on this site."""
-    if plan.site_sha256 and plan.site_sha256 != site_model.sha256:
-        text = (
-            f"the site file of '{site_model.site.name}' has changed since this plan was made; what the mission takes "
-            "from it (return height, fences) is as it is now"
-        )
-        yield Finding(Severity.WARNING, "site-changed", text)
-    errors = [found for found in check_plan(plan, site_model) if found.severity is Severity.ERROR]
-    if errors:
-        text = (
-            f"this plan is not ready to fly ({len(errors)} findings of the pre-flight check, the first: "
-            f"{errors[0].message})"
-        )
-        yield Finding(Severity.WARNING, "not-ready", text, errors[0].place, float(len(errors)), 0.0, "findings")
-
-
-def _within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions) -> tuple[Plan, tuple[Finding, ...]]:
-    """The plan, its views shared out anew where a sortie has more than the autopilot keeps."""
-    from missions.mavlink.items import photos_that_fit
-
-    autopilot = options.autopilot or default_autopilot(plan.profile)
-    limit = photos_that_fit(autopilot)
-    longest = max((len(sortie.viewpoint_ids) for sortie in plan.sorties), default=0)
-    if longest <= limit:
-        return plan, ()
-    anew = share_out_anew(plan, site_model, limit)
-    text = (
-        f"{autopilot} keeps the items of about {limit} photos, but a sortie of this plan has {longest}; the same views "
-        f"were shared out among {len(anew.sorties)} sorties for these files"
-    )
-    return anew, (Finding(Severity.WARNING, "item-limit", text, "", float(longest), float(limit), "photos"),)
 
 
 def import_missions(
@@ -173,32 +129,6 @@ def import_missions(
         A file cannot be read, is given twice, or belongs to another place; or the plan cannot be written.
     """
     check_output(out, [*paths, site_path])
-    resolved = [path.resolve() for path in paths]
-    for number, path in enumerate(paths):
-        if resolved[number] in resolved[:number]:
-            raise InputError(f"{path}: this mission file is named twice; name the file of each sortie once")
-    site_model = read_site(site_path)
-    chosen = profile(profile_id)
-    rules = FlightRules()
-    read = [mission for path in paths for mission in read_missions(path)]
-    parts = viewpoints_and_sorties(read, site_model.site.origin, site_model.site.home_enu_m, rules, chosen.aircraft)
-    prepared = prepare(site_model, chosen.camera, constraints, monitor=monitor)
-    plan = Plan(
-        site=site_model.site.name,
-        site_sha256=site_model.sha256,
-        method=IMPORTED,
-        seed=0,
-        camera=chosen.camera,
-        aircraft=chosen.aircraft,
-        constraints=prepared.constraints,
-        viewpoints=parts.viewpoints,
-        sorties=parts.sorties,
-        coverage=coverage(prepared.problem.model, parts.viewpoints, prepared.problem.reachability),
-        origin=site_model.site.origin,
-        home_enu_m=site_model.site.home_enu_m,
-        rules=rules,
-        effects=prepared.effects,
-        profile=chosen.id,
-    )
+    plan, findings = missions_as_plan(paths, read_site(site_path), profile_id, constraints, monitor)
     write_plan(out, plan)
-    return plan, parts.findings
+    return plan, findings

@@ -9,13 +9,18 @@ from typing import Any
 
 import msgspec
 
+from planning.catalogue import profile
 from planning.checks import check_plan
+from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.json_file import check_output
-from planning.plan import Plan
+from planning.plan import Plan, Viewpoint
 from planning.plan_file import read_plan, write_plan
-from planning.planner import Planned, PlanRequest, plan_flight
+from planning.planner import Planned, plan_flight
+from planning.prepare import Prepared
 from planning.progress import QUIET, Monitor, Stop, Trace, never
+from planning.request import PlanRequest
+from planning.site import SiteModel
 from planning.site_file import read_site
 
 
@@ -39,10 +44,56 @@ def plan_site(
     """
     if out is not None:
         check_output(out, [site_path])
-    planned = plan_flight(read_site(site_path), request, stop=stop, trace=trace, monitor=monitor)
+    planned = plan_document_site(read_site(site_path), request, stop=stop, trace=trace, monitor=monitor)
     if out is not None:
         write_plan(out, planned.plan)
+    return planned
+
+
+def plan_document_site(
+    site_model: SiteModel,
+    request: PlanRequest,
+    prepared: Prepared | None = None,
+    *,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Planned:
+    """Plan a flight over an open site; a finding says so where the plan has less than was asked for.
+
+    Parameters
+    ----------
+    prepared
+        What an earlier plan left; used where it fits the request and was not cut short, else the site is prepared anew.
+
+    Raises
+    ------
+    InputError, InfeasibleError
+        As `planning.planner.plan_flight`.
+    """
+    camera = profile(request.profile_id).camera
+    wanted = (site_model, camera, request.constraints, request.precision, request.seed)
+    if prepared is not None and (prepared.is_cut_short or prepared.unfit_for(*wanted)):
+        prepared = None
+    planned = plan_flight(site_model, request, prepared=prepared, stop=stop, trace=trace, monitor=monitor)
     return replace(planned, findings=(*planned.findings, *_shortfalls(request, planned.plan)))
+
+
+def locked_viewpoints(plan_path: Path) -> tuple[Viewpoint, ...]:
+    """The locked viewpoints of a plan file.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or none of its viewpoints is locked.
+    """
+    locked = tuple(viewpoint for viewpoint in read_plan(plan_path).viewpoints if viewpoint.locked)
+    if not locked:
+        raise InputError(
+            f'{plan_path}: none of the viewpoints is locked; expected some with "locked": true, which the Plan tab\'s '
+            "lock sets"
+        )
+    return locked
 
 
 def _shortfalls(request: PlanRequest, plan: Plan) -> Iterator[Finding]:

@@ -26,7 +26,7 @@ from groundstation.services.project_store import PROJECT_FILE, current_path, in_
 from groundstation.services.project_writing import site_to_write, write_project
 from planning.errors import InputError
 from planning.findings import Finding, Severity
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.site import SiteModel
 from planning.site_file import read_site
 

@@ -18,7 +18,7 @@ from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.json_file import to_record
 from planning.plan_file import plan_to_json, read_plan
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 
 
 def read_entry(folder: Path, record: PlanRecord) -> tuple[PlanEntry | None, list[Finding]]:

@@ -21,8 +21,8 @@ from planning.errors import InfeasibleError, InputError
 from planning.json_file import read_json
 from planning.plan import PLAN_FORMAT, Plan
 from planning.plan_file import read_plan
-from planning.planner import DEFAULT_VIEWS, PlanRequest
 from planning.progress import QUIET, Monitor
+from planning.request import DEFAULT_VIEWS, PlanRequest
 from planning.routing.methods import TourMethod
 from planning.site import SITE_FORMAT, SiteModel
 from planning.site_file import read_site

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.checks.measures import Measures, TimedFlight, flight_key, measure
 from planning.coverage.model import CoverageModel
 from planning.findings import Finding, Severity
-from planning.plan import Plan
+from planning.plan import Plan, Sortie
+from planning.prepare import coverage_model, decide_occlusion
 from planning.site import SiteModel
-from planning.space import FreeSpace
+from planning.space import FreeSpace, unchecked_space
 
 Array = NDArray[np.float64]
 
@@ -22,18 +24,50 @@ ROUNDING_M = 1e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Case:
-    """A plan on its site."""
+    """A plan on its site, measured."""
 
     plan: Plan
     site_model: SiteModel
     space: FreeSpace
     model: CoverageModel
+    measures: Measures
 
-    def paths(self) -> Iterator[tuple[str, Array]]:
-        """Name and vertices, shape (k, 3), of each sortie's path that has any leg."""
+    @classmethod
+    def of(cls, plan: Plan, site_model: SiteModel) -> Case:
+        """The case of a plan; occlusion is decided here where the plan leaves it to the scene."""
+        space = unchecked_space(site_model, plan.constraints.min_distance_m)
+        constraints = plan.constraints
+        if constraints.occlusion == "auto":
+            on = decide_occlusion(site_model, space, "auto").on
+            constraints = replace(constraints, occlusion="on" if on else "off")
+        model = coverage_model(site_model, space, plan.camera, constraints)
+        return cls(plan, site_model, space, model, measure(plan, space, model))
+
+    def with_plan(self, plan: Plan) -> Case:
+        """The case of another plan for the same site; what both have in common is not measured again."""
+        mine = self.plan
+        if (plan.camera, plan.constraints, plan.aircraft, plan.rules) != (
+            mine.camera,
+            mine.constraints,
+            mine.aircraft,
+            mine.rules,
+        ):
+            return Case.of(plan, self.site_model)
+        return replace(self, plan=plan, measures=measure(plan, self.space, self.model, self.measures))
+
+    def sorties(self) -> Iterator[tuple[str, Sortie, Array]]:
+        """Name, record and path, shape (k, 3), of each sortie whose path has any leg."""
         for number, sortie in enumerate(self.plan.sorties, 1):
             if len(sortie.path_enu_m) > 1:
-                yield f"sortie {number}", np.array(sortie.path_enu_m, np.float64)
+                yield f"sortie {number}", sortie, np.array(sortie.path_enu_m, np.float64)
+
+    def timed_sorties(self) -> Iterator[tuple[str, Sortie, TimedFlight]]:
+        """Name, record and times of each sortie whose path passes all its viewpoints; none where nothing can fly."""
+        by_id = {viewpoint.id: viewpoint for viewpoint in self.plan.viewpoints}
+        for number, sortie in enumerate(self.plan.sorties, 1):
+            flight = self.measures.flights.get(flight_key(sortie, by_id))
+            if flight is not None:
+                yield f"sortie {number}", sortie, flight
 
 
 Rule = Callable[[Case], Iterator[Finding]]

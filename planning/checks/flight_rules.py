@@ -5,19 +5,16 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from planning.checks.case import Array, Case, Rule, judge
+from planning.checks.measures import pose_of
 from planning.errors import InfeasibleError
-from planning.evaluate import coverage_counts, ground_sampling_m, nearest_panel_m
 from planning.findings import Finding, Severity
 from planning.plan import Sortie, Viewpoint
-from planning.sortie_timing import SAME_PLACE_M, photo_vertices, sortie_flight_path, stopping_duration_s
-from planning.speed_profile import corner_saving_s
-from planning.timing import FlightPath, motion_limits, photo_stop_s, stopping_times_s
+from planning.sortie_timing import SAME_PLACE_M, photo_vertices
+from planning.timing import motion_limits, photo_stop_s
 
 LENGTH_TOLERANCE = 0.01
 DURATION_TOLERANCE = 0.05
@@ -114,7 +111,7 @@ def gimbal_and_heading(case: Case) -> Iterator[Finding]:
 def waypoint_counts(case: Case) -> Iterator[Finding]:
     """Sorties have no more waypoints than the aircraft takes."""
     limit = case.plan.aircraft.max_waypoints
-    for place, path in case.paths():
+    for place, _, path in case.sorties():
         yield judge(
             len(path) <= limit + 2,
             "waypoints",
@@ -134,16 +131,15 @@ def durations(case: Case) -> Iterator[Finding]:
     """
     plan = case.plan
     try:
-        limits = motion_limits(plan.aircraft, plan.rules)
+        motion_limits(plan.aircraft, plan.rules)
     except InfeasibleError as error:
         yield Finding(Severity.ERROR, "wind", str(error), "", plan.rules.wind_m_s, plan.aircraft.max_wind_m_s, "m/s")
         return
     yield judge(True, "wind", "expected wind", plan.rules.wind_m_s, plan.aircraft.max_wind_m_s, "m/s")
     usable = plan.aircraft.endurance_s * (1.0 - plan.rules.battery_reserve)
-    for place, sortie, through, _ in _timed_sorties(case):
-        ours = stopping_duration_s(through, plan.aircraft, plan.rules)
-        least = (ours - corner_saving_s(through, limits)[0]) * (1.0 - DURATION_TOLERANCE)
-        length = float(np.linalg.norm(through.deltas_enu_m, axis=1).sum())
+    for place, sortie, flight in case.timed_sorties():
+        ours, length = flight.stopping_s, flight.length_m
+        least = (ours - flight.corner_saving_s) * (1.0 - DURATION_TOLERANCE)
         yield judge(
             max(ours, sortie.duration_s) <= usable + 0.01,
             "endurance",
@@ -179,16 +175,6 @@ def durations(case: Case) -> Iterator[Finding]:
         )
 
 
-def _timed_sorties(case: Case) -> Iterator[tuple[str, Sortie, FlightPath, NDArray[np.int64]]]:
-    """Name, record, flight path and photo vertices of each sortie whose path passes all its viewpoints."""
-    plan = case.plan
-    by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
-    for number, sortie in enumerate(plan.sorties, 1):
-        timed = sortie_flight_path(sortie, by_id, plan.aircraft, plan.rules, stop_at_corners=False)
-        if timed is not None:
-            yield f"sortie {number}", sortie, *timed
-
-
 def _between_photos(case: Case) -> Iterator[tuple[float, str]]:
     """Shortest time between two photos of each sortie as it is commanded, and before which viewpoint.
 
@@ -197,20 +183,17 @@ def _between_photos(case: Case) -> Iterator[tuple[float, str]]:
     """
     aircraft, rules = case.plan.aircraft, case.plan.rules
     added_s = photo_stop_s(aircraft, rules) - (rules.settle_s + rules.photo_s)
-    for place, sortie, through, at_photos in _timed_sorties(case):
-        if len(at_photos) > 1:
-            done_s = (stopping_times_s(through, motion_limits(aircraft, rules)) + through.hover_s)[at_photos]
-            shortest = int(np.argmin(np.diff(done_s)))
-            yield float(np.diff(done_s)[shortest]) - added_s, f"{place}, {sortie.viewpoint_ids[shortest + 1]}"
+    for place, sortie, flight in case.timed_sorties():
+        between_s = np.diff(flight.photos_done_s)
+        if len(between_s):
+            shortest = int(np.argmin(between_s))
+            yield float(between_s[shortest]) - added_s, f"{place}, {sortie.viewpoint_ids[shortest + 1]}"
 
 
 def photo_times(case: Case) -> Iterator[Finding]:
     """The camera has time for each photo, and the aircraft time to settle before it."""
     plan = case.plan
-    try:
-        shortest = min(_between_photos(case), default=None)
-    except InfeasibleError:  # no flying in this wind, as `durations` says
-        shortest = None
+    shortest = min(_between_photos(case), default=None)
     if shortest is not None:
         (between, place), limit = shortest, plan.aircraft.min_photo_interval_s
         subject, advice = "shortest time between photos", "the camera would miss photos; hover longer before each"
@@ -231,13 +214,14 @@ def photo_times(case: Case) -> Iterator[Finding]:
 def ground_sampling(case: Case) -> Iterator[Finding]:
     """Each photo shows a panel with pixels as fine as the constraints ask; others cover nothing."""
     furthest, viewpoints = case.plan.constraints.max_distance_m, case.plan.viewpoints
-    _, worst = ground_sampling_m(case.model, viewpoints)
+    measures = case.measures
+    worst = case.plan.camera.gsd_m(max((sight.furthest_m for sight in measures.seen.values()), default=0.0))
     text = f"coarsest pixel on a covered panel: {1e3 * worst:.2f} mm"
     if furthest is None:
         yield Finding(Severity.OK, "gsd", f"{text}, no limit set", "", 1e3 * worst, None, "mm")
         return
-    nearest = nearest_panel_m(replace(case.model, max_distance_m=None), viewpoints)
-    seen = [(float(distance), v.id) for distance, v in zip(nearest, viewpoints, strict=True) if distance < math.inf]
+    nearest = [(measures.nearest_m[pose_of(viewpoint)], viewpoint.id) for viewpoint in viewpoints]
+    seen = [(distance, viewpoint_id) for distance, viewpoint_id in nearest if distance < math.inf]
     distance, place = max(seen, default=(0.0, ""))
     value, limit = 1e3 * case.plan.camera.gsd_m(distance), 1e3 * case.plan.camera.gsd_m(furthest)
     subject, advice = "finest pixel on a panel, of the coarsest photo", "it covers nothing; take it closer or drop it"
@@ -247,7 +231,7 @@ def ground_sampling(case: Case) -> Iterator[Finding]:
 def stated_coverage(case: Case) -> Iterator[Finding]:
     """The coverage that the plan states is what its viewpoints cover."""
     stated, total = case.plan.coverage, case.model.n_elements
-    covered = int(np.count_nonzero(coverage_counts(case.model, case.plan.viewpoints)))
+    covered = int(np.count_nonzero(case.measures.counts))
     if covered == 0:
         text = "no panel is seen from any viewpoint"
         yield Finding(Severity.ERROR, "coverage", text, "", 0.0, float(total), "sections")
@@ -261,7 +245,7 @@ def stated_coverage(case: Case) -> Iterator[Finding]:
 
 def duplicates(case: Case) -> Iterator[Finding]:
     """No photo is taken twice."""
-    poses = Counter((v.position_enu_m, v.heading_deg, v.gimbal_pitch_deg) for v in case.plan.viewpoints)
+    poses = Counter(pose_of(viewpoint) for viewpoint in case.plan.viewpoints)
     again = sum(count - 1 for count in poses.values())
     yield judge(
         again == 0,

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from planning.checks.case import ROUNDING_M, Case, Rule, judge
+from planning.checks.measures import Gaps, legs_of
 from planning.findings import Finding, Severity
-from planning.plan import viewpoint_arrays
+from planning.plan import Sortie, viewpoint_arrays
 from planning.routing.legs import MIN_SPACING_M
 from planning.sortie_timing import SAME_PLACE_M
 
@@ -22,10 +23,10 @@ LONG_LEG_M, MAX_LEG_M = 2000.0, 5000.0
 def viewpoints_in_airspace(case: Case) -> Iterator[Finding]:
     """Viewpoints lie in the airspace box."""
     low, high = case.space.low_enu_m, case.space.high_enu_m
-    worst, where = 0.0, ""
-    for viewpoint in case.plan.viewpoints:
-        p = np.array(viewpoint.position_enu_m)
-        worst, where = max((worst, where), (float(np.maximum(low - p, p - high).max()), viewpoint.id))
+    positions = viewpoint_arrays(case.plan.viewpoints).positions_enu_m
+    outside = np.maximum(low - positions, positions - high).max(axis=1)
+    found = [(float(value), v.id) for value, v in zip(outside, case.plan.viewpoints, strict=True)]
+    worst, where = max([(0.0, ""), *found])
     advice = "move them inside or widen the airspace"
     yield judge(worst <= ROUNDING_M, "airspace", "viewpoints outside the airspace by", worst, 0.0, "m", where, advice)
 
@@ -35,7 +36,7 @@ def paths_in_airspace(case: Case) -> Iterator[Finding]:
     low, high = case.space.low_enu_m, case.space.high_enu_m
     home = np.array(case.site_model.site.home_enu_m)
     worst, where = 0.0, ""
-    for place, path in case.paths():
+    for place, _, path in case.sorties():
         outside = np.maximum(np.maximum(low - path, path - high)[:, :2].max(axis=1), path[:, 2] - high[2])
         in_column = np.linalg.norm(path[:, :2] - home[:2], axis=1) <= SAME_PLACE_M
         floor = np.where(in_column[:-1] & in_column[1:], min(low[2], home[2]), low[2])
@@ -50,9 +51,9 @@ def distances_at_viewpoints(case: Case) -> Iterator[Finding]:
     if not case.plan.viewpoints:
         return
     limit = case.plan.constraints.min_distance_m
-    clearance = case.space.solids.clearance_m(viewpoint_arrays(case.plan.viewpoints).positions_enu_m)
-    nearest = int(np.argmin(clearance))
-    value, place = float(clearance[nearest]), case.plan.viewpoints[nearest].id
+    points_m = case.measures.solid_gaps.points_m
+    nearest = min(case.plan.viewpoints, key=lambda viewpoint: points_m[viewpoint.position_enu_m])
+    value, place = points_m[nearest.position_enu_m], nearest.id
     subject = "smallest distance at a viewpoint (negative: inside a solid)"
     yield judge(value >= limit - ROUNDING_M, "distance", subject, value, limit, "m", place, "move it away", least=True)
 
@@ -60,11 +61,8 @@ def distances_at_viewpoints(case: Case) -> Iterator[Finding]:
 def distances_along_paths(case: Case) -> Iterator[Finding]:
     """Every point of every leg keeps the minimum distance."""
     limit = case.plan.constraints.min_distance_m
-    for place, path in case.paths():
-        along = case.space.solids.segment_distances_m(path[:-1], path[1:])
-        leg = int(np.argmin(along))
-        inside = bool((case.space.solids.clearance_m(path, limit + 1.0) < 0).any())
-        value = -1.0 if inside else float(along[leg])
+    for place, sortie, _ in case.sorties():
+        value, leg, inside = _nearest_leg(case.measures.solid_gaps, sortie)
         advice = "the path runs inside a solid" if inside else "plan the route again"
         where = f"{place}, leg {leg + 1}"
         subject = "smallest distance along the path"
@@ -72,17 +70,21 @@ def distances_along_paths(case: Case) -> Iterator[Finding]:
         yield judge(kept, "leg-distance", subject, value, limit, "m", where, advice, least=True)
 
 
+def _nearest_leg(gaps: Gaps, sortie: Sortie) -> tuple[float, int, bool]:
+    """Smallest distance along a path, -1 where a vertex lies inside; on which leg; whether a vertex lies inside."""
+    along = [gaps.legs_m[leg] for leg in legs_of(sortie)]
+    nearest = min(range(len(along)), key=along.__getitem__)
+    inside = any(gaps.points_m[vertex] < 0.0 for vertex in sortie.path_enu_m)
+    return -1.0 if inside else along[nearest], nearest, inside
+
+
 def no_fly_volumes(case: Case) -> Iterator[Finding]:
     """No leg enters a no-fly volume."""
     if not case.site_model.site.airspace.no_fly:
         yield Finding(Severity.OK, "no-fly", "the site has no no-fly volumes")
         return
-    solids = case.space.no_fly
-    for place, path in case.paths():
-        along = solids.segment_distances_m(path[:-1], path[1:])
-        leg = int(np.argmin(along))
-        inside = bool((solids.clearance_m(path, 1.0) < 0).any())
-        value = -1.0 if inside else float(along[leg])
+    for place, sortie, _ in case.sorties():
+        value, leg, _ = _nearest_leg(case.measures.no_fly_gaps, sortie)
         where, subject = f"{place}, leg {leg + 1}", "smallest distance to a no-fly volume (negative: inside)"
         yield judge(
             value > 0.0, "no-fly", subject, value, 0.0, "m", where, "the path enters a no-fly volume", least=True
@@ -92,7 +94,7 @@ def no_fly_volumes(case: Case) -> Iterator[Finding]:
 def altitude(case: Case) -> Iterator[Finding]:
     """Height above ground stays below what needs a permit."""
     ground = case.site_model.site.airspace.ground_z_m
-    heights = [(float(path[:, 2].max()) - ground, place) for place, path in case.paths()]
+    heights = [(float(path[:, 2].max()) - ground, place) for place, _, path in case.sorties()]
     if heights:
         value, place = max(heights)
         advice = "most rules ask for a permit above it"
@@ -102,7 +104,7 @@ def altitude(case: Case) -> Iterator[Finding]:
 
 def leg_lengths(case: Case) -> Iterator[Finding]:
     """Waypoints are neither too close together nor too far apart for autopilots."""
-    for place, path in case.paths():
+    for place, _, path in case.sorties():
         lengths = np.linalg.norm(np.diff(path, axis=0), axis=1)
         flown = lengths[lengths > SAME_PLACE_M]
         if len(flown) == 0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,7 @@ from planning.coverage.sections import (
 from planning.frames import camera_axes
 from planning.jit import chunks, run_chunks
 from planning.plan import Camera, ViewpointArrays
-
-Precision = Literal["f32", "f64"]
+from planning.request import Precision
 
 LineOfSight = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
 """(from, to), both shape (k, 3) ENU metres, to shape (k,): True where the straight line between them is free."""

@@ -13,14 +13,17 @@ from numpy.typing import NDArray
 from planning.coverage.model import CoverageModel, Elements
 from planning.errors import InfeasibleError
 from planning.optimise import cover_kernel as kernel
-from planning.optimise.candidates import Pool, candidate_pool, keep
-from planning.optimise.greedy import GreedyParameters, element_weights
+from planning.optimise.candidates import Pool, candidate_pool, join_pools, keep
+from planning.optimise.greedy import element_weights
 from planning.optimise.improve import cover_state
+from planning.optimise.locked import NONE_LOCKED, covered_by
 from planning.optimise.problem import ViewProblem, take
 from planning.plan import Aircraft, FlightRules, ViewpointArrays
 from planning.progress import Monitor, Stop, Trace
-from planning.routing.flights import Flight, flight_times
+from planning.request import GreedyParameters
+from planning.routing.flights import Flight, FlightTimes, flight_times
 from planning.routing.orienteering import solve_orienteering
+from planning.routing.sorties import Sorties, plan_sorties
 
 Array = NDArray[np.float64]
 
@@ -84,19 +87,24 @@ def views_within_budget(
     stop: Stop,
     trace: Trace,
     monitor: Monitor,
+    locked: ViewpointArrays = NONE_LOCKED,
 ) -> tuple[ViewpointArrays, float]:
     """Views that fit into `n_batteries` sorties and cover as much as could be found, and an upper bound on that.
 
-    The bound holds for the candidates that were compared.
+    The bound holds for the candidates that were compared. Views that are `locked` come first in the result, as they
+    are.
 
     Raises
     ------
     InfeasibleError
-        Nothing can be seen within one battery.
+        Nothing can be seen within one battery, or the locked views do not fit into as many as there are.
     """
     monitor.report("trying viewpoints", 0, 1)
     weights = element_weights(problem.model, parameters.solid_angle_weights)
-    pool = _shortlist(candidate_pool(problem, seed, parameters.n_candidates), weights)
+    n_locked = len(locked.heading_rad)
+    free = candidate_pool(problem, seed, parameters.n_candidates)
+    free = _shortlist(free, weights, covered_by(problem.model, locked), max(0, MAX_CANDIDATES - n_locked))
+    pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
     gain = CoverGain(pool.elements, weights)
     selection = solve_orienteering(
@@ -106,6 +114,7 @@ def views_within_budget(
         n_batteries,
         gain,
         max_stops=max(1, aircraft.max_waypoints - 2),
+        required=_required(times, n_locked, n_batteries, max(1, aircraft.max_waypoints - 2), seed, stop),
         seed=seed,
         stop=stop,
         trace=Trace(trace.clock, lambda _worth: trace.record(gain.n_covered)),
@@ -117,28 +126,67 @@ def views_within_budget(
             f"no viewpoint that sees a panel can be reached and left again within {times.budget_s:.0f} s of one battery"
         )
     everything = float(weights[np.unique(pool.elements.items)].sum())
+    chosen = np.concatenate([np.arange(n_locked), chosen[chosen >= n_locked]])
     return take(pool.views, chosen), min(selection.bound, everything)
 
 
+def _required(times: FlightTimes, n_locked: int, n_batteries: int, max_stops: int, seed: int, stop: Stop) -> Sorties:
+    """Sorties through the locked views, which are the first of the table, with nothing else in them."""
+    if n_locked == 0:
+        return ()
+    travel_s, service_s = times.travel_s[: n_locked + 1, : n_locked + 1], times.service_s[:n_locked]
+    sorties = plan_sorties(travel_s, service_s, times.budget_s, max_stops, seed=seed, stop=stop)
+    if len(sorties) > n_batteries:
+        raise InfeasibleError(
+            f"the {n_locked} locked viewpoints alone take {len(sorties)} batteries, but {n_batteries} are allowed; "
+            "unlock some, or allow more batteries"
+        )
+    return sorties
+
+
 def best_flights(
-    model: CoverageModel, views: ViewpointArrays, flights: tuple[Flight, ...], n_batteries: int
+    model: CoverageModel, views: ViewpointArrays, flights: tuple[Flight, ...], n_batteries: int, n_locked: int = 0
 ) -> tuple[Flight, ...]:
     """At most `n_batteries` of the flights, in order: those go without which least is lost.
 
     Views that just fitted into the batteries may need one more once they are rounded, moved together and routed anew.
+    Flights with one of the first `n_locked` views stay, even where they are too many.
     """
     kept = list(flights)
     while len(kept) > n_batteries:
         covered = np.array([model.covered(take(views, flight.views)) for flight in kept])
-        only_here = covered & (covered.sum(axis=0) == 1)
-        del kept[int(np.argmin(only_here.sum(axis=1)))]
+        only_here = (covered & (covered.sum(axis=0) == 1)).sum(axis=1)
+        spare = [number for number, flight in enumerate(kept) if (flight.views >= n_locked).all()]
+        if not spare:
+            break
+        del kept[min(spare, key=only_here.__getitem__)]
     return tuple(kept)
 
 
-def _shortlist(pool: Pool, weights: Array) -> Pool:
-    """The candidates that greedy takes first, for several depths."""
-    state = cover_state(pool.elements, weights)
-    chosen = np.zeros(min(MAX_CANDIDATES, len(state.gains)), np.int64)
+def with_fewer_views(model: CoverageModel, views: ViewpointArrays, n_locked: int) -> ViewpointArrays:
+    """The views without the least useful tenth (at least one) of those after the first `n_locked`.
+
+    Raises
+    ------
+    InfeasibleError
+        Only locked views are left.
+    """
+    n_free = len(views.heading_rad) - n_locked
+    if n_free == 0:
+        raise InfeasibleError(
+            f"the {n_locked} locked viewpoints alone need more batteries than are allowed; unlock some, or allow more"
+        )
+    elements = model.elements(views)
+    counts = np.bincount(elements.items, minlength=model.n_elements)
+    losses = [int((counts[elements.of(view)] == 1).sum()) for view in range(n_locked, n_locked + n_free)]
+    dropped = n_locked + np.argsort(losses, kind="stable")[: max(1, n_free // 10)]
+    return take(views, np.setdiff1d(np.arange(n_locked + n_free), dropped))
+
+
+def _shortlist(pool: Pool, weights: Array, covered: NDArray[np.int32], n_most: int) -> Pool:
+    """The candidates that greedy takes first, for several depths, beside what is `covered` all the same."""
+    state = cover_state(pool.elements, weights, covered)
+    chosen = np.zeros(min(n_most, len(state.gains)), np.int64)
     n_chosen = 0
     for depth in CHOICE_DEPTHS:
         state.depth[0] = depth

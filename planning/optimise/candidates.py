@@ -13,12 +13,10 @@ from planning.optimise.problem import ViewProblem, concatenate, nothing_to_see, 
 from planning.plan import ViewpointArrays
 from planning.positions import aimed_views, spread_positions
 from planning.reach_kernel import REACHABLE
+from planning.request import N_CANDIDATES
 
 Array = NDArray[np.float64]
 
-N_CANDIDATES = 20_000
-"""Spread candidates. With 56 to 560 views on the office 2000 do as well (fresh ones come with the improvement); with
-200 views on the tower 2000 cover 0.7 % less after 60 s."""
 
 MAX_ENTRIES = 60_000_000
 """Covered elements of all candidates together: bounds memory to about 600 MB; candidates are thinned beyond it."""

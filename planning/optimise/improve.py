@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from planning.coverage.model import Elements
 from planning.optimise import cover_kernel as kernel
 from planning.optimise.candidates import Pool, spread_candidates
+from planning.optimise.locked import NONE_LOCKED, covered_by
 from planning.optimise.problem import ViewProblem, concatenate, take
 from planning.optimise.refine import refine_views
 from planning.plan import ViewpointArrays
@@ -31,8 +32,8 @@ RADIANS_PER_METRE = 0.05
 """Candidates around a view are moved by 0.1 to 8 m and turned by 3 degrees per metre (one standard deviation)."""
 
 
-def cover_state(elements: Elements, weights: Array) -> kernel.CoverState:
-    """State with nothing chosen and depth 1."""
+def cover_state(elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None) -> kernel.CoverState:
+    """State with nothing chosen and depth 1; `covered` counts the views that each element has all the same."""
     inverse_starts, inverse_items = kernel.invert(elements.starts, elements.items, len(weights))
     n_candidates = len(elements.starts) - 1
     state = kernel.CoverState(
@@ -41,7 +42,7 @@ def cover_state(elements: Elements, weights: Array) -> kernel.CoverState:
         inverse_starts,
         inverse_items,
         weights,
-        counts=np.zeros(len(weights), np.int32),
+        counts=np.zeros(len(weights), np.int32) if covered is None else covered.copy(),
         gains=np.zeros(n_candidates),
         depth=np.ones(1, np.int64),
     )
@@ -50,11 +51,18 @@ def cover_state(elements: Elements, weights: Array) -> kernel.CoverState:
 
 
 class Exchange:
-    """Local search by swapping chosen candidates against others."""
+    """Local search by swapping chosen candidates against others; `covered` is as in `cover_state`."""
 
-    def __init__(self, elements: Elements, weights: Array, chosen: NDArray[np.int64], seed: int) -> None:
+    def __init__(
+        self,
+        elements: Elements,
+        weights: Array,
+        chosen: NDArray[np.int64],
+        seed: int,
+        covered: NDArray[np.int32] | None = None,
+    ) -> None:
         self.elements, self.chosen, self.seed = elements, chosen.copy(), seed
-        self.state = cover_state(elements, weights)
+        self.state = cover_state(elements, weights, covered)
         for candidate in self.chosen:
             kernel.add_elements(self.state, elements.of(candidate))
         self._rests_until = np.zeros(len(self.state.gains), np.int64)
@@ -97,24 +105,32 @@ def improve_views(
     stop: Stop,
     trace: Trace,
     monitor: Monitor,
+    locked: ViewpointArrays = NONE_LOCKED,
 ) -> ViewpointArrays:
-    """As many views as were chosen, covering at least as much.
+    """As many views as were chosen, covering at least as much together with the `locked` ones, which are not returned.
 
     Each round exchanges views within its candidates and then refines all poses. The first round's candidates are the
     pool, those of further rounds lie around the views at hand, with fresh ones spread over the site.
     """
     rng = np.random.default_rng(seed + 1)
     views, idle, value, round_number = take(pool.views, chosen), 0, -1.0, 0
+    covered = covered_by(problem.model, locked)
     while idle < IDLE_ROUNDS and not stop():
         monitor.report("improving views", round_number, 0)
-        exchange = Exchange(pool.elements, weights, chosen, seed + 7919 * round_number)
+        exchange = Exchange(pool.elements, weights, chosen, seed + 7919 * round_number, covered)
         exchange.run(stop)
         trace.record(exchange.n_covered())
         views = take(pool.views, exchange.chosen)
         views = refine_views(
-            problem, views, weights, stop, monitor, lambda counts: trace.record(int(np.count_nonzero(counts)))
+            problem,
+            views,
+            weights,
+            stop,
+            monitor,
+            lambda counts: trace.record(int(np.count_nonzero(counts))),
+            covered,
         )
-        reached = float(weights[problem.model.covered(views)].sum())
+        reached = float(weights[problem.model.covered(views) | (covered > 0)].sum())
         idle = 0 if reached > value + 1e-9 else idle + 1
         value, round_number = reached, round_number + 1
         pool, chosen = _pool_around(problem, views, rng)

@@ -16,9 +16,6 @@ from planning.reachability import Reachability
 from planning.routing.roadmap import Roadmap
 from planning.space import SAFETY_MARGIN_M, FreeSpace
 
-DEFAULT_SHARE = 0.99
-"""Share of the reachable sections that is covered when no number of views is given."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ViewProblem:

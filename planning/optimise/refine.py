@@ -37,16 +37,19 @@ def refine_views(
     stop: Stop = never,
     monitor: Monitor = QUIET,
     improved: Callable[[NDArray[np.int64]], None] | None = None,
+    covered: NDArray[np.int32] | None = None,
 ) -> ViewpointArrays:
     """Views of at least the same value, in the same order.
 
     Sweeps over all views until a sweep brings nothing or `stop` asks for an end. `improved` is called after each sweep
-    with the number of views per element.
+    with the number of views per element. `covered` counts the views that each element has beside these.
     """
     model = problem.model
     poses = np.concatenate([views.positions_enu_m, views.heading_rad[:, None], views.pitch_rad[:, None]], axis=1)
     elements = _each(model.elements(views))
     counts = np.bincount(np.concatenate(elements), minlength=model.n_elements)
+    if covered is not None:
+        counts = counts + covered
     grown = True
     while grown and not stop():
         grown = False

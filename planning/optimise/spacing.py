@@ -22,11 +22,11 @@ that refuses the mission costs all of them. On office, library and court two or 
 
 
 def merge_close_views(
-    problem: ViewProblem, views: ViewpointArrays, spacing_m: float = MIN_SPACING_M
+    problem: ViewProblem, views: ViewpointArrays, spacing_m: float = MIN_SPACING_M, n_fixed: int = 0
 ) -> ViewpointArrays:
     """Same views, those closer than `spacing_m` to others moved onto them where that loses (almost) no coverage.
 
-    Views at one place move together, so that each move leaves one place less.
+    Views at one place move together, so that each move leaves one place less. The first `n_fixed` views stay.
     """
     from scipy.spatial import cKDTree
 
@@ -41,8 +41,9 @@ def merge_close_views(
             if (positions[pair[0]] == positions[pair[1]]).all():
                 continue
             moves = [_Move.of(model, moved, *ends) for ends in (pair, pair[::-1])]
-            best = min(moves, key=lambda move: move.loss(counts))
-            if best.loss(counts) <= allowed_loss:
+            moves = [move for move in moves if move.movers[0] >= n_fixed]
+            best = min(moves, key=lambda move: move.loss(counts), default=None)
+            if best is not None and best.loss(counts) <= allowed_loss:
                 positions[best.movers] = best.place
                 counts += best.change
     return moved

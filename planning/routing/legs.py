@@ -82,10 +82,10 @@ class LegTable:
         points = np.concatenate([self.points_enu_m, self.roadmap.nodes_enu_m])[way[::-1]]
         # The vertical part above home is kept.
         first = 1 if start == 0 else 0
-        return np.concatenate([points[:first], _pull_tight(self.roadmap, points[first:], self.metric)])
+        return np.concatenate([points[:first], pull_tight(self.roadmap, points[first:], self.metric)])
 
 
-def _pull_tight(roadmap: Roadmap, points: Array, metric: LegMetric) -> Array:
+def pull_tight(roadmap: Roadmap, points: Array, metric: LegMetric) -> Array:
     """Drop vertices that a clear leg can skip, and move the others towards the line between their neighbours.
 
     None is moved closer to a neighbour than waypoints may be.
@@ -151,7 +151,7 @@ def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], me
     n, nodes = len(points), roadmap.nodes_enu_m
     all_points = np.concatenate([points, nodes])
     column = np.stack([np.zeros(roadmap.n_column, np.int64), n + np.arange(roadmap.n_column)], axis=1)
-    joined = _joined(roadmap, points[1:]) + np.array([1, n])
+    joined = joined_nodes(roadmap, points[1:]) + np.array([1, n])
     distance = np.where(straight, cdist(points, points), np.inf)
     nearest = np.argpartition(distance, min(ROADMAP_NEIGHBOURS, n) - 1, axis=1)[:, :ROADMAP_NEIGHBOURS]
     a = np.repeat(np.arange(n), nearest.shape[1])
@@ -163,7 +163,7 @@ def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], me
     return csr_array(coo_array((weight, (edges[:, 0], edges[:, 1])), shape=(size, size)))
 
 
-def _joined(roadmap: Roadmap, stops_enu_m: Array) -> NDArray[np.int64]:
+def joined_nodes(roadmap: Roadmap, stops_enu_m: Array) -> NDArray[np.int64]:
     """(stop, node) pairs, shape (p, 2), joined by a clear leg: nearest nodes, those above home, and hubs."""
     near = roadmap.nearest_clear(stops_enu_m, ROADMAP_NEIGHBOURS)
     lost = np.setdiff1d(np.arange(len(stops_enu_m)), near[:, 0])

@@ -80,6 +80,7 @@ def solve_orienteering(
     gain: CoverageGain,
     *,
     max_stops: int | None = None,
+    required: Sorties = (),
     seed: int = 0,
     max_rounds: int | None = None,
     stop: Stop = never,
@@ -103,6 +104,8 @@ def solve_orienteering(
         Worth of a set of stops, empty when handed over; holds the result's stops afterwards.
     max_stops
         Most stops in one sortie.
+    required
+        Stops that the selection must make, as sorties within all limits; they may end in other sorties.
     max_rounds
         Rounds of ruin and recreate; by default until `PATIENCE` brought nothing. With the seed they determine the
         result.
@@ -122,7 +125,10 @@ def solve_orienteering(
         raise ValueError(f"n_sorties: expected 1 or more, got {n_sorties}")
     if not (math.isfinite(budget_s) and budget_s > 0.0):
         raise ValueError(f"budget_s: expected a positive number, got {budget_s}")
+    if len(required) > n_sorties:
+        raise ValueError(f"required: expected at most {n_sorties} sorties, got {len(required)}")
     search = _Search(travel_s, service_s, budget_s, n_sorties, n if max_stops is None else max_stops, gain, seed)
+    search.require(required)
     trace = Trace() if trace is None else trace
     bound = search.bound()
     search.fill(1.0, np.ones(n))
@@ -183,6 +189,18 @@ class _Search:
         self.position = np.empty((n_sorties, n + 1), np.int64)
         for i in range(n_sorties):
             self._set_route(i, self.routes[i])
+        self.is_required = np.zeros(n + 1, np.bool_)
+        self.best = self._kept()
+
+    def require(self, sorties: Sorties) -> None:
+        """Begin with these sorties, and never take their stops out again."""
+        for i, sortie in enumerate(sorties):
+            route = np.array(sortie, np.int64) + 1
+            for place in route:
+                self.gain.add(int(place) - 1)
+            self.is_open[route] = False
+            self.is_required[route] = True
+            self._set_route(i, route)
         self.best = self._kept()
 
     def duration_s(self, route: Ints) -> float:
@@ -265,7 +283,7 @@ class _Search:
         else:
             out = self.rng.choice(places, n_out, replace=False)
         for i, route in enumerate(self.routes):
-            is_out = np.isin(route, out)
+            is_out = np.isin(route, out) & ~self.is_required[route]
             if is_out.any():
                 self.take_out(i, is_out)
 

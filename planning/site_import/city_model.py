@@ -17,7 +17,7 @@ from planning.progress import Monitor
 from planning.site_import.options import ImportOptions
 from planning.site_import.placement import Placement, place
 from planning.site_import.polygons import triangulate
-from planning.site_import.source import HOW_TO_GET_PANELS, SourceModel, SourceWindow
+from planning.site_import.source import HOW_TO_GET_PANELS, BuildingChoice, SourceModel, SourceWindow
 from planning.site_import.window_faces import pane_of_polygons
 
 Array = NDArray[np.float64]
@@ -122,12 +122,13 @@ def city_source(
     solid = [building for building in buildings if len(building.points())]
     if not solid:
         raise InputError(f"{path}: there is no building with surfaces in this file")
-    if not options.panel_grids and not any(building.windows for building in solid):
+    if options.panels_required and not options.panel_grids and not any(building.windows for building in solid):
         raise InputError(f"{path}: no building in this file has windows; {HOW_TO_GET_PANELS}")
     chosen, choice = _choose(path, solid, crs, options)
     placement = _placement(crs, merged(chosen).points(), options)
     local = merged(chosen).at(placement)
-    others = [building.at(placement) for building in solid if building not in chosen]
+    moved = [building.at(placement) for building in solid]
+    others = [building for building, original in zip(moved, solid, strict=True) if original not in chosen]
     near = _near(local, others, options.airspace_margin_m + NEIGHBOUR_REACH_M)
     meshes = []
     for done, building in enumerate([local, *near]):
@@ -148,7 +149,14 @@ def city_source(
         neighbours=join(meshes[1:]),
         placement=placement,
         notes=tuple(notes),
+        choices=tuple(_choice(building) for building in moved),
     )
+
+
+def _choice(building: CityBuilding) -> BuildingChoice:
+    """A building in local metres as one to choose."""
+    east, north, up = np.ptp(building.points(), axis=0).tolist()
+    return BuildingChoice(building.id, building.name, len(building.windows), (east, north, up))
 
 
 def _windows(building: CityBuilding) -> Iterator[SourceWindow]:
@@ -168,7 +176,10 @@ def _placement(crs: str | None, points: Array, options: ImportOptions) -> Placem
 def _choose(
     path: Path, buildings: list[CityBuilding], crs: str | None, options: ImportOptions
 ) -> tuple[list[CityBuilding], tuple[str, ...]]:
-    """The building named, the one that the panel grid is on, or the one with most windows and those beside it."""
+    """The building named, the one that the panel grid is on, or the one with most windows and those beside it.
+
+    Where none has windows and that is allowed, the one with the most surfaces.
+    """
     if options.building is not None:
         for building in buildings:
             if options.building in (building.id, *building.part_ids):
@@ -180,6 +191,9 @@ def _choose(
         nearest = _nearest(buildings, np.array(options.panel_grids[0].corners), crs, options)
         return [nearest], (f"the panel grid is on building '{nearest.id}'",)
     with_windows = sorted((b for b in buildings if b.windows), key=lambda b: -len(b.windows))
+    if not with_windows:
+        largest = max(buildings, key=lambda building: len(building.faces))
+        return [largest], (f"no building in the file has windows; '{largest.id}' has the most surfaces",)
     placement = _placement(crs, with_windows[0].points(), options)
     local = [building.at(placement) for building in with_windows]
     beside = _near(local[0], local[1:], JOINED_GAP_M)

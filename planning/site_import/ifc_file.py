@@ -50,7 +50,7 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
     """
     if len(triangles) == 0:
         raise InputError(f"{path}: no building element in this file has geometry")
-    if not content.pane_ids and not options.panel_grids:
+    if options.panels_required and not content.pane_ids and not options.panel_grids:
         raise InputError(f"{path}: there is neither a window nor a glazed plate with geometry; {HOW_TO_GET_PANELS}")
     points = triangles.reshape(-1, 3)
     georeference = ifc_georeference(content, options)

@@ -49,7 +49,7 @@ def import_site(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
         The file is missing, of another kind or broken, its place on earth is not known, it has no windows and no panel
         grid is stated, or a wish cannot be met; the message says what to do.
     """
-    return assemble(path, _read(path, options, monitor), options, monitor)
+    return assemble(path, read_source(path, options, monitor), options, monitor)
 
 
 def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: Monitor = QUIET) -> ImportedSite:
@@ -96,7 +96,14 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
     return ImportedSite(model, notes)
 
 
-def _read(path: Path, options: ImportOptions, monitor: Monitor) -> SourceModel:
+def read_source(path: Path, options: ImportOptions, monitor: Monitor = QUIET) -> SourceModel:
+    """Content of a file, whatever its format: what `assemble` makes a site of.
+
+    Raises
+    ------
+    InputError
+        As `import_site`.
+    """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise InputError(f"{path}: expected a file ending in {', '.join(SUFFIXES)}, got '{suffix}'")

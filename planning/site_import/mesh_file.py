@@ -26,7 +26,7 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
     InputError
         The file cannot be read or has no triangles, no panel grid is given, or the place is not known.
     """
-    if not options.panel_grids:
+    if options.panels_required and not options.panel_grids:
         raise InputError(
             f"{path}: a mesh does not tell windows from walls; state where the panels are, for example "
             "--panel-grid '0,0,0 36,0,0 0,0,42' --rows 14 --columns 20 (lower left, lower right and upper left corner "

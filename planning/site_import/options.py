@@ -64,6 +64,8 @@ class ImportOptions:
         (default 2 m above ground, and 30 m above the building's top).
     deflection_m
         Largest distance between a curved IFC surface and its triangles: smaller is truer and slower.
+    panels_required
+        Refuse a file that has no windows while no grid is stated. Without, it is read for looking at.
     """
 
     name: str | None = None
@@ -82,3 +84,4 @@ class ImportOptions:
     floor_m: float | None = None
     ceiling_m: float | None = None
     deflection_m: float = 0.005
+    panels_required: bool = True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +28,30 @@ MAX_SKEW = 0.05
 MAX_PANELS = 100_000
 
 
+class GridField(StrEnum):
+    """What the user stated about a grid."""
+
+    COUNTS = "counts"
+    CORNERS = "corners"
+    GAP = "gap"
+
+
+class PanelGridError(InputError):
+    """A grid that cannot be, or does not fit its building.
+
+    Attributes
+    ----------
+    field
+        What is wrong.
+    is_off_building
+        The grid lies too far from the building, so that units or axes may be to blame as well.
+    """
+
+    def __init__(self, field: GridField, message: str, *, is_off_building: bool = False) -> None:
+        super().__init__(message)
+        self.field, self.is_off_building = field, is_off_building
+
+
 class GridPanels(NamedTuple):
     """Corners of shape (m, 4, 3), ENU metres, counter-clockwise from outside, and what is worth knowing about them."""
 
@@ -35,67 +60,112 @@ class GridPanels(NamedTuple):
 
 
 def grid_panels(grid: PanelGrid, source: SourceModel, tolerance_m: float) -> GridPanels:
-    """Panels of a grid on a building.
+    """Panels of a grid on a building that is imported.
 
     Raises
     ------
     InputError
+        As `panels_on_building`; the message names the option that is wrong.
+    """
+    try:
+        return panels_on_building(
+            source.placement.enu(np.array(grid.corners)),
+            (grid.n_rows, grid.n_columns),
+            grid.gap_m,
+            source.building,
+            tolerance_m,
+        )
+    except PanelGridError as error:
+        options = {
+            GridField.COUNTS: f"--rows {grid.n_rows} --columns {grid.n_columns}",
+            GridField.CORNERS: f"--panel-grid {_text(grid)}",
+            GridField.GAP: f"--gap {grid.gap_m:g}",
+        }
+        advice = "; check the corners, --units and --up, or allow more with --grid-tolerance"
+        raise InputError(f"{options[error.field]}: {error}{advice if error.is_off_building else ''}") from error
+
+
+def panels_on_building(
+    rectangle_enu_m: Array, counts: tuple[int, int], gap_m: float, building: TriangleMesh, tolerance_m: float
+) -> GridPanels:
+    """Equal panels in a rectangle on a building.
+
+    Parameters
+    ----------
+    rectangle_enu_m
+        Lower left, lower right and upper left corner as seen from outside, shape (3, 3).
+    counts
+        Rows, one above the other, and columns.
+    gap_m
+        Width of the mullions between neighbouring panels.
+    tolerance_m
+        Largest distance of the panels from the building, in the median.
+
+    Raises
+    ------
+    PanelGridError
         The counts or the gap are impossible, the three corners make no rectangle, the grid is not on the building or
         looks into it; the message tells the angle or the distance measured.
     """
-    corners = _rectangle_panels(grid, source.placement.enu(np.array(grid.corners)))
-    if len(source.building.triangles) == 0:
+    corners = _rectangle_panels(rectangle_enu_m, counts, gap_m)
+    if len(building.triangles) == 0:
         return GridPanels(corners, ())
-    _check_distance(grid, corners, source.building, tolerance_m)
-    return GridPanels(corners, _check_side(grid, corners, source.building))
+    _check_distance(corners, building, tolerance_m)
+    return GridPanels(corners, _check_side(corners, building))
 
 
-def _rectangle_panels(grid: PanelGrid, rectangle: Array) -> Array:
+def _rectangle_panels(rectangle: Array, counts: tuple[int, int], gap_m: float) -> Array:
     """Panels of the grid, shape (m, 4, 3), from its lower left, lower right and upper left corner."""
-    if grid.n_rows < 1 or grid.n_columns < 1 or grid.n_rows * grid.n_columns > MAX_PANELS:
-        raise InputError(f"--rows {grid.n_rows} --columns {grid.n_columns}: expected 1 to {MAX_PANELS} panels in all")
+    n_rows, n_columns = counts
+    if n_rows < 1 or n_columns < 1 or n_rows * n_columns > MAX_PANELS:
+        raise PanelGridError(
+            GridField.COUNTS, f"expected 1 to {MAX_PANELS} panels in all, got {n_rows} rows and {n_columns} columns"
+        )
     low, right, up = rectangle
     across, along = right - low, up - low
     width_m, height_m = float(np.linalg.norm(across)), float(np.linalg.norm(along))
     if min(width_m, height_m) < MIN_SIDE_M:
-        raise InputError(f"--panel-grid {_text(grid)}: the rectangle is {width_m:.2f} x {height_m:.2f} m, no facade")
+        raise PanelGridError(
+            GridField.CORNERS, f"the rectangle is {width_m:.2f} x {height_m:.2f} m, no facade; place its corners apart"
+        )
     cosine = float(across @ along) / (width_m * height_m)
     if abs(cosine) > MAX_SKEW:
         angle_deg = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-        raise InputError(
-            f"--panel-grid {_text(grid)}: the angle at the lower left corner is {angle_deg:.0f} degrees; expected a "
-            "rectangle, given by its lower left, lower right and upper left corner as seen from outside"
+        raise PanelGridError(
+            GridField.CORNERS,
+            f"the angle at the lower left corner is {angle_deg:.0f} degrees; expected a rectangle, given by its lower "
+            "left, lower right and upper left corner as seen from outside",
         )
-    cell_m = (width_m / grid.n_columns, height_m / grid.n_rows)
-    if not 0.0 <= grid.gap_m <= min(cell_m) - MIN_SIDE_M:
-        raise InputError(
-            f"--gap {grid.gap_m:g} leaves no glass between the mullions: the grid's cells measure {cell_m[0]:.2f} x "
-            f"{cell_m[1]:.2f} m"
+    cell_m = (width_m / n_columns, height_m / n_rows)
+    if not 0.0 <= gap_m <= min(cell_m) - MIN_SIDE_M:
+        raise PanelGridError(
+            GridField.GAP,
+            f"a gap of {gap_m:g} m leaves no glass between the mullions: the grid's cells measure {cell_m[0]:.2f} x "
+            f"{cell_m[1]:.2f} m",
         )
     # Exactly at right angles, so that panels are rectangles: the lower edge stays, the side is straightened.
     along = along - across * (along @ across) / (across @ across)
     a, b, c = ((float(p[0]), float(p[1]), float(p[2])) for p in (low, right, low + along))
-    return np.array(
-        [p.corners_enu_m for p in panel_grid("grid", (a, b, c), grid.n_rows, grid.n_columns, grid.gap_m).panels]
-    )
+    return np.array([p.corners_enu_m for p in panel_grid("grid", (a, b, c), n_rows, n_columns, gap_m).panels])
 
 
-def _check_distance(grid: PanelGrid, corners: Array, building: TriangleMesh, tolerance_m: float) -> None:
+def _check_distance(corners: Array, building: TriangleMesh, tolerance_m: float) -> None:
     """The panels must lie on the building, by the median of their distances: scans have holes where there is glass."""
     centres = corners.mean(axis=1)
     distance = np.abs(Solids.of(building.corners_enu_m).clearance_m(centres))
     median_m = float(np.median(distance))
     if median_m > tolerance_m:
         points = building.corners_enu_m.reshape(-1, 3)
-        raise InputError(
-            f"--panel-grid {_text(grid)}: its panels lie {median_m:.1f} m from the building (median; nearest "
-            f"{distance.min():.1f} m, allowed {tolerance_m:g} m). In local metres the grid's middle is "
-            f"{_point(centres.mean(axis=0))} and the building reaches from {_point(points.min(axis=0))} to "
-            f"{_point(points.max(axis=0))}; check the corners, --units and --up, or allow more with --grid-tolerance"
+        raise PanelGridError(
+            GridField.CORNERS,
+            f"its panels lie {median_m:.1f} m from the building (median; nearest {distance.min():.1f} m, allowed "
+            f"{tolerance_m:g} m). In local metres the grid's middle is {_point(centres.mean(axis=0))} and the building "
+            f"reaches from {_point(points.min(axis=0))} to {_point(points.max(axis=0))}",
+            is_off_building=True,
         )
 
 
-def _check_side(grid: PanelGrid, corners: Array, building: TriangleMesh) -> tuple[str, ...]:
+def _check_side(corners: Array, building: TriangleMesh) -> tuple[str, ...]:
     """The panels must look outdoors."""
     normals, sight = unit_normals(corners), line_of_sight(building.corners_enu_m)
     front = corners.mean(axis=1) + OCCLUSION_OFFSET_M * normals
@@ -105,9 +175,10 @@ def _check_side(grid: PanelGrid, corners: Array, building: TriangleMesh) -> tupl
         return ()
     behind = open_shares(corners.mean(axis=1) - OCCLUSION_OFFSET_M * normals, -normals, sight)
     if 2 * n_blind > len(corners) and np.median(behind) > np.median(ahead) + UNDECIDED:
-        raise InputError(
-            f"--panel-grid {_text(grid)}: {n_blind} of {len(corners)} panels look into the building, and their backs "
-            "look out; name the corners as seen from outside (lower left, lower right, upper left)"
+        raise PanelGridError(
+            GridField.CORNERS,
+            f"{n_blind} of {len(corners)} panels look into the building, and their backs look out; name the corners as "
+            "seen from outside (lower left, lower right, upper left)",
         )
     return (
         f"{n_blind} of {len(corners)} panels of the grid see nothing of the open, as the mesh covers them: move the "

@@ -22,6 +22,14 @@ FAR_FROM_ZERO_M = 5_000.0
 """Coordinates further out are projected or shifted ones: their zero cannot be the place that --origin means."""
 
 
+NEWTON_STEPS = 5
+"""Of the way back from local to file coordinates."""
+
+SMALL_STEP = 1e-5
+"""Of file coordinates, for their derivatives: 1 m where they are degrees, and where they are metres still 10 000 times
+what rounding makes of UTM coordinates."""
+
+
 class Georeference(Protocol):
     """Brings file coordinates to WGS 84."""
 
@@ -73,15 +81,32 @@ class Placement:
         Of the file.
     ground_z_m
         Of the ground in local coordinates.
+    middle
+        A point of the building, file coordinates.
     """
 
     origin: Origin
     georeference: Georeference
     ground_z_m: float
+    middle: Vec3 = (0.0, 0.0, 0.0)
 
     def enu(self, coordinates: Array) -> Array:
         """Local ENU metres of file coordinates, shape (n, 3); every point is converted exactly."""
         return enu_from_geodetic(self.origin, *self.georeference.geodetic(coordinates))
+
+    def file_coordinates(self, points_enu_m: Array) -> Array:
+        """File coordinates of local ENU points near the building, shape (n, 3): the inverse of `enu`.
+
+        By Newton's method from the building's middle. The way between the two is a turn, a scale and the curvature of
+        the earth, so that every step gains some four digits; from 1 km away the result is good to 1e-8 m.
+        """
+        middle = np.array([self.middle])
+        probes = np.diag([SMALL_STEP, SMALL_STEP, 1.0])
+        file_from_enu = np.linalg.inv(np.linalg.inv(probes) @ (self.enu(middle + probes) - self.enu(middle)))
+        found = np.repeat(middle, len(points_enu_m), axis=0)
+        for _ in range(NEWTON_STEPS):
+            found = found + (points_enu_m - self.enu(found)) @ file_from_enu
+        return np.asarray(found)
 
 
 def place(
@@ -139,7 +164,7 @@ def place(
         origin = Origin(round(lat, 9), round(lon, 9), round(height, 4))
     except ValueError as error:
         raise InputError(f"the building would stand at an impossible place ({error}); check --crs and units") from error
-    return Placement(origin, found, 0.0)
+    return Placement(origin, found, 0.0, middle)
 
 
 def _named_origin(named: Origin, height_reference: HeightReference) -> tuple[Origin, str]:
@@ -155,11 +180,11 @@ def _at_named_origin(origin: Origin, note: str, far_m: float, middle: Vec3, nort
     """The file's zero at the origin, or the building's middle where the coordinates reach `far_m` too far from zero."""
     if far_m <= FAR_FROM_ZERO_M:
         notes = ("the file's zero point is at the origin you named", note)
-        return Placement(origin, LocalFrame(origin, north_rad=north_rad, notes=notes), middle[2])
+        return Placement(origin, LocalFrame(origin, north_rad=north_rad, notes=notes), middle[2], middle)
     notes = (
         f"the file's coordinates lie up to {far_m / 1000.0:.0f} km from zero, so the origin you named is taken as the "
         "middle of the building's footprint, on the ground; if they are projected coordinates, --crs converts them "
         "exactly (grid north is not true north)",
         note,
     )
-    return Placement(origin, LocalFrame(origin, middle, north_rad, notes), 0.0)
+    return Placement(origin, LocalFrame(origin, middle, north_rad, notes), 0.0, middle)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.frames import Vec3
 from planning.mesh import TriangleMesh
 from planning.site_import.placement import Placement
 
@@ -39,6 +40,28 @@ class SourceWindow:
     thickness_m: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class BuildingChoice:
+    """One of the buildings in a file, for the user to choose from.
+
+    Parameters
+    ----------
+    id
+        What `ImportOptions.building` takes.
+    name
+        As the file has it; may be the identifier.
+    n_windows
+        Windows that could become panels.
+    size_m
+        Extent to the east, to the north and upwards, metres.
+    """
+
+    id: str
+    name: str
+    n_windows: int
+    size_m: Vec3
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SourceModel:
     """Content of an imported file.
@@ -59,6 +82,8 @@ class SourceModel:
         The format may give one pane twice, as a window and as the plate that holds it; then only one becomes a panel.
     notes
         What the user should know about the reading.
+    choices
+        All buildings in the file, in its order; empty for formats that hold one.
     """
 
     name: str
@@ -68,3 +93,4 @@ class SourceModel:
     placement: Placement
     repeats_panes: bool = False
     notes: tuple[str, ...] = ()
+    choices: tuple[BuildingChoice, ...] = ()

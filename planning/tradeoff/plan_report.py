@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.tradeoff.curves import Answers, Curve, answers, answers_summary, mean_curve, seconds_text
 from planning.tradeoff.picture import Line, Panel
 from planning.tradeoff.plan_runs import (

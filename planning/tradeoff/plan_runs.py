@@ -15,15 +15,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import get_args
 
-from planning.coverage.model import Precision
 from planning.errors import InfeasibleError, InputError
 from planning.evaluate import coverage_counts
 from planning.methods import method_named
-from planning.optimise.greedy import GreedyParameters
 from planning.plan import Constraints, HistoryPoint
-from planning.planner import Planned, PlanRequest, plan_flight
+from planning.planner import Planned, plan_flight
 from planning.prepare import coverage_model
 from planning.progress import QUIET, Monitor, QualityPoint, Trace
+from planning.request import GreedyParameters, PlanRequest, Precision
 from planning.scenes import SCENES
 from planning.site import SiteModel
 from planning.space import free_space

@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
+from planning.request import PlanRequest
 from planning.scenes import SCENES
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import CURVED_VIEWS, PLANAR_VIEWS

@@ -15,7 +15,8 @@ from missions.to_plan import viewpoints_and_sorties
 from planning.frames import wrap_heading_rad
 from planning.plan import ViewpointArrays, viewpoint_arrays
 from planning.plan_file import write_plan
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
+from planning.request import PlanRequest
 from planning.scenes import write_scene
 from planning.site_file import read_site
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch

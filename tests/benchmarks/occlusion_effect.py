@@ -10,8 +10,9 @@ import numpy as np
 
 from planning.coverage.model import exact_coverage
 from planning.plan import Constraints, viewpoint_arrays
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
 from planning.reach_kernel import UNREACHABLE
+from planning.request import PlanRequest
 from planning.scenes import SCENES
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import prepared

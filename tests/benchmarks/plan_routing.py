@@ -10,7 +10,7 @@ import numpy as np
 from planning.catalogue import profile
 from planning.optimise.greedy import greedy
 from planning.plan import FlightRules
-from planning.planner import as_written
+from planning.plan_records import as_written
 from planning.progress import TimeLimit
 from planning.routing import vrp
 from planning.routing.flights import flight_times

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.scenes import SCENES
 from planning.tradeoff.curves import seconds_text
 from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, draw

@@ -10,7 +10,7 @@ import pytest
 
 from groundstation.cli.main import main
 from groundstation.services.planning import plan_site
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.scenes import write_scene
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -43,7 +43,7 @@ def reflight(capsys):
     """Run a command line in this process."""
 
     def run(*arguments):
-        status = main([str(argument) for argument in arguments], lambda: pytest.fail("the window was opened"))
+        status = main([str(argument) for argument in arguments], lambda _wish: pytest.fail("the window was opened"))
         captured = capsys.readouterr()
         return Done(status, captured.out, captured.err)
 

@@ -13,7 +13,7 @@ from planning.catalogue import profiles
 from planning.findings import is_flyable
 from planning.plan import FlightRules
 from planning.plan_file import read_plan
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.scenes import write_scene
 
 ENDINGS = {

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.cli.main import main
+from groundstation.cli.main import WindowWish, main
 from planning.errors import OperationCancelled
 from planning.scenes import write_scene
 from tests.cli.conftest import ROOT
@@ -22,7 +22,12 @@ def test_version_is_told(reflight):
 
 
 def test_without_a_command_the_window_opens():
-    assert main([], lambda: 7) == 7
+    wishes = []
+    assert main([], lambda wish: wishes.append(wish) or 7) == 7
+    assert main(["--screenshots", "shots", "--site", "a.json"], lambda wish: wishes.append(wish) or 0) == 0
+    assert wishes == [WindowWish(), WindowWish(None, Path("shots"), Path("a.json"))]
+    assert main(["--site", "a.json"], lambda _wish: 0) == 2
+    assert main(["--open", "project", "demo"], lambda _wish: 0) == 2
 
 
 @pytest.mark.parametrize(

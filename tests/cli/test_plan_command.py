@@ -96,6 +96,29 @@ def test_the_same_seed_gives_the_same_views(reflight, pane, tmp_path):
     assert plans[0].viewpoints == plans[1].viewpoints
 
 
+def test_locked_viewpoints_of_another_plan_are_kept(reflight, pane, changed, tmp_path):
+    site, out = pane / "site.json", tmp_path / "new.json"
+    old = changed(pane / "plan.json", "viewpoints", 2, "locked", True)
+    told = plan_json(reflight, site, out, "--views", 5, "--seed", 4, "--keep", old)
+    kept = [viewpoint for viewpoint in read_plan(out).viewpoints if viewpoint.locked]
+    assert kept == [read_plan(old).viewpoints[2]]
+    assert told["views"] == 5
+    assert reflight("check", out, site).status == 0
+    again = plan_json(reflight, site, out, "--coverage", 0.2, "--keep", out)
+    assert again["views"] >= 1
+    assert [viewpoint for viewpoint in read_plan(out).viewpoints if viewpoint.locked] == kept
+    two = changed(old, "viewpoints", 3, "locked", True)
+    assert "--views: expected at least the 2 locked ones, got 1" in (
+        reflight("plan", site, "-o", out, "--views", 1, "--keep", two).error
+    )
+    assert "none of the viewpoints is locked" in reflight("plan", site, "-o", out, "--keep", pane / "plan.json").error
+    assert "'orbit' cannot keep locked viewpoints" in (
+        reflight("plan", site, "-o", out, "--method", "orbit", "--keep", old).error
+    )
+    beside = changed(old, "viewpoints", 2, "position_enu_m", [0.0, -1.0, 10.0])
+    assert "is locked, but cannot be flown: it is" in reflight("plan", site, "-o", out, "--keep", beside).error
+
+
 def test_less_than_was_asked_for_is_said(reflight, pane, tmp_path):
     out = tmp_path / "plan.json"
     done = reflight("plan", pane / "site.json", "-o", out, "--method", "noto", "--coverage", 0.9, *QUICK)

@@ -8,7 +8,7 @@ import pytest
 from groundstation.services.autosave import Autosave
 from groundstation.services.project import open_project
 from groundstation.services.project_lock import lock_project
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from tests.services.test_autosave import AtOnce, edited
 from tests.services.test_project import files_of
 

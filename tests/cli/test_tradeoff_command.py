@@ -7,7 +7,8 @@ import pytest
 
 from groundstation.cli.main import main
 from planning.plan_file import read_plan, write_plan
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
+from planning.request import PlanRequest
 from planning.scenes import write_scene
 from planning.site_file import read_site
 
@@ -26,7 +27,7 @@ EOF
 
 
 def command(*arguments):
-    return main(["tradeoff", *map(str, arguments)], lambda: 9)
+    return main(["tradeoff", *map(str, arguments)], lambda _wish: 9)
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,6 @@
 """One application for all window tests, on a virtual screen of its own."""
 
+import gc
 import shutil
 import sys
 
@@ -19,3 +20,17 @@ def application():
     from PySide6.QtWidgets import QApplication
 
     return QApplication(["reflight-tests"])
+
+
+@pytest.fixture(scope="package", autouse=True)
+def _garbage_stays_in_this_thread():
+    """As the running window has it (`groundstation.gui.garbage`): widgets must not be freed on the threads of jobs."""
+    gc.disable()
+    yield
+    gc.enable()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _garbage_goes_between_modules():
+    yield
+    gc.collect()

@@ -1,138 +1,161 @@
-"""The window does the main job: open, look, plan, cancel, stop, check, export."""
+"""The window does the main job: open, look, plan, stop, cancel, undo, save; and answers while it works."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from groundstation.services.jobs import JobRunner
-from missions.formats import read_missions
-from missions.model import FileFormat
-from planning.planner import PlanRequest
-from planning.scenes import write_scene
+from groundstation.services.document import Item, ItemKind
+from groundstation.services.settings import Language, Theme
+from groundstation.services.units import UnitSystem
+from planning.request import PlanRequest
+from tests.gui.driving import Answers, turn_until, turn_until_idle
 
 
 @pytest.fixture
-def window(application):
-    from groundstation.gui.main_window import MainWindow
+def desk(application, tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
+    from groundstation.gui.desk import Desk
 
-    runner = JobRunner()
-    window = MainWindow(runner)
-    window.resize(1200, 800)
-    window.show()
-    yield window
-    window.close()
-    runner.shutdown()
+    desk = Desk(application, Answers())
+    desk.show()
+    desk.window.setGeometry(0, 0, 1280, 720)
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    yield desk
+    desk.window.close()
+    desk.close()
 
 
-def run_until_idle(application, window, timeout_s=60.0):
-    """Process events until no job runs; returns the longest time the window did not answer."""
-    end, last, longest = time.perf_counter() + timeout_s, time.perf_counter(), 0.0
-    while window.is_busy():
+def opened(application, desk, scene):
+    desk.window.show_tab("site")
+    desk.window.tab("site").left.opener.open_bundled(scene)
+    turn_until_idle(application, desk)
+
+
+def planned(application, desk, request):
+    desk.window.show_tab("plan")
+    page = desk.window.tab("plan")
+    page.desk.set_request(request)
+    page.desk.plan()
+    turn_until_idle(application, desk)
+    return page
+
+
+def test_window_opens_a_site_plans_it_and_shows_both(application, desk):
+    opened(application, desk, "roof")
+    scene = desk.window.stage.scene()
+    desk.window.show_tab("plan")
+    turn_until_idle(application, desk)
+    empty = scene.screenshot()
+    page = planned(application, desk, PlanRequest(n_views=12, time_budget_s=5.0))
+    assert "roof: panels 32" in desk.window.messages.texts()
+    assert "Views: 12, sorties: 1" in desk.window.messages.texts()
+    assert page.verdict().startswith("Ready to fly")
+    assert page.effects.card("occlusion").text().splitlines()[1] == "is off"
+    scene.look_at_all()
+    shown = scene.screenshot()
+    assert (empty.std(axis=(0, 1)) > 5).all(), "the site is not drawn"
+    assert np.count_nonzero((empty != shown).any(axis=2)) > 500, "the plan is not drawn"
+
+
+def test_every_tab_can_be_shown_and_fits_a_small_screen(application, desk):
+    for name in desk.window.tab_names():
+        desk.window.show_tab(name)
         application.processEvents()
-        now = time.perf_counter()
-        longest, last = max(longest, now - last), now
-        assert now < end, "the job did not end"
-        time.sleep(0.002)
-    for _ in range(5):
-        application.processEvents()
-    return longest
+        assert desk.window.shown_tab() == name
+        size = desk.window.minimumSizeHint()
+        assert size.width() <= 1280, name
+        assert size.height() <= 720, name
+    assert desk.window.tab_names() == ("site", "plan", "mission", "fly", "photos", "reconstruct", "model")
 
 
-def opened(application, window, scene, folder):
-    window.open_site(write_scene(scene, folder))
-    run_until_idle(application, window)
-
-
-def test_window_opens_plans_checks_and_exports_a_site(application, window, tmp_path):
-    opened(application, window, "roof", tmp_path)
-    assert "roof: 32 panels" in window.messages()
-    before = window.view().screenshot()
-    window.form().setValue(PlanRequest(n_views=12, time_budget_s=5.0))
-    window.plan()
-    run_until_idle(application, window)
-    assert "12 views, sorties: 1" in window.messages()
-    assert "occlusion: off" in window.messages()
-    after = window.view().screenshot()
-    assert (before.std(axis=(0, 1)) > 5).all(), "the site is not drawn"
-    assert np.count_nonzero((before != after).any(axis=2)) > 500, "the plan is not drawn"
-    window.check()
-    run_until_idle(application, window)
-    assert "ready to fly" in window.messages()
-    window.export(tmp_path / "roof.kmz", FileFormat.DJI_KMZ)
-    run_until_idle(application, window)
-    assert read_missions(tmp_path / "roof.kmz")[0].n_photos == 12
-
-
-def test_window_answers_while_a_plan_runs_and_cancel_throws_it_away(application, window, tmp_path):
-    opened(application, window, "library", tmp_path)
-    window.form().setValue(PlanRequest(n_views=60, time_budget_s=60.0))
-    window.plan()
-    longest, end = 0.0, time.perf_counter() + 1.5
-    while time.perf_counter() < end and window.is_busy():
-        started = time.perf_counter()
-        application.processEvents()
-        longest = max(longest, time.perf_counter() - started)
-    window._cancel_job()
-    run_until_idle(application, window)
-    assert "Plan cancelled" in window.messages()
-    assert "views, sorties" not in window.messages()
-    assert longest < 0.5
-
-
-def test_good_enough_keeps_the_best_so_far(application, window, tmp_path):
-    opened(application, window, "office", tmp_path)
-    window.form().setValue(PlanRequest(n_views=40, time_budget_s=60.0))
+def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application, desk):
+    opened(application, desk, "library")
+    desk.window.show_tab("plan")
+    page = desk.window.tab("plan")
+    page.desk.set_request(PlanRequest(n_views=60, time_budget_s=60.0))
+    page.desk.plan()
+    turn_until(application, lambda: desk.workspace.jobs()[0].state.name == "RUNNING")
+    desk.window.job_bar.cancel_running()
+    turn_until_idle(application, desk)
+    assert "Plan: cancelled" in desk.window.messages.texts()
+    assert desk.workspace.document.plans == ()
+    assert not page.desk.is_planning
+    page.desk.plan()
+    turn_until(application, lambda: "sections" in page.chart.text())
+    assert "any flight could cover" in page.chart.text(), "the bound is known while the plan runs"
     started = time.perf_counter()
-    window.plan()
-    while window.is_busy() and time.perf_counter() - started < 3.0:
-        application.processEvents()
-    window._stop_here()
-    run_until_idle(application, window)
-    assert "40 views, sorties: 1" in window.messages()
+    page.desk.stop_here()
+    turn_until_idle(application, desk)
     assert time.perf_counter() - started < 20.0
+    assert len(desk.workspace.document.current.plan.viewpoints) >= 1
 
 
-def test_errors_say_what_to_do_and_leave_the_window_usable(application, window, tmp_path):
-    broken = tmp_path / "broken.json"
-    broken.write_text("{}")
-    window.open_site(broken)
-    run_until_idle(application, window)
-    assert "failed" in window.messages()
-    assert "missing required field" in window.messages()
-    opened(application, window, "single-panel", tmp_path)
-    assert "single-panel: 1 panels" in window.messages()
+def test_editing_by_hand_shows_at_once_and_can_be_undone(application, desk):
+    opened(application, desk, "roof")
+    page = planned(application, desk, PlanRequest(n_views=8, time_budget_s=4.0))
+    before = desk.workspace.document.current.plan
+    viewpoint = before.viewpoints[3]
+    desk.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+    page.desk.set_viewpoint(replace(viewpoint, position_enu_m=(0.0, 0.0, 14.0)))
+    assert page.verdict().startswith("NOT ready to fly"), "without a turn of the event loop"
+    assert viewpoint.id in {f.place for f in page.desk.in_hand.revision.findings if f.severity == "error"}
+    desk.workspace.session.undo()
+    assert desk.workspace.document.current.plan is before
+    assert page.verdict().startswith("Ready to fly")
+    page.viewpoint.toggle_lock()
+    locked = desk.workspace.document.current.viewpoint(viewpoint.id)
+    assert locked.locked
+    page.viewpoint.delete_viewpoint()
+    assert "locked" in desk.window.messages.texts()
+    page.viewpoint.add_viewpoint()
+    assert len(desk.workspace.document.current.plan.viewpoints) == 9
+    again = planned(application, desk, PlanRequest(n_views=6, time_budget_s=4.0))
+    assert locked in again.desk.in_hand.plan.viewpoints
 
 
-def test_form_gives_back_the_request_it_was_given(application):
-    from groundstation.gui.plan_form import PlanForm
-
-    form = PlanForm()
-    heard = []
-    form.valueChanged.connect(heard.append)
-    for request in (
-        PlanRequest(share=0.95),
-        PlanRequest(n_views=77, method="pso", seed=5),
-        PlanRequest(n_batteries=3, profile_id="m30", time_budget_s=12.0),
-    ):
-        form.setValue(request)
-        assert form.value() == request
-    heard.clear()
-    form._wind.setValue(4.5)
-    assert heard[-1].rules.wind_m_s == 4.5
-    assert heard[-1].seed == 0
+def test_plans_are_compared_side_by_side(application, desk):
+    opened(application, desk, "roof")
+    planned(application, desk, PlanRequest(n_views=8, time_budget_s=4.0))
+    page = planned(application, desk, PlanRequest(method="noto", share=0.9, time_budget_s=4.0))
+    page.lists.compare(tuple(entry.id for entry in desk.workspace.document.plans))
+    turn_until_idle(application, desk)
+    window = page.lists.compare_window
+    table = window.table()
+    assert table.columnCount() == 2
+    assert table.item(0, 0).text().startswith("8")
+    first, second = window.scenes()
+    first.orbitChanged.emit(first.orbit().turned(30.0, 5.0))
+    assert second.orbit() == first.orbit().turned(30.0, 5.0)
+    window.close()
 
 
-def test_qt_calls_leave_reference_counts_alone(application):
-    """PySide6 6.12.0 takes one reference of None with every call on Python 3.11, and aborts after minutes."""
-    import sys
+def test_theme_units_and_language_change_at_once_and_are_kept(application, desk):
+    from groundstation.services.settings import read_settings, settings_path
 
-    from PySide6.QtWidgets import QLabel
+    opened(application, desk, "roof")
+    light = desk.window.grab().toImage().pixelColor(5, 5).lightness()
+    desk.choose(theme=Theme.DARK)
+    application.processEvents()
+    assert desk.window.grab().toImage().pixelColor(5, 5).lightness() < light / 2
+    desk.window.show_tab("plan")
+    desk.choose(units=UnitSystem.IMPERIAL)
+    assert desk.window.tab("plan").form._distance.box().text() == "32.8 ft"
+    desk.choose(language=Language.GERMAN)
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    assert desk.window.shown_tab() == "plan"
+    titles = [spec.shown_title() for spec in desk.window.specs()]
+    assert "Planung" in titles
+    desk.choose(language=Language.ENGLISH, theme=Theme.LIGHT, units=UnitSystem.METRIC)
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    kept = read_settings(settings_path())
+    assert (kept.theme, kept.units, kept.language) == (Theme.LIGHT, UnitSystem.METRIC, Language.ENGLISH)
 
-    label = QLabel()
-    before = sys.getrefcount(None), sys.getrefcount(False)
-    for _ in range(500):
-        label.setText("x")
-        label.isVisible()
-    after = sys.getrefcount(None), sys.getrefcount(False)
-    assert all(abs(b - a) < 100 for a, b in zip(before, after, strict=True))
+
+def test_every_action_has_a_name_and_no_key_is_given_twice(application, desk):
+    for name in desk.window.tab_names():
+        desk.window.show_tab(name)
+    keys = [line.split("\t")[0] for line in desk.menus.shortcuts_text().splitlines()]
+    assert len(keys) == len(set(keys))
+    assert {"Ctrl+S", "Ctrl+Z", "Ctrl+P", "F1", "Ctrl+1"} <= set(keys)

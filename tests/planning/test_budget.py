@@ -18,12 +18,13 @@ from planning.coverage.sections import SectionGrid, panel_frames
 from planning.errors import InfeasibleError, OperationCancelled
 from planning.optimise.budget import best_flights, views_within_budget
 from planning.optimise.candidates import Pool, candidate_pool, keep
-from planning.optimise.greedy import GreedyParameters, element_weights
+from planning.optimise.greedy import element_weights
 from planning.optimise.problem import ViewProblem, take
 from planning.plan import Constraints, FlightRules, ViewpointArrays
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
 from planning.progress import QUIET, Monitor, TimeLimit, Trace
 from planning.reachability import find_reachable
+from planning.request import GreedyParameters, PlanRequest
 from planning.routing.flights import Flight, flight_times
 from planning.routing.roadmap import build_roadmap
 from planning.scenes import SCENES

@@ -12,9 +12,9 @@ import pytest
 from planning.checks import RULES, check_plan
 from planning.errors import OperationCancelled
 from planning.findings import Finding, Severity, is_flyable
-from planning.optimise.greedy import GreedyParameters
 from planning.plan import Constraints, FlightRules, Plan, Sortie, Viewpoint
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
+from planning.request import GreedyParameters, PlanRequest
 from planning.site import Airspace, NoFlyZone, Obstacle, SiteModel
 from tests.planning.plan_cases import kiosk, seen_by_contract
 

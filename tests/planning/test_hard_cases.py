@@ -22,9 +22,9 @@ from planning.errors import InfeasibleError
 from planning.findings import is_flyable
 from planning.frames import Vec3
 from planning.mesh import TriangleMesh, empty_mesh
-from planning.optimise.greedy import GreedyParameters
 from planning.plan import Constraints, Plan, ViewpointArrays, viewpoint_arrays
-from planning.planner import Planned, PlanRequest, plan_flight
+from planning.planner import Planned, plan_flight
+from planning.request import GreedyParameters, PlanRequest
 from planning.scenes import SCENES
 from planning.site import Airspace, Facade, NoFlyZone, Panel, SiteModel, panel_corners
 from tests.planning.plan_cases import kiosk, seen_by_contract

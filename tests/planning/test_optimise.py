@@ -15,7 +15,7 @@ from planning.errors import InfeasibleError, OperationCancelled
 from planning.optimise import cover_kernel as kernel
 from planning.optimise.bounds import dual_bound, exact_optimum
 from planning.optimise.candidates import candidate_pool
-from planning.optimise.greedy import GreedyParameters, choose_greedily, element_weights, greedy
+from planning.optimise.greedy import choose_greedily, element_weights, greedy
 from planning.optimise.improve import Exchange, cover_state
 from planning.optimise.noto import noto
 from planning.optimise.orbit import orbit
@@ -24,6 +24,7 @@ from planning.optimise.pso import PsoParameters, pso
 from planning.optimise.refine import refine_views
 from planning.progress import QUIET, TimeLimit, Trace, never
 from planning.reachability import find_reachable
+from planning.request import GreedyParameters
 from planning.routing.roadmap import build_roadmap
 from planning.scenes import SCENES
 from planning.site import Airspace, panel_corners

@@ -17,11 +17,11 @@ from planning.catalogue import profile
 from planning.checks import check_plan
 from planning.errors import InfeasibleError, InputError, OperationCancelled
 from planning.findings import Severity, is_flyable
-from planning.optimise.greedy import GreedyParameters
 from planning.plan import Constraints, FlightRules, Plan
 from planning.plan_file import plan_to_json
-from planning.planner import Planned, PlanRequest, plan_flight, share_out_anew
+from planning.planner import Planned, plan_flight, share_out_anew
 from planning.progress import StopRequest, Trace
+from planning.request import GreedyParameters, PlanRequest
 from planning.scenes import SCENES
 from planning.site import SiteModel
 from tests.planning.plan_cases import (

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from planning.errors import InputError, OperationCancelled
 from planning.evaluate import coverage_counts
-from planning.optimise.greedy import GreedyParameters
 from planning.plan import Constraints
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
 from planning.prepare import coverage_model
 from planning.progress import QualityPoint
+from planning.request import GreedyParameters, PlanRequest
 from planning.routing.tour import tour_length
 from planning.scenes import SCENES
 from planning.space import free_space

@@ -14,7 +14,7 @@ from groundstation.services.document import Document, PlanEntry
 from groundstation.services.project_site import same_site
 from planning.catalogue import profile
 from planning.plan import Constraints, Coverage, FlightRules, HistoryPoint, Plan, Sortie, Viewpoint
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.scenes import SCENES
 from tests.planning.plan_cases import kiosk
 

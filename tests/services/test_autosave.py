@@ -23,7 +23,7 @@ from groundstation.services.recovery import (
     recover,
 )
 from planning.errors import InputError
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.scenes import write_scene
 from planning.site_file import read_site
 from tests.services.project_cases import (

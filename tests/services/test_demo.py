@@ -7,7 +7,7 @@ from missions.model import FileFormat
 from planning.errors import InputError, OperationCancelled
 from planning.findings import is_flyable
 from planning.plan_file import read_plan
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 
 
 def test_all_files_are_made_and_the_plan_is_ready_to_fly(tmp_path):

@@ -12,7 +12,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.model import FileFormat
 from planning.errors import InputError
 from planning.plan_file import read_plan
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.scenes import SCENES, write_scene
 from planning.site_file import write_site
 

@@ -1,16 +1,25 @@
 """Use cases around plans: planning writes what it returns, checks look at files."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
-from groundstation.services.planning import check_files, finding_summary, plan_site, planned_summary
+from groundstation.services.planning import (
+    check_files,
+    finding_summary,
+    locked_viewpoints,
+    plan_document_site,
+    plan_site,
+    planned_summary,
+)
 from planning.errors import InfeasibleError, InputError, OperationCancelled
 from planning.findings import Finding, Severity, is_flyable
 from planning.plan import Constraints
-from planning.plan_file import read_plan
-from planning.planner import PlanRequest
+from planning.plan_file import read_plan, write_plan
+from planning.request import PlanRequest
 from planning.scenes import write_scene
+from planning.site_file import read_site
 
 
 @pytest.fixture
@@ -79,3 +88,28 @@ def test_summaries_are_json(site):
         "limit": 2.0,
         "unit": "m",
     }
+
+
+def test_planning_an_open_site_again_uses_what_the_first_plan_prepared_where_it_fits(site):
+    model, request = read_site(site), PlanRequest(n_views=3, time_budget_s=5.0)
+    first = plan_document_site(model, request)
+    again = plan_document_site(model, replace(request, n_views=4), first.prepared)
+    assert again.prepared is first.prepared
+    for other in (replace(request, seed=1), replace(request, constraints=Constraints(min_distance_m=8.0))):
+        assert plan_document_site(model, other, first.prepared).prepared is not first.prepared
+    cut_short = replace(first.prepared, is_cut_short=True)
+    assert plan_document_site(model, request, cut_short).prepared is not cut_short
+    assert [found.code for found in plan_document_site(model, replace(request, n_views=2000)).findings] == [
+        "fewer-views"
+    ]
+
+
+def test_locked_viewpoints_are_read_from_a_plan_that_has_some(site, tmp_path):
+    path = tmp_path / "plan.json"
+    plan = plan_site(site, PlanRequest(n_views=3, time_budget_s=5.0), path).plan
+    with pytest.raises(InputError, match=r"plan\.json: none of the viewpoints is locked"):
+        locked_viewpoints(path)
+    held = replace(plan.viewpoints[1], locked=True)
+    write_plan(path, replace(plan, viewpoints=(plan.viewpoints[0], held, plan.viewpoints[2])))
+    assert locked_viewpoints(path) == (held,)
+    assert path.read_text().count("locked") == 1

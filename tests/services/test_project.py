@@ -18,7 +18,7 @@ from planning.checks import check_plan
 from planning.errors import InputError
 from planning.mesh import TriangleMesh, box_mesh, read_mesh
 from planning.plan_file import read_plan, write_plan
-from planning.planner import PlanRequest
+from planning.request import PlanRequest
 from planning.scenes import SCENES, write_scene
 from planning.site import Obstacle
 from planning.site_file import read_site

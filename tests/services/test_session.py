@@ -7,7 +7,8 @@ import pytest
 
 from groundstation.services.document import Document, Item, ItemKind, PlanEntry, exists
 from groundstation.services.session import Session
-from planning.planner import PlanRequest, plan_flight
+from planning.planner import plan_flight
+from planning.request import PlanRequest
 from tests.planning.plan_cases import kiosk
 
 FOLDER = Path("project")

@@ -6,6 +6,7 @@ import argparse
 import math
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,8 @@ from groundstation.cli.options import add_profile_argument, in_words_of_options,
 from planning.errors import InputError
 
 if TYPE_CHECKING:
-    from planning.planner import Planned, PlanRequest
+    from planning.planner import Planned
+    from planning.request import PlanRequest
 
 EPILOG = """how much is wanted (one of):
   --views N         so many views
@@ -24,6 +26,7 @@ examples:
   plan office.site.json -o office.plan.json
   plan office.site.json -o office.plan.json --views 560 --time-budget 20
   plan tower.site.json -o tower.plan.json --batteries 2 --profile m4e --wind 6
+  plan office.site.json -o new.plan.json --views 560 --keep office.plan.json
 """
 
 MAX_CANDIDATES = 1_000_000
@@ -45,6 +48,7 @@ def add_parser(subparsers: Any) -> None:
     add("site", type=Path, metavar="SITE", help="site file")
     add("-o", "--out", type=Path, required=True, metavar="PLAN", help="plan file to write")
     add("--json", action="store_true", help="print one JSON object instead of text")
+    add("--keep", type=Path, metavar="PLAN", help="keep the locked viewpoints of this plan (method greedy only)")
     add_request_arguments(parser)
 
 
@@ -89,10 +93,8 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
     InputError
         A value is out of range.
     """
-    from planning.optimise.candidates import N_CANDIDATES
-    from planning.optimise.greedy import GreedyParameters
     from planning.plan import Constraints, FlightRules
-    from planning.planner import PlanRequest
+    from planning.request import N_CANDIDATES, GreedyParameters, PlanRequest
 
     n_candidates = N_CANDIDATES if options.candidates is None else options.candidates
     if not 1 <= n_candidates <= MAX_CANDIDATES:
@@ -145,10 +147,13 @@ def _max_distance_m(options: argparse.Namespace) -> float | None:
 def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
     from groundstation.cli.console import print_findings, print_json, print_next, run_job
-    from groundstation.services.planning import plan_site, planned_summary
+    from groundstation.services.planning import locked_viewpoints, plan_site, planned_summary
 
     started = time.perf_counter()
     request = request_of(options)
+    if options.keep is not None:
+        with in_words_of_options():
+            request = replace(request, locked=locked_viewpoints(options.keep))
     planned = run_job(
         "plan",
         lambda context: plan_site(

@@ -1,0 +1,68 @@
+"""`brief`: the flight brief for the pilot, as one HTML page to be printed."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+SUFFIXES = (".html", ".htm")
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "brief",
+        help="write the flight brief: sorties, times, batteries, findings, map",
+        description="Write what the pilot needs on paper as one HTML page, which any browser prints. The window makes "
+        "a PDF of it (Mission, Flight brief), with the map under it where one is loaded.",
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("plan", type=Path, metavar="PLAN", help="plan file")
+    parser.add_argument("site", type=Path, metavar="SITE", help="site file")
+    parser.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="HTML file to write")
+    parser.add_argument(
+        "--units", choices=("metric", "imperial"), default="metric", help="imperial is laid out for Letter"
+    )
+    parser.add_argument("--paper", choices=("a4", "letter"), help="paper size (default: by the units)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the brief; returns the exit status."""
+    from datetime import date
+
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.brief_html import brief_html, brief_pictures, sources_in_page
+    from groundstation.services.flight_brief import flight_brief
+    from groundstation.services.jobs import JobContext
+    from groundstation.services.preflight import preflight
+    from groundstation.services.units import UnitSystem
+    from planning.errors import InputError
+    from planning.json_file import check_output, write_atomically
+    from planning.plan_file import read_plan
+    from planning.site_file import read_site
+
+    if options.out.suffix.lower() not in SUFFIXES:
+        raise InputError(
+            f"{options.out}: expected a name that ends in .html; a PDF is made from the window (Mission, Flight brief) "
+            "or by printing the page in a browser"
+        )
+    check_output(options.out, [options.plan, options.site])
+    plan, site_model = read_plan(options.plan), read_site(options.site)
+    units = UnitSystem(options.units)
+
+    def work(context: JobContext) -> tuple[str, bool, int]:
+        found = preflight(plan, site_model, context)
+        brief = flight_brief(site_model, plan, found.findings, date.today().isoformat(), options.plan.name)
+        sources = sources_in_page(brief_pictures(site_model, plan, units))
+        is_letter = None if options.paper is None else options.paper == "letter"
+        return brief_html(brief, units, sources, is_letter=is_letter), brief.is_flyable, len(brief.findings)
+
+    page, is_flyable, n_findings = run_job("brief", work)
+    write_atomically(options.out, page.encode())
+    if options.json:
+        print_json({"file": str(options.out), "flyable": is_flyable, "findings": n_findings})
+    else:
+        print(options.out)
+    return 0

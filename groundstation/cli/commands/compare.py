@@ -1,0 +1,83 @@
+"""`compare`: two or more plans of one site side by side."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from planning.insight.comparison import Comparison
+
+EPILOG = """A star marks the better value. Coverage of all plans is counted in one way: under the constraints
+of the first.
+
+example:
+  compare greedy.plan.json pso.plan.json --site office.site.json
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "compare",
+        help="compare two or more plans of one site",
+        description="Put plans side by side: effort, coverage, pixel sizes, clearance and findings.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    # The first on its own, so that one plan alone is wrong usage.
+    parser.add_argument("first", type=Path, metavar="PLAN", help="plan file; its constraints hold for all")
+    parser.add_argument("others", type=Path, nargs="+", metavar="PLAN", help="plan files to compare it with")
+    parser.add_argument("--site", type=Path, required=True, metavar="SITE", help="site file of all plans")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compare and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.comparison import compare_files, comparison_summary
+
+    paths = [options.first, *options.others]
+    comparison = run_job("compare", lambda context: compare_files(paths, options.site, context))
+    if options.json:
+        print_json(comparison_summary(comparison))
+    else:
+        print("\n".join(table_lines(comparison)))
+    return 0
+
+
+def table_lines(comparison: Comparison) -> list[str]:
+    """The table as text, a column a plan."""
+    constraints = comparison.constraints
+    lines = [["", *comparison.names]]
+    for row in comparison.rows:
+        cells = (
+            _cell(value, row.unit) + ("*" if number in row.best else " ") for number, value in enumerate(row.values)
+        )
+        lines.append([row.label, *cells])
+    widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
+    text = [
+        "  ".join([line[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(line[1:], widths[1:], strict=True))]).rstrip()
+        for line in lines
+    ]
+    measured = (
+        f"coverage of all plans: {constraints.section_step_deg:g} degree sections, {constraints.min_distance_m:g} m "
+        f"minimum distance, occlusion {constraints.occlusion}"
+    )
+    return [*text, measured, *(f"note: {note}" for note in comparison.notes)]
+
+
+def _cell(value: float | None, unit: str) -> str:
+    if value is None:
+        return "-"
+    if unit == "share":
+        return f"{100.0 * value:.2f} %"
+    if unit == "s":
+        return f"{value / 60.0:.1f} min" if value >= 60.0 else f"{value:.1f} s"
+    if unit == "m/px":
+        return f"{1000.0 * value:.2f} mm"
+    if unit == "m":
+        return f"{value:.2f} m"
+    return f"{value:g}"

@@ -1,0 +1,94 @@
+"""What lies over the preview of a photo: cross, horizon, figures, and the flash of the shutter."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QWidget
+
+from groundstation.gui.theme import colours
+from groundstation.gui.view3d.pinhole import Pinhole
+
+CROSS_PX = 14.0
+FLASH_OPACITY = 150
+HORIZON = "#d55e00"
+"""Vermilion, which building, sky and panels have nothing of."""
+
+
+class PhotoOverlay(QWidget):
+    """Transparent for the mouse."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
+        self._view: Pinhole | None = None
+        self._text = ""
+        self._is_flashing = False
+
+    def show_photo(self, view: Pinhole | None, text: str) -> None:
+        """Draw for a view; None draws nothing but the text."""
+        self._view, self._text = view, text
+        self.update()
+
+    def flash(self, is_on: bool) -> None:
+        """Whiten the picture as long as the shutter is open."""
+        if is_on != self._is_flashing:
+            self._is_flashing = is_on
+            self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """Draw everything."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self._is_flashing:
+            painter.fillRect(self.rect(), QColor(255, 255, 255, FLASH_OPACITY))
+        if self._view is not None:
+            self._paint_horizon(painter, self._view)
+            self._paint_cross(painter)
+        if self._text:
+            self._paint_plate(painter, self._text, QPointF(8.0, 8.0))
+        painter.end()
+
+    def _paint_cross(self, painter: QPainter) -> None:
+        x, y = 0.5 * self.width(), 0.5 * self.height()
+        for colour, width in (("#000000", 3.0), ("#ffffff", 1.2)):
+            painter.setPen(QPen(QColor(colour), width))
+            painter.drawLine(QPointF(x - CROSS_PX, y), QPointF(x + CROSS_PX, y))
+            painter.drawLine(QPointF(x, y - CROSS_PX), QPointF(x, y + CROSS_PX))
+
+    def _paint_horizon(self, painter: QPainter, view: Pinhole) -> None:
+        """Roll is 0, so the horizon is level; it is in the picture where the pitch is within half the angle of view."""
+        y = horizon_px(view)
+        if not 0.0 <= y <= view.height_px:
+            return
+        for pen in (QPen(QColor("#ffffff"), 3.0), QPen(QColor(HORIZON), 1.5, Qt.PenStyle.DashLine)):
+            painter.setPen(pen)
+            painter.drawLine(QPointF(0.0, y), QPointF(self.width(), y))
+        self._paint_plate(painter, self.tr("horizon"), QPointF(self.width() - 8.0, y + 4.0), is_right=True)
+
+    def _paint_plate(self, painter: QPainter, shown: str, corner: QPointF, *, is_right: bool = False) -> None:
+        """A text on a plate; `corner` is its upper left corner, or its upper right one."""
+        limit = QRectF(0.0, 0.0, self.width() - 30.0, self.height())
+        size = QFontMetricsF(self.font()).boundingRect(limit, Qt.TextFlag.TextWordWrap, shown).size()
+        box = QRectF(corner.x(), corner.y(), size.width() + 14.0, size.height() + 8.0)
+        if is_right:
+            box.moveRight(corner.x())
+        plate = QColor(colours().base)
+        plate.setAlpha(225)
+        painter.setPen(QPen(QColor(colours().line), 1.0))
+        painter.setBrush(plate)
+        painter.drawRoundedRect(box, 3.0, 3.0)
+        painter.setPen(QColor(colours().text))
+        inner = box.adjusted(7.0, 4.0, -7.0, -4.0)
+        painter.drawText(inner, Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap, shown)
+
+
+def horizon_px(view: Pinhole) -> float:
+    """Row of the horizon in a picture without roll; infinite where the camera looks straight up or down."""
+    level = float(np.hypot(view.forward[0], view.forward[1]))
+    if level < 1e-9:
+        return float("inf")
+    rise = -float(view.forward[2]) / level
+    return 0.5 * view.height_px * (1.0 - rise / view.half_height)

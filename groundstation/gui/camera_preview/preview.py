@@ -1,0 +1,437 @@
+"""The camera preview: one photo as the camera will take it, or a sortie flown through at up to 20 times its speed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QElapsedTimer, QEvent, Qt, QTimer, Signal
+from PySide6.QtGui import QHideEvent, QShortcut
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
+
+from groundstation.gui.camera_preview.flight import CameraFlight, CameraPose, camera_flight
+from groundstation.gui.camera_preview.photo_frame import PhotoFrame
+from groundstation.gui.camera_preview.photo_scene import (
+    BACKDROP,
+    covered_outlines,
+    panel_colours,
+    panel_faces,
+    panel_outlines,
+)
+from groundstation.gui.camera_preview.seen_panels import (
+    NearestPanel,
+    SiteSight,
+    covered_by_view,
+    nearest_covered,
+    site_sight,
+)
+from groundstation.gui.theme import colours
+from groundstation.gui.view3d.canvas import Canvas, image_array
+from groundstation.gui.view3d.layers import Drawable, Layer
+from groundstation.gui.view3d.pinhole import Pinhole, photo_pinhole
+from groundstation.gui.view3d.site_scene import SiteScene, site_scene
+from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit
+from planning.errors import InfeasibleError
+from planning.frames import heading_difference_rad
+from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
+from planning.site import SiteModel
+
+SPEEDS = (1, 2, 5, 10, 20)
+FRAME_MS = 40
+"""Time between frames of a flight, so that half of a slow processor is left for the rest of the window."""
+
+FLASH_MS = 160
+STEPS_PER_S = 10
+"""Of the slider."""
+
+SKY_LIGHT, SKY_DARK = "#dbe9f4", "#27323b"
+
+
+class CameraPreview(QWidget):
+    """What the camera sees from a viewpoint, and on the way.
+
+    Signals
+    -------
+    viewpointShown(str)
+        A fly-through has come to this viewpoint.
+    """
+
+    viewpointShown = Signal(str)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._scene: SiteScene | None = None
+        self._sight: SiteSight | None = None
+        self._plan: Plan | None = None
+        self._viewpoint: Viewpoint | None = None
+        self._panel_ids: tuple[str, ...] = ()
+        self._covered: NDArray[np.bool_] = np.zeros(0, bool)
+        self._flights: dict[int, CameraFlight | str] = {}
+        self._pose: CameraPose | None = None
+        self._time_s = 0.0
+        self._units = UnitSystem.METRIC
+        self._frame = PhotoFrame(self)
+        self._text = QLabel()
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._advance)
+        self._clock = QElapsedTimer()
+        self._flash = QTimer(self)
+        self._flash.setSingleShot(True)
+        self._flash.timeout.connect(lambda: self._frame.overlay.flash(False))
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        layout.addWidget(self._frame, 1)
+        layout.addLayout(self._controls())
+        self._dress()
+        self._update_controls()
+
+    def _controls(self) -> QHBoxLayout:
+        self._sorties, self._play, self._speed = QComboBox(), QPushButton(self.tr("Play")), QComboBox()
+        self._slider, self._clock_text = QSlider(Qt.Orientation.Horizontal), QLabel()
+        self._play.setCheckable(True)
+        space = QShortcut(Qt.Key.Key_Space, self, context=Qt.ShortcutContext.WidgetWithChildrenShortcut)
+        space.activated.connect(self._play.toggle)
+        self._play.setToolTip(self.tr("Fly through the sortie (space bar)"))
+        self._sorties.setToolTip(self.tr("The sortie that is flown"))
+        self._speed.setToolTip(self.tr("How many times faster than the flight"))
+        for speed in SPEEDS:
+            self._speed.addItem(self.tr("{0}x").format(speed), speed)
+        self._speed.setCurrentIndex(SPEEDS.index(5))
+        self._sorties.activated.connect(self._choose_sortie)
+        self._play.toggled.connect(self._set_playing)
+        self._slider.valueChanged.connect(self._slide)
+        row = QHBoxLayout()
+        for widget, stretch in ((self._sorties, 0), (self._play, 0), (self._slider, 1), (self._clock_text, 0)):
+            row.addWidget(widget, stretch)
+        row.addWidget(self._speed)
+        return row
+
+    # What is shown
+
+    def set_view(
+        self,
+        site: SiteModel | None,
+        plan: Plan | None,
+        viewpoint_id: str = "",
+        covered_panels: NDArray[np.bool_] | None = None,
+    ) -> None:
+        """Show a viewpoint of a plan; a flight that was playing stops.
+
+        Parameters
+        ----------
+        viewpoint_id
+            Empty, or of no viewpoint: the first of the plan.
+        covered_panels
+            Panels that this viewpoint covers, shape (m,); found from the plan's constraints where they are not given.
+        """
+        is_other = site is not (None if self._scene is None else self._scene.model)
+        if is_other:
+            self._scene = None if site is None else site_scene(site, colours())
+            self._sight = None if site is None else site_sight(site)
+            self._panel_ids = () if site is None else tuple(panel.id for panel in site.site.panels)
+        if plan is not self._plan or is_other:
+            self._plan, self._flights = plan, {}
+            self._fill_sorties()
+        self._play.setChecked(False)
+        self._viewpoint = _viewpoint_of(plan, viewpoint_id)
+        if is_other:
+            self._draw_backdrop()
+        if self._viewpoint is not None:
+            self._show_viewpoint(self._viewpoint, covered_panels)
+            self._find_on_flight(self._viewpoint.id)
+        else:
+            self._pose = None
+            self._draw_pose()
+        self._update_controls()
+
+    def viewpoint_id(self) -> str:
+        """The viewpoint that is shown, or was photographed last on the flight; empty for none."""
+        return "" if self._viewpoint is None else self._viewpoint.id
+
+    def covered_panels(self) -> NDArray[np.bool_]:
+        """Panels that are shown as covered, shape (m,)."""
+        return self._covered
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Units of the figures on the picture."""
+        self._units = units
+        self._draw_pose()
+
+    def pinhole(self) -> Pinhole | None:
+        """The camera, with its picture as large as it is shown."""
+        if self._pose is None or self._plan is None:
+            return None
+        position, heading, pitch = self._pose
+        return photo_pinhole(position, heading, pitch, self._plan.camera, float(self._frame.canvas.width()))
+
+    def picture(self) -> NDArray[np.uint8]:
+        """The photo without what is drawn over it, shape (height, width, 3)."""
+        return self._frame.canvas.picture()
+
+    def screenshot(self) -> NDArray[np.uint8]:
+        """The whole widget, shape (height, width, 3)."""
+        return image_array(self.grab().toImage())
+
+    def canvas(self) -> Canvas:
+        """The OpenGL widget, for what measures it."""
+        return self._frame.canvas
+
+    def close_view(self) -> None:
+        """Free the OpenGL context; call before the widget goes away."""
+        self._timer.stop()
+        self._flash.stop()
+        self._frame.canvas.close()
+
+    # The flight
+
+    def play(self, speed: int = 5) -> None:
+        """Fly through the chosen sortie from where the slider stands, or from the start when it is over."""
+        self._speed.setCurrentIndex(SPEEDS.index(speed))
+        self._play.setChecked(True)
+
+    def pause(self) -> None:
+        """Stop the flight where it is."""
+        self._play.setChecked(False)
+
+    def is_playing(self) -> bool:
+        """Whether a flight is playing."""
+        return self._timer.isActive()
+
+    def time_s(self) -> float:
+        """Time of the sortie that is shown, seconds."""
+        return self._time_s
+
+    def set_time(self, time_s: float) -> None:
+        """Show the flight of the chosen sortie at a time, seconds."""
+        flight = self._flight()
+        if flight is None or self._plan is None:
+            return
+        before, self._time_s = self._time_s, min(max(0.0, time_s), flight.duration_s)
+        taken = flight.photos_between(before, self._time_s)
+        latest = flight.latest_photo(self._time_s)
+        self._viewpoint = _viewpoint_of(self._plan, latest) if latest is not None else None
+        self._pose = flight.pose_at(self._time_s)
+        self._paint_panels(None)
+        self._draw_pose()
+        self._show_time(flight)
+        if taken:
+            self._frame.overlay.flash(True)
+            self._flash.start(FLASH_MS)
+            self.viewpointShown.emit(taken[-1])
+
+    def advance(self, elapsed_s: float) -> None:
+        """Let the flight go on as `elapsed_s` seconds on the clock make it; it ends with the sortie."""
+        flight = self._flight()
+        if flight is None:
+            return
+        self.set_time(self._time_s + elapsed_s * int(self._speed.currentData()))
+        if self._time_s >= flight.duration_s:
+            self._play.setChecked(False)
+
+    # Qt
+
+    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802
+        """Nobody looks: stop the flight."""
+        super().hideEvent(event)
+        self._play.setChecked(False)
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Follow the theme."""
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.PaletteChange and hasattr(self, "_clock_text"):
+            if self._scene is not None:
+                self._scene = site_scene(self._scene.model, colours())
+            covered = self._covered
+            self._dress()
+            self._draw_backdrop()
+            self._paint_panels(covered)
+
+    # Drawing
+
+    def _dress(self) -> None:
+        self._frame.canvas.set_background_colour(SKY_DARK if colours().is_dark else SKY_LIGHT)
+
+    def _draw_backdrop(self) -> None:
+        """Everything that does not depend on the pose; no panel is covered yet."""
+        canvas = self._frame.canvas
+        for layer in BACKDROP:
+            canvas.draw(layer, () if self._scene is None else self._scene.drawables[layer])
+        panels: tuple[Drawable, ...] = ()
+        lines: tuple[Drawable, ...] = ()
+        self._covered = np.zeros(0, bool)
+        if self._sight is not None:
+            frames = self._sight.frames
+            self._covered = np.zeros(len(frames), bool)
+            panels = (panel_faces(frames, panel_colours(frames, self._covered, colours())),)
+            lines = (panel_outlines(frames),)
+        canvas.draw(Layer.PANELS, panels)
+        canvas.draw("outlines", lines)
+        canvas.draw("covered", ())
+
+    def _show_viewpoint(self, viewpoint: Viewpoint, covered: NDArray[np.bool_] | None) -> None:
+        views = viewpoint_arrays((viewpoint,))
+        position, heading, pitch = views.positions_enu_m[0], float(views.heading_rad[0]), float(views.pitch_rad[0])
+        self._pose = CameraPose(position, heading, pitch)
+        self._paint_panels(covered)
+        self._draw_pose()
+
+    def _paint_panels(self, covered: NDArray[np.bool_] | None) -> None:
+        """Outline all panels, and highlight those covered from the pose: given, or found by the plan's constraints."""
+        if self._scene is None or self._sight is None:
+            return
+        if covered is None:
+            covered = np.zeros(len(self._sight.frames), bool)
+            if self._plan is not None and self._pose is not None:
+                position, heading, pitch = self._pose
+                view = ViewpointArrays(position[None], np.array([heading]), np.array([pitch]))
+                covered = covered_by_view(self._sight, self._plan, view)
+        if np.array_equal(covered, self._covered):
+            return
+        self._covered = covered
+        frames, look, canvas = self._sight.frames, colours(), self._frame.canvas
+        canvas.recolour(Layer.PANELS, panel_colours(frames, covered, look))
+        canvas.draw("covered", [covered_outlines(frames, covered, look)])
+
+    def _draw_pose(self) -> None:
+        if self._plan is not None:
+            self._frame.set_aspect(self._plan.camera.half_width / self._plan.camera.half_height)
+        view = self.pinhole()
+        if view is None:
+            text = self.tr("No plan yet: make or open one, then choose a viewpoint.")
+            self._frame.overlay.show_photo(None, text)
+            return
+        self._frame.canvas.look_through(view)
+        self._frame.overlay.show_photo(view, self._figures(view))
+
+    def _figures(self, view: Pinhole) -> str:
+        if self._sight is None or self._plan is None:
+            return ""
+        nearest = nearest_covered(self._sight, self._plan, view.eye_enu_m, self._covered)
+        name = self._place_text()
+        if nearest is None:
+            return self.tr("{0}: covers no panel").format(name)
+        return self.tr("{0}: covers {1} panels\n{2}").format(
+            name, int(self._covered.sum()), self._nearest_text(nearest, view)
+        )
+
+    def _place_text(self) -> str:
+        if self._viewpoint is None:
+            return self.tr("before the first photo")
+        if self._pose is not None and _is_at(self._pose, self._viewpoint):
+            return self._viewpoint.id
+        return self.tr("on the way from {0}").format(self._viewpoint.id)
+
+    def _nearest_text(self, nearest: NearestPanel, view: Pinhole) -> str:
+        length, sampling = length_unit(self._units), sampling_unit(self._units)
+        width, height = (2.0 * half * nearest.distance_m for half in (view.half_width, view.half_height))
+        return self.tr(
+            "nearest panel {0}: {1} away, {2} per pixel, seen at {3:.0f}° from its normal\n"
+            "picture at this distance: {4} x {5}"
+        ).format(
+            self._panel_ids[nearest.panel],
+            length.text(nearest.distance_m),
+            sampling.text(nearest.sampling_m),
+            nearest.incidence_deg,
+            length.text(width),
+            length.text(height),
+        )
+
+    # Playing
+
+    def _fill_sorties(self) -> None:
+        self._sorties.clear()
+        for number in range(1, 1 + (0 if self._plan is None else len(self._plan.sorties))):
+            self._sorties.addItem(self.tr("Sortie {0}").format(number))
+        self._time_s = 0.0
+
+    def _flight(self) -> CameraFlight | None:
+        """The chosen sortie, timed when it is first wanted."""
+        number = self._sorties.currentIndex()
+        if self._plan is None or number < 0:
+            return None
+        if number not in self._flights:
+            self._flights[number] = self._timed(self._plan, number)
+        found = self._flights[number]
+        return found if isinstance(found, CameraFlight) else None
+
+    def _timed(self, plan: Plan, number: int) -> CameraFlight | str:
+        """The sortie in time, or why it cannot be flown."""
+        try:
+            flight = camera_flight(plan, plan.sorties[number])
+        except InfeasibleError as error:
+            return str(error)
+        return flight if flight is not None else self.tr("The path of this sortie misses one of its viewpoints.")
+
+    def _find_on_flight(self, viewpoint_id: str) -> None:
+        """Put the slider to the moment of a photo."""
+        if self._plan is None:
+            return
+        for number, sortie in enumerate(self._plan.sorties):
+            if viewpoint_id in sortie.viewpoint_ids:
+                self._sorties.setCurrentIndex(number)
+                flight = self._flight()
+                if flight is not None:
+                    at = flight.profile.photo_ids.index(viewpoint_id)
+                    self._time_s = float(flight.profile.photo_s[at])
+                return
+
+    def _choose_sortie(self) -> None:
+        self._play.setChecked(False)
+        self._time_s = 0.0
+        self._update_controls()
+        self.set_time(0.0)
+
+    def _set_playing(self, is_playing: bool) -> None:
+        self._play.setText(self.tr("Pause") if is_playing else self.tr("Play"))
+        flight = self._flight()
+        if not is_playing or flight is None:
+            self._timer.stop()
+            return
+        if self._time_s >= flight.duration_s:
+            self._time_s = 0.0
+        self._clock.start()
+        self._timer.start(FRAME_MS)
+
+    def _advance(self) -> None:
+        self.advance(self._clock.restart() / 1000.0)
+
+    def _slide(self, value: int) -> None:
+        self.set_time(value / STEPS_PER_S)
+
+    def _update_controls(self) -> None:
+        flight, number = self._flight(), self._sorties.currentIndex()
+        for widget in (self._play, self._slider, self._speed):
+            widget.setEnabled(flight is not None)
+        self._sorties.setEnabled(self._sorties.count() > 1)
+        reason = self._flights.get(number)
+        self._slider.setToolTip(reason if isinstance(reason, str) else self.tr("Time of the sortie"))
+        if flight is not None:
+            self._show_time(flight)
+        else:
+            self._clock_text.setText(reason if isinstance(reason, str) else "")
+
+    def _show_time(self, flight: CameraFlight) -> None:
+        self._slider.blockSignals(True)
+        self._slider.setRange(0, int(np.ceil(flight.duration_s * STEPS_PER_S)))
+        self._slider.setValue(round(self._time_s * STEPS_PER_S))
+        self._slider.blockSignals(False)
+        self._clock_text.setText(
+            self.tr("{0} of {1}").format(minutes_text(self._time_s), minutes_text(flight.duration_s))
+        )
+
+
+def _viewpoint_of(plan: Plan | None, viewpoint_id: str) -> Viewpoint | None:
+    """A viewpoint by its identifier, else the first."""
+    if plan is None or not plan.viewpoints:
+        return None
+    return next((found for found in plan.viewpoints if found.id == viewpoint_id), plan.viewpoints[0])
+
+
+def _is_at(pose: CameraPose, viewpoint: Viewpoint) -> bool:
+    """Whether a pose is that of a viewpoint, to a centimetre and a tenth of a degree."""
+    away_m = float(np.linalg.norm(pose.position_enu_m - np.array(viewpoint.position_enu_m)))
+    turned = heading_difference_rad(pose.heading_rad, math.radians(viewpoint.heading_deg))
+    tilted = pose.pitch_rad - math.radians(viewpoint.gimbal_pitch_deg)
+    return away_m < 0.01 and max(abs(float(turned)), abs(tilted)) < math.radians(0.1)

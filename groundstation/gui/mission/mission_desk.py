@@ -1,0 +1,119 @@
+"""What the Mission tab does: check, import and compare, each as a job, each result put where it belongs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from groundstation.gui.workspace import Workspace
+from groundstation.services.document import PlanEntry
+from groundstation.services.jobs import JobContext
+from groundstation.services.mission_compare import MissionComparison, compare_with_plan
+from groundstation.services.mission_files import missions_as_plan, read_mission_files
+from groundstation.services.places import item_of_place
+from groundstation.services.preflight import Preflight, preflight
+from planning.findings import Finding, Severity
+from planning.plan import Plan
+
+MAX_SAID = 5
+"""Findings of one import that are said one by one; the check lists all."""
+
+
+class MissionDesk(QObject):
+    """Works on the current plan of the document.
+
+    Signals
+    -------
+    checked(Preflight)
+        A check ended; it may be of a plan that has changed since.
+    compared(MissionComparison, str)
+        With the names of the files.
+    """
+
+    checked = Signal(object)
+    compared = Signal(object, str)
+
+    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._workspace = workspace
+        self._check_id = 0
+
+    @property
+    def plan(self) -> Plan | None:
+        """The current plan, where there is a site to fly it on."""
+        document = self._workspace.document
+        return None if document.site is None or document.current is None else document.current.plan
+
+    @property
+    def is_checking(self) -> bool:
+        """Whether a check runs or waits."""
+        return any(job.id == self._check_id for job in self._workspace.jobs())
+
+    def check(self) -> None:
+        """Check the current plan; one check at a time."""
+        plan, site_model = self.plan, self._workspace.document.site
+        if plan is None or site_model is None or self.is_checking:
+            return
+
+        def work(context: JobContext) -> Preflight:
+            return preflight(plan, site_model, context)
+
+        self._check_id = self._workspace.start(self.tr("Check"), work, self.checked.emit).id
+
+    def import_files(self, paths: Sequence[Path]) -> None:
+        """Take mission files of one flight over as a plan of the project."""
+        document = self._workspace.document
+        site_model, request, paths = document.site, document.request, tuple(paths)
+        if site_model is None or not paths:
+            return
+        name = paths[0].stem
+
+        def work(context: JobContext) -> tuple[Plan, tuple[Finding, ...]]:
+            return missions_as_plan(paths, site_model, request.profile_id, request.constraints, context)
+
+        def done(result: tuple[Plan, tuple[Finding, ...]]) -> None:
+            plan, findings = result
+            now = self._workspace.document
+            if now.site is not site_model:
+                self._workspace.say(
+                    Severity.WARNING, self.tr("{0} was read for a site that has changed; import again").format(name)
+                )
+                return
+            entry = PlanEntry(now.free_plan_id(), name, plan)
+            self._workspace.change(self.tr("Import {0}").format(name), now.with_plan(entry))
+            self._workspace.say(
+                Severity.OK,
+                self.tr("{0} imported, photos: {1}, sorties: {2}").format(
+                    name, len(plan.viewpoints), len(plan.sorties)
+                ),
+            )
+            self._say_findings(findings)
+
+        self._workspace.start(self.tr("Import mission"), work, done)
+
+    def compare_files(self, paths: Sequence[Path]) -> None:
+        """Read mission files back and compare them with the current plan."""
+        plan, site_model, paths = self.plan, self._workspace.document.site, tuple(paths)
+        if plan is None or site_model is None or not paths:
+            return
+        site = site_model.site
+        names = ", ".join(path.name for path in paths)
+
+        def work(_context: JobContext) -> MissionComparison:
+            return compare_with_plan(read_mission_files(paths), plan, site.origin, site.home_enu_m)
+
+        def done(comparison: MissionComparison) -> None:
+            self.compared.emit(comparison, names)
+            self._say_findings(comparison.findings)
+
+        self._workspace.start(self.tr("Compare"), work, done)
+
+    def _say_findings(self, findings: Sequence[Finding]) -> None:
+        told = [found for found in findings if found.severity is not Severity.OK]
+        for found in told[:MAX_SAID]:
+            item = item_of_place(found.place, self._workspace.document)
+            self._workspace.say(found.severity, found.message, item)
+        if len(told) > MAX_SAID:
+            self._workspace.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(told) - MAX_SAID))

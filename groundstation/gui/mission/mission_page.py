@@ -1,0 +1,305 @@
+"""The Mission tab's widgets put together: signals go to the desk or the workspace, changes come back here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QTimer
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import QFileDialog, QLabel, QPushButton, QStackedWidget, QTabWidget, QVBoxLayout, QWidget
+
+from groundstation.gui.map_view import MapView
+from groundstation.gui.mission.comparison_view import ComparisonView
+from groundstation.gui.mission.export_dialog import ExportDialog
+from groundstation.gui.mission.findings_view import FindingsView
+from groundstation.gui.mission.mission_desk import MissionDesk
+from groundstation.gui.mission.profile_chart import ProfileChart
+from groundstation.gui.mission.sortie_table import SortieTable
+from groundstation.gui.mission.waypoint_table import WaypointTable
+from groundstation.gui.stage import Stage
+from groundstation.gui.workspace import Workspace
+from groundstation.services.document import Document, Item
+from groundstation.services.mission_compare import MissionComparison
+from groundstation.services.places import item_of_place
+from groundstation.services.preflight import Preflight
+from groundstation.services.profiles import height_limits, plan_profiles
+from groundstation.services.units import UnitSystem, minutes_text
+from groundstation.services.waypoints import waypoint_rows
+from planning.findings import Severity
+
+REST_MS = 300
+"""Without changes for so long, a plan is checked."""
+
+READABLE = "*.kmz *.plan *.waypoints *.txt *.kml *.csv"
+
+
+class MissionPage(QObject):
+    """The tab."""
+
+    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+        super().__init__(stage)
+        self._workspace, self._stage = workspace, stage
+        self._is_shown = False
+        self._drawn: Document | None = None
+        self._preflight: Preflight | None = None
+        self._folder: Path | None = None
+        self.desk = MissionDesk(workspace, self)
+        self.findings, self.waypoints = FindingsView(), WaypointTable()
+        self.profile, self.comparison, self.sorties = ProfileChart(), ComparisonView(), SortieTable()
+        self._title, self._summary = QLabel(), QLabel()
+        self._make_actions()
+        self.left = self._make_left()
+        self.right: QWidget | None = self.findings
+        self.lists = self._make_lists()
+        self.bottom: QWidget | None = self.lists
+        self._check_soon = QTimer(self, interval=REST_MS, singleShot=True)
+        self._check_soon.timeout.connect(self.desk.check)
+        self._connect()
+        self._show_units(workspace.units)
+        self._show_document()
+
+    # A tab
+
+    def shown(self) -> None:
+        """Bring everything up to date, and check a plan that was changed elsewhere."""
+        self._is_shown = True
+        self._show_document()
+        self._show_selection(self._workspace.selection)
+
+    def hidden(self) -> None:
+        """Nothing of the shared view was taken."""
+        self._is_shown = False
+        self._check_soon.stop()
+
+    def actions(self) -> tuple[QAction, ...]:
+        """For the tab's menu."""
+        return self._actions
+
+    # What the user does
+
+    def export(self) -> ExportDialog | None:
+        """Ask how to export the current plan; None where there is none."""
+        plan, site_model = self.desk.plan, self._workspace.document.site
+        if plan is None or site_model is None:
+            return None
+        dialog = ExportDialog(self._workspace, plan, site_model, self._export_folder(), self._stage.window())
+        dialog.written.connect(self._note_folder)
+        dialog.open()
+        return dialog
+
+    def print_brief(self) -> None:
+        """Show the flight brief of the current plan, to be printed or saved as PDF."""
+        plan, document = self.desk.plan, self._workspace.document
+        if plan is None or document.site is None or self._preflight is None:
+            return
+        from groundstation.gui.mission.brief_dialog import BriefDialog
+
+        dialog = BriefDialog(
+            self._workspace,
+            document.site,
+            plan,
+            self._preflight.findings,
+            self._tiles(),
+            self._export_folder(),
+            self._stage.window(),
+        )
+        dialog.open()
+
+    def _tiles(self) -> Path | None:
+        """The map file that the stage shows; a map that was never looked at has none."""
+        map_view = self._stage.findChild(MapView)
+        return None if map_view is None else map_view.map_file()
+
+    def _choose_import(self) -> None:
+        self.desk.import_files(self._ask_for_files(self.tr("Import the mission files of one flight")))
+
+    def _choose_compare(self) -> None:
+        self.desk.compare_files(self._ask_for_files(self.tr("Compare the plan with mission files")))
+
+    def _ask_for_files(self, title: str) -> tuple[Path, ...]:
+        names, _ = QFileDialog.getOpenFileNames(
+            self._stage.window(),
+            title,
+            str(self._export_folder()),
+            self.tr("Missions ({0});;All files (*)").format(READABLE),
+        )
+        if names:
+            self._folder = Path(names[0]).parent
+        return tuple(Path(name) for name in names)
+
+    def _export_folder(self) -> Path:
+        """Where files went last; else the project's folder for missions."""
+        if self._folder is not None:
+            return self._folder
+        project = self._workspace.session.folder
+        if project is None:
+            return Path.home()
+        return project / "missions" if (project / "missions").is_dir() else project
+
+    def _note_folder(self, paths: tuple[Path, ...]) -> None:
+        self._folder = paths[0].parent
+
+    # How it is put together
+
+    def _make_actions(self) -> None:
+        made = []
+        for text, key, tip, slot in (
+            (self.tr("Export mission files ..."), "Ctrl+E", self.tr("For DJI, QGroundControl, ..."), self.export),
+            (
+                self.tr("Import mission files ..."),
+                "Ctrl+Shift+I",
+                self.tr("As a plan of this project"),
+                self._choose_import,
+            ),
+            (
+                self.tr("Compare with file ..."),
+                "Ctrl+Shift+C",
+                self.tr("Is this file the plan? Shows what differs"),
+                self._choose_compare,
+            ),
+            (self.tr("Flight brief ..."), "Ctrl+R", self.tr("To print or save as PDF"), self.print_brief),
+            (self.tr("Check"), "Ctrl+K", self.tr("Measure every pre-flight rule again"), self.desk.check),
+        ):
+            action = QAction(text, self)
+            action.setShortcut(QKeySequence(key))
+            action.setToolTip(tip)
+            action.triggered.connect(lambda _checked=False, slot=slot: slot())
+            made.append(action)
+        self._export, self._import, self._compare, self._brief, self._check = self._actions = tuple(made)
+
+    def _make_left(self) -> QWidget:
+        left = QWidget()
+        layout = QVBoxLayout(left)
+        layout.setContentsMargins(6, 6, 6, 6)
+        self._title.setProperty("role", "heading")
+        for label in (self._title, self._summary):
+            label.setWordWrap(True)
+            layout.addWidget(label)
+        layout.addWidget(self.sorties, 1)
+        for action in (self._export, self._import, self._compare, self._brief):
+            button = QPushButton(action.text())
+            button.setToolTip(action.toolTip())
+            button.clicked.connect(action.trigger)
+            button.setProperty("primary", action is self._export)
+            action.changed.connect(lambda button=button, action=action: button.setEnabled(action.isEnabled()))
+            layout.addWidget(button)
+        return left
+
+    def _make_lists(self) -> QTabWidget:
+        """Waypoints, profile and comparison; what each lets choose stands beside the tabs, where it takes no height."""
+        lists, bars = QTabWidget(), QStackedWidget()
+        for view, title in (
+            (self.waypoints, self.tr("Waypoints")),
+            (self.profile, self.tr("Profile")),
+            (self.comparison, self.tr("Comparison")),
+        ):
+            lists.addTab(view, title)
+            bars.addWidget(view.bar)
+        lists.setCornerWidget(bars)
+        lists.currentChanged.connect(bars.setCurrentIndex)
+        return lists
+
+    def _connect(self) -> None:
+        workspace = self._workspace
+        self.findings.checkRequested.connect(self.desk.check)
+        self.findings.placePicked.connect(self._go_to)
+        self.waypoints.picked.connect(workspace.select)
+        self.waypoints.activated.connect(workspace.jump_to)
+        self.profile.picked.connect(workspace.jump_to)
+        self.comparison.picked.connect(workspace.jump_to)
+        self.sorties.picked.connect(workspace.jump_to)
+        self.desk.checked.connect(self._take_preflight)
+        self.desk.compared.connect(self._show_comparison)
+        workspace.documentChanged.connect(self._document_changed)
+        workspace.selectionChanged.connect(self._show_selection)
+        workspace.unitsChanged.connect(self._show_units)
+        workspace.jobsChanged.connect(self._show_freshness)
+
+    # What changes
+
+    def _document_changed(self, _before: Document, _after: Document) -> None:
+        if self._is_shown:
+            self._show_document()
+
+    def _show_document(self) -> None:
+        """Draw what changed since it was last drawn; hidden tabs wait."""
+        document, drawn = self._workspace.document, self._drawn
+        plan, site_model = self.desk.plan, document.site
+        is_new = drawn is None or drawn.site is not site_model or drawn.current is not document.current
+        self._drawn = document
+        if is_new:
+            self.sorties.set_plan(plan)
+            self.waypoints.set_rows(() if plan is None else waypoint_rows(plan, site_model.site.origin))
+            self.profile.set_curves(
+                () if plan is None else plan_profiles(plan), None if site_model is None else height_limits(site_model)
+            )
+            self.comparison.set_comparison(None)
+            self._say_summary()
+        self._show_freshness()
+        if self._is_shown and plan is not None and not self._is_fresh():
+            self._check_soon.start()
+
+    def _is_fresh(self) -> bool:
+        return self._preflight is not None and self._preflight.is_of(self.desk.plan, self._workspace.document.site)
+
+    def _show_freshness(self) -> None:
+        """Say whether the findings are of the plan as it is, and what can be done with it."""
+        plan, is_checking = self.desk.plan, self.desk.is_checking
+        if plan is None:
+            self._preflight = None
+            self.findings.set_findings(None)
+        elif not self._is_fresh():
+            self.findings.set_stale()
+            if is_checking:
+                self.findings.set_checking()
+        self.findings.set_can_check(plan is not None and not is_checking)
+        for action in (self._export, self._compare):
+            action.setEnabled(plan is not None)
+        self._check.setEnabled(plan is not None and not is_checking)
+        self._import.setEnabled(self._workspace.document.site is not None)
+        self._brief.setEnabled(plan is not None and self._is_fresh())
+
+    def _take_preflight(self, found: Preflight) -> None:
+        self._preflight = found
+        if self._is_fresh():
+            self.findings.set_findings(found.findings)
+            self.waypoints.set_panels_covered(found.panels_covered)
+        elif self._is_shown:
+            self._check_soon.start()
+        self._show_freshness()
+
+    def _say_summary(self) -> None:
+        document, plan = self._workspace.document, self.desk.plan
+        if document.site is None:
+            self._title.setText(self.tr("No site"))
+            self._summary.setText(self.tr("Open or import a site first, on the Site tab."))
+        elif plan is None or document.current is None:
+            self._title.setText(self.tr("No plan"))
+            self._summary.setText(self.tr("Plan a flight on the Plan tab, or import a mission file."))
+        else:
+            self._title.setText(document.current.title)
+            self._summary.setText(
+                self.tr("{0}, photos: {1}, batteries: {2}, {3} min").format(
+                    plan.aircraft.name, len(plan.viewpoints), len(plan.sorties), minutes_text(plan.duration_s)
+                )
+            )
+
+    def _show_comparison(self, comparison: MissionComparison, names: str) -> None:
+        self.comparison.set_comparison(comparison, names)
+        self.lists.setCurrentWidget(self.comparison)
+
+    def _go_to(self, place: str) -> None:
+        item = item_of_place(place, self._workspace.document)
+        if item is None:
+            self._workspace.say(Severity.NOTE, self.tr("{0} is not shown in the view").format(place))
+        else:
+            self._workspace.jump_to(item)
+
+    def _show_selection(self, item: Item | None) -> None:
+        if self._is_shown:
+            self.waypoints.set_selection(item)
+            self.profile.set_selection(item)
+
+    def _show_units(self, units: UnitSystem) -> None:
+        for widget in (self.findings, self.waypoints, self.profile, self.comparison, self.sorties):
+            widget.set_units(units)

@@ -1,0 +1,99 @@
+"""The effects panel: each effect with on, off or auto, what the scene says, how large it would be and what it costs."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from groundstation.services.effects import EffectChoice
+
+WISHES = ("auto", "on", "off")
+
+
+class EffectsPanel(QWidget):
+    """One card per effect.
+
+    Signals
+    -------
+    wishChanged(str, str)
+        Name of the effect, and auto, on or off.
+    """
+
+    wishChanged = Signal(str, str)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._layout = QVBoxLayout(self)
+        self._empty = QLabel(self.tr("Open a site, and what its scene calls for stands here."))
+        self._empty.setProperty("role", "muted")
+        self._empty.setWordWrap(True)
+        self._layout.addWidget(self._empty)
+        self._layout.addStretch(1)
+        self._cards: dict[str, _EffectCard] = {}
+
+    def set_effects(self, choices: tuple[EffectChoice, ...]) -> None:
+        """Show effects. Cards are kept for good: there are a few kinds of effects only."""
+        for card in self._cards.values():
+            card.setVisible(False)
+        for number, choice in enumerate(choices):
+            name = choice.decision.effect
+            if name not in self._cards:
+                self._cards[name] = _EffectCard()
+                self._cards[name].wishChanged.connect(lambda wish, name=name: self.wishChanged.emit(name, wish))
+                self._layout.insertWidget(1 + number, self._cards[name])
+            self._cards[name].set_choice(choice)
+            self._cards[name].setVisible(True)
+        self._empty.setVisible(not choices)
+
+    def card(self, name: str) -> _EffectCard:
+        """The card of one effect."""
+        return self._cards[name]
+
+
+class _EffectCard(QFrame):
+    """Name and wish above, the decision in words below."""
+
+    wishChanged = Signal(str)  # noqa: N815
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFrameShape(QFrame.Shape.StyledPanel)
+        self._name, self._state, self._words, self._size = QLabel(), QLabel(), QLabel(), QLabel()
+        self._name.setProperty("role", "heading")
+        self._size.setProperty("role", "muted")
+        for label in (self._words, self._size):
+            label.setWordWrap(True)
+        self.wish = QComboBox()
+        for wish, text in zip(WISHES, (self.tr("auto"), self.tr("on"), self.tr("off")), strict=True):
+            self.wish.addItem(text, wish)
+        self.wish.currentIndexChanged.connect(lambda _index: self.wishChanged.emit(str(self.wish.currentData())))
+        above = QHBoxLayout()
+        above.addWidget(self._name, 1)
+        above.addWidget(self._state)
+        above.addWidget(self.wish)
+        layout = QVBoxLayout(self)
+        layout.addLayout(above)
+        layout.addWidget(self._words)
+        layout.addWidget(self._size)
+
+    def set_choice(self, choice: EffectChoice) -> None:
+        """Show a decision."""
+        found = choice.decision
+        self._name.setText(found.effect)
+        self._state.setText(self.tr("is on") if found.on else self.tr("is off"))
+        self._state.setProperty("role", "ok" if found.on else "muted")
+        self._state.style().polish(self._state)
+        by = "" if found.decided_by == "scene" else self.tr(" (as you asked)")
+        self._words.setText(found.reason + by)
+        self._size.setText(
+            self.tr("Size {0:.3g} {1}, tolerance {2:.3g}; costs about {3:.1f} s").format(
+                found.size, found.unit, found.tolerance, found.cost_s
+            )
+        )
+        self.wish.setVisible(choice.wish is not None)
+        with QSignalBlocker(self.wish):
+            self.wish.setCurrentIndex(WISHES.index(choice.wish or "auto"))
+
+    def text(self) -> str:
+        """Everything the card says."""
+        return "\n".join(label.text() for label in (self._name, self._state, self._words, self._size))

@@ -1,0 +1,299 @@
+"""The form for what is wanted of a plan: edits one `PlanRequest`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QFileDialog,
+    QFormLayout,
+    QLabel,
+    QSpinBox,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from groundstation.gui.inputs import LengthBox, NumberBox, QuantityBox, SpeedBox
+from groundstation.services.units import UnitSystem, sampling_unit
+from planning.catalogue import Profile, profile, profiles
+from planning.errors import GroundStationError
+from planning.methods import METHODS
+from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, PlanRequest
+
+COVERAGE, VIEWS, BATTERIES = range(3)
+
+SECTION_STEPS_DEG = (30, 15, 10, 5)
+
+COARSEST_GSD_M = (0.0001, 0.5)
+"""From microscopes to satellites: nobody asks for less or more."""
+
+
+class PlanForm(QWidget):
+    """`value()`, `setValue()` and `valueChanged` of a plan request; what it does not show it keeps.
+
+    Signals
+    -------
+    valueChanged(PlanRequest)
+        After an edit that makes sense; while it makes none, the reason stands below the form.
+    """
+
+    valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._value = PlanRequest()
+        self._make_boxes()
+        self._wrong = QLabel()
+        self._wrong.setProperty("role", "error")
+        self._wrong.setWordWrap(True)
+        self._wrong.setVisible(False)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 8, 8, 8)
+        layout.addLayout(self._rows(self._first_rows()))
+        self._more = QToolButton()
+        self._more.setCheckable(True)
+        self._more.setText(self.tr("More settings"))
+        layout.addWidget(self._more)
+        self._further = QWidget()
+        self._further.setLayout(self._rows(self._further_rows()))
+        self._further.setVisible(False)
+        self._more.toggled.connect(self._further.setVisible)
+        layout.addWidget(self._further)
+        layout.addWidget(self._wrong)
+        self.setValue(self._value)
+        self._connect()
+
+    def _make_boxes(self) -> None:
+        self._profile = QComboBox()
+        for identifier, found in sorted(profiles().items()):
+            self._profile.addItem(_profile_text(found), identifier)
+        self._profile.addItem(self.tr("From a file ..."), None)
+        self._method = QComboBox()
+        for method in METHODS:
+            self._method.addItem(self._method_text(method), method)
+        self._goal = QComboBox()
+        self._goal.addItems([self.tr("coverage wanted"), self.tr("number of views"), self.tr("batteries at hand")])
+        self._coverage = NumberBox(10.0, 100.0, 0.5, " %")
+        self._views = _whole(1, 20_000)
+        self._batteries = _whole(1, 20)
+        self._distance = LengthBox(0.0, 200.0)
+        self._budget = NumberBox(1.0, 3600.0, 5.0, " s")
+        self._wind = SpeedBox(0.0, 20.0)
+        self._is_gsd_limited = QCheckBox(self.tr("Limit the pixel size"))
+        self._gsd = QuantityBox(sampling_unit, *COARSEST_GSD_M, 0.5)
+        self._step = QComboBox()
+        for step in SECTION_STEPS_DEG:
+            self._step.addItem(f"{step}°", float(step))
+        self._whole_panel = QCheckBox(self.tr("Count whole panels only"))
+        self._whole_panel.setToolTip(self.tr("A view counts only when all four corners are in the picture"))
+        self._solid_angle = QCheckBox(self.tr("Weight sections by solid angle"))
+        self._reserve = NumberBox(0.0, 90.0, 5.0, " %", 0)
+        self._settle = NumberBox(0.0, 30.0, 0.5, " s")
+        self._precision = QComboBox()
+        self._precision.addItem(self.tr("single (fast)"), "f32")
+        self._precision.addItem(self.tr("double (slower)"), "f64")
+        self._seed = _whole(0, 2**31 - 1)
+
+    def _method_text(self, method: str) -> str:
+        texts = {
+            "greedy": self.tr("Greedy with proof"),
+            "pso": self.tr("Particle swarm (the paper's)"),
+            "noto": self.tr("Nap-of-the-object grid"),
+            "orbit": self.tr("Orbits"),
+        }
+        return texts.get(method, method)
+
+    def _first_rows(self) -> tuple[tuple[str, QWidget], ...]:
+        return (
+            (self.tr("Aircraft"), self._profile),
+            (self.tr("Plan for"), self._goal),
+            (self.tr("Coverage"), self._coverage),
+            (self.tr("Views"), self._views),
+            (self.tr("Batteries"), self._batteries),
+            (self.tr("Safety distance"), self._distance),
+            (self.tr("Method"), self._method),
+            (self.tr("Time to plan"), self._budget),
+        )
+
+    def _further_rows(self) -> tuple[tuple[str, QWidget], ...]:
+        return (
+            (self.tr("Wind"), self._wind),
+            (self.tr("Battery reserve"), self._reserve),
+            (self.tr("Hover before photo"), self._settle),
+            ("", self._is_gsd_limited),
+            (self.tr("Coarsest pixel"), self._gsd),
+            (self.tr("Section step"), self._step),
+            ("", self._whole_panel),
+            ("", self._solid_angle),
+            (self.tr("Precision"), self._precision),
+            (self.tr("Seed"), self._seed),
+        )
+
+    def _rows(self, rows: tuple[tuple[str, QWidget], ...]) -> QFormLayout:
+        layout = QFormLayout()
+        layout.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        layout.setRowWrapPolicy(QFormLayout.RowWrapPolicy.DontWrapRows)
+        for label, widget in rows:
+            widget.setMinimumWidth(80)
+            if isinstance(widget, QComboBox):
+                widget.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+            if label:
+                layout.addRow(label, widget)
+            else:
+                layout.addRow(widget)
+        return layout
+
+    def _connect(self) -> None:
+        for box in (self._method, self._goal, self._step, self._precision):
+            box.currentIndexChanged.connect(self._edited)
+        self._profile.currentIndexChanged.connect(self._profile_chosen)
+        for spin in (
+            self._coverage,
+            self._views,
+            self._batteries,
+            self._distance,
+            self._budget,
+            self._wind,
+            self._gsd,
+            self._reserve,
+            self._settle,
+            self._seed,
+        ):
+            spin.valueChanged.connect(self._edited)
+        for check in (self._is_gsd_limited, self._whole_panel, self._solid_angle):
+            check.toggled.connect(self._edited)
+
+    def value(self) -> PlanRequest:
+        """The last request that made sense."""
+        return self._value
+
+    def setValue(self, request: PlanRequest) -> None:  # noqa: N802
+        """Show a request."""
+        blockers = [QSignalBlocker(box) for box in self.findChildren(QWidget)]
+        self._value = request
+        self._show_profile(request.profile_id)
+        self._method.setCurrentIndex(self._method.findData(request.method))
+        goal = VIEWS if request.n_views is not None else BATTERIES if request.n_batteries is not None else COVERAGE
+        self._goal.setCurrentIndex(goal)
+        self._coverage.setValue(100.0 * (DEFAULT_SHARE if request.share is None else request.share))
+        self._views.setValue(DEFAULT_VIEWS if request.n_views is None else request.n_views)
+        self._batteries.setValue(1 if request.n_batteries is None else request.n_batteries)
+        constraints, rules = request.constraints, request.rules
+        self._distance.setValue(constraints.min_distance_m)
+        self._step.setCurrentIndex(max(0, self._step.findData(constraints.section_step_deg)))
+        self._whole_panel.setChecked(constraints.whole_panel)
+        self._is_gsd_limited.setChecked(constraints.max_distance_m is not None)
+        if constraints.max_distance_m is not None:
+            self._gsd.setValue(profile(request.profile_id).camera.gsd_m(constraints.max_distance_m))
+        self._wind.setValue(rules.wind_m_s)
+        self._reserve.setValue(100.0 * rules.battery_reserve)
+        self._settle.setValue(rules.settle_s)
+        self._solid_angle.setChecked(request.greedy.solid_angle_weights)
+        self._precision.setCurrentIndex(self._precision.findData(request.precision))
+        self._seed.setValue(request.seed)
+        self._budget.setValue(request.time_budget_s)
+        del blockers
+        self._say_wrong("")
+        self._show_goal()
+
+    def set_units(self, system: UnitSystem) -> None:
+        """Show lengths and speeds in other units."""
+        for box in (self._distance, self._wind, self._gsd):
+            box.set_units(system)
+
+    def _show_profile(self, identifier: str) -> None:
+        index = self._profile.findData(identifier)
+        if index < 0:
+            index = self._profile.count() - 1
+            self._profile.insertItem(index, _profile_text(profile(identifier)), identifier)
+        self._profile.setCurrentIndex(index)
+
+    def _profile_chosen(self) -> None:
+        if self._profile.currentData() is None:
+            name, _ = QFileDialog.getOpenFileName(
+                self, self.tr("Aircraft and camera"), "", self.tr("Aircraft (*.toml)")
+            )
+            with QSignalBlocker(self._profile):
+                self.use_profile_file(Path(name) if name else None)
+        self._edited()
+
+    def use_profile_file(self, path: Path | None) -> None:
+        """Take an aircraft from a file of the user's own; for None, or a file that is wrong, the one before stays."""
+        try:
+            self._show_profile(self._value.profile_id if path is None else str(path))
+        except GroundStationError as error:
+            self._show_profile(self._value.profile_id)
+            self._say_wrong(str(error))
+
+    def _request(self) -> PlanRequest:
+        """What the boxes say; raises `ValueError` where it makes no sense."""
+        goal, before = self._goal.currentIndex(), self._value
+        profile_id = str(self._profile.currentData())
+        furthest_m = None
+        if self._is_gsd_limited.isChecked():
+            furthest_m = profile(profile_id).camera.distance_for_gsd_m(self._gsd.value())
+        return replace(
+            before,
+            profile_id=profile_id,
+            method=str(self._method.currentData()),
+            share=self._coverage.value() / 100.0 if goal == COVERAGE else None,
+            n_views=self._views.value() if goal == VIEWS else None,
+            n_batteries=self._batteries.value() if goal == BATTERIES else None,
+            constraints=replace(
+                before.constraints,
+                min_distance_m=self._distance.value(),
+                section_step_deg=float(self._step.currentData()),
+                whole_panel=self._whole_panel.isChecked(),
+                max_distance_m=furthest_m,
+            ),
+            rules=replace(
+                before.rules,
+                wind_m_s=self._wind.value(),
+                battery_reserve=self._reserve.value() / 100.0,
+                settle_s=self._settle.value(),
+            ),
+            greedy=replace(before.greedy, solid_angle_weights=self._solid_angle.isChecked()),
+            precision=self._precision.currentData(),
+            seed=self._seed.value(),
+            time_budget_s=self._budget.value(),
+        )
+
+    def _edited(self) -> None:
+        self._show_goal()
+        try:
+            request = self._request()
+        except ValueError as error:
+            self._say_wrong(str(error))
+            return
+        self._say_wrong("")
+        if request != self._value:
+            self._value = request
+            self.valueChanged.emit(request)
+
+    def _say_wrong(self, text: str) -> None:
+        self._wrong.setText(text)
+        self._wrong.setVisible(bool(text))
+
+    def _show_goal(self) -> None:
+        """Only the goal chosen is shown, and only what its limit needs."""
+        layout = self.layout().itemAt(0).layout()
+        assert isinstance(layout, QFormLayout)
+        for goal, widget in ((COVERAGE, self._coverage), (VIEWS, self._views), (BATTERIES, self._batteries)):
+            layout.setRowVisible(widget, self._goal.currentIndex() == goal)
+        self._gsd.setEnabled(self._is_gsd_limited.isChecked())
+
+
+def _profile_text(found: Profile) -> str:
+    return " / ".join(dict.fromkeys([found.aircraft.name, found.camera.name]))
+
+
+def _whole(low: int, high: int) -> QSpinBox:
+    spin = QSpinBox()
+    spin.setRange(low, high)
+    spin.setKeyboardTracking(False)
+    return spin

@@ -1,0 +1,179 @@
+"""Below the view: the viewpoints, what is not covered, clearance along the route, and all plans."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QFileDialog, QTabWidget, QWidget
+
+from groundstation.gui.mission.waypoint_table import WaypointTable
+from groundstation.gui.plan.clearance_chart import ClearanceChart
+from groundstation.gui.plan.plan_desk import PlanDesk
+from groundstation.gui.plan.plans_list import PlansList
+from groundstation.gui.plan.reach_table import ReachTable, ReasonRow
+from groundstation.gui.workspace import Workspace
+from groundstation.services.document import Document, Item, ItemKind
+from groundstation.services.jobs import Job
+from groundstation.services.plan_bench import PlanInHand
+from groundstation.services.reach_summary import ReachGroup, reach_groups
+from groundstation.services.units import UnitSystem
+from groundstation.services.waypoints import waypoint_rows
+from planning.findings import Severity
+from planning.insight.clearance import RouteClearance, route_clearance
+from planning.insight.reasons import Rule
+from planning.insight.sections import PlanInsight, SectionState
+from planning.insight.things import things_of
+
+
+class PlanLists(QTabWidget):
+    """Four pages.
+
+    Signals
+    -------
+    sectionPicked(str, int)
+        Panel and section.
+    """
+
+    sectionPicked = Signal(str, int)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, workspace: Workspace, desk: PlanDesk) -> None:
+        super().__init__()
+        self._workspace, self._desk = workspace, desk
+        self._measuring: Job[object] | None = None
+        self.compare_window: QWidget | None = None
+        self.waypoints = WaypointTable()
+        self.reach, self.clearance, self.plans = ReachTable(), ClearanceChart(), PlansList()
+        self._make_pages()
+        self._connect()
+        self._show_document(workspace.document)
+        self._show_in_hand(desk.in_hand)
+
+    def _make_pages(self) -> None:
+        self.addTab(self.waypoints, self.tr("Viewpoints"))
+        self.addTab(self.reach, self.tr("Not covered"))
+        self.addTab(self.clearance, self.tr("Clearance"))
+        self.addTab(self.plans, self.tr("Plans"))
+        # What the table lets choose takes no height beside the titles.
+        self.setCornerWidget(self.waypoints.bar)
+        self.currentChanged.connect(lambda page: self.waypoints.bar.setVisible(page == 0))
+
+    def _connect(self) -> None:
+        desk, workspace = self._desk, self._workspace
+        self.waypoints.picked.connect(workspace.select)
+        self.waypoints.activated.connect(workspace.jump_to)
+        self.reach.picked.connect(self.sectionPicked)
+        self.clearance.sortieChosen.connect(lambda _number: self._measure_clearance())
+        self.clearance.legPicked.connect(lambda sortie, leg: workspace.jump_to(Item(ItemKind.LEG, f"{sortie}/{leg}")))
+        self.currentChanged.connect(lambda _page: self._measure_clearance())
+        plans = self.plans
+        plans.chosen.connect(desk.choose)
+        plans.renamed.connect(desk.rename)
+        plans.removed.connect(desk.remove)
+        plans.openWanted.connect(self._ask_plan)
+        plans.compareWanted.connect(self.compare)
+        desk.inHandChanged.connect(self._show_in_hand)
+        workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
+        workspace.selectionChanged.connect(self.waypoints.set_selection)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        for widget in (self.waypoints, self.clearance, self.plans):
+            widget.set_units(units)
+
+    # What changes
+
+    def _show_document(self, document: Document) -> None:
+        self.plans.set_document(document)
+        entry = document.current
+        origin = None if document.site is None else document.site.site.origin
+        self.waypoints.set_rows(() if entry is None else waypoint_rows(entry.plan, origin))
+        self.clearance.set_sorties(0 if entry is None else len(entry.plan.sorties))
+        self.waypoints.set_selection(self._workspace.selection)
+
+    def _show_in_hand(self, in_hand: PlanInHand | None) -> None:
+        self._measure_clearance()
+        if in_hand is None:
+            self.reach.set_rows(self.tr("Plan a flight, and what it does not cover stands here."), ())
+            return
+        insight = in_hand.insight
+        panels = (insight.sections >= 0).sum(axis=1)
+        self.waypoints.set_panels_covered(dict(zip(insight.view_ids, panels.tolist(), strict=True)))
+        groups = reach_groups(insight)
+        n_missed = sum(group.n_sections for group in groups if group.state is not SectionState.UNREACHABLE)
+        n_hidden = sum(group.n_sections for group in groups if group.state is SectionState.UNREACHABLE)
+        summary = self.tr("{0} sections could still be covered, {1} cannot be covered from anywhere allowed").format(
+            n_missed, n_hidden
+        )
+        self.reach.set_rows(summary, [self._reason_row(group, insight) for group in groups])
+
+    def _reason_row(self, group: ReachGroup, insight: PlanInsight) -> ReasonRow:
+        words = {
+            SectionState.MISSED: self.tr("more views would cover them"),
+            SectionState.UNDECIDED: self.tr("not known whether anything could"),
+            SectionState.UNREACHABLE: self.tr("not known why"),
+        }[group.state]
+        if group.rules:
+            words = self.tr(" and ").join(self._rule_text(rule) for rule in group.rules)
+        example = "" if group.reason is None else str(group.reason)
+        panel_id = insight.panel_ids[group.panel]
+        return ReasonRow(words, group.n_sections, group.n_panels, example, panel_id, group.section)
+
+    def _rule_text(self, rule: Rule) -> str:
+        return {
+            Rule.GIMBAL_UP: self.tr("the gimbal cannot look up so far"),
+            Rule.GIMBAL_DOWN: self.tr("the gimbal cannot look down so far"),
+            Rule.FLOOR: self.tr("below the airspace"),
+            Rule.CEILING: self.tr("above the airspace"),
+            Rule.SIDES: self.tr("beyond the sides of the airspace"),
+            Rule.RANGE: self.tr("too far away for the pixel size wanted"),
+            Rule.DISTANCE: self.tr("too close to building or obstacle"),
+            Rule.NO_FLY: self.tr("in a no-fly volume"),
+            Rule.GROUND: self.tr("below the ground"),
+            Rule.HIDDEN: self.tr("hidden by something"),
+            Rule.UNFLYABLE: self.tr("cannot be flown to"),
+        }[rule]
+
+    # Clearance and other plans
+
+    def _measure_clearance(self) -> None:
+        """Measure the chosen sortie, when somebody looks."""
+        if self._measuring is not None:
+            self._workspace.cancel(self._measuring)
+            self._measuring = None
+        in_hand, number = self._desk.in_hand, self.clearance.sortie()
+        if in_hand is None or not 1 <= number <= len(in_hand.plan.sorties):
+            self.clearance.set_clearance(None)
+            return
+        if self.currentWidget() is not self.clearance:
+            return
+        site_model = in_hand.groundwork.prepared.site_model
+        space = in_hand.groundwork.prepared.problem.space
+        sortie, limit_m = in_hand.plan.sorties[number - 1], in_hand.plan.constraints.min_distance_m
+
+        def done(found: RouteClearance) -> None:
+            self._measuring = None
+            self.clearance.set_clearance(found, limit_m)
+
+        self._measuring = self._workspace.start(
+            self.tr("Measure clearance"),
+            lambda _context: route_clearance(sortie, space, things_of(site_model, space)),
+            done,
+        )
+
+    def _ask_plan(self) -> None:
+        name, _ = QFileDialog.getOpenFileName(self, self.tr("Open plan"), "", self.tr("Plans (*.json)"))
+        if name:
+            from pathlib import Path
+
+            self._desk.open_plan(Path(name))
+
+    def compare(self, plan_ids: tuple[str, ...]) -> None:
+        """Show plans side by side."""
+        document = self._workspace.document
+        entries = [entry for entry in document.plans if entry.id in plan_ids]
+        if document.site is None or len(entries) < 2:
+            self._workspace.say(Severity.NOTE, self.tr("Select two or more plans in the list of plans to compare."))
+            return
+        from groundstation.gui.plan.compare_window import CompareWindow
+
+        self.compare_window = CompareWindow(self._workspace, document.site, tuple(entries), self.window())
+        self.compare_window.show()

@@ -1,0 +1,264 @@
+"""The Plan tab's widgets put together: every signal goes to the desk or the workspace, every change comes back here."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
+
+from groundstation.gui.plan.effects_panel import EffectsPanel
+from groundstation.gui.plan.paint_bar import PaintBar
+from groundstation.gui.plan.panel_detail import PanelDetail
+from groundstation.gui.plan.plan_desk import PlanDesk
+from groundstation.gui.plan.plan_form import PlanForm
+from groundstation.gui.plan.plan_lists import PlanLists
+from groundstation.gui.plan.quality_chart import QualityChart
+from groundstation.gui.plan.viewpoint_page import ViewpointPage
+from groundstation.gui.scrolling import scrolled
+from groundstation.gui.stage import Stage
+from groundstation.gui.workspace import Workspace
+from groundstation.services.document import Document, Item, ItemKind
+from groundstation.services.effects import EffectChoice
+from groundstation.services.jobs import Job, JobBounded, JobImproved
+from groundstation.services.plan_bench import PlanInHand
+from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, sampling_unit
+from planning.findings import Severity, is_flyable
+from planning.progress import QualityPoint
+from planning.request import PlanRequest
+
+
+class PlanPage(QObject):
+    """The tab."""
+
+    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+        super().__init__(stage)
+        self._workspace, self._stage = workspace, stage
+        self._planning_id: int | None = None
+        self.desk = PlanDesk(workspace, self)
+        self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
+        self.effects, self.panel, self.paint = EffectsPanel(), PanelDetail(), PaintBar()
+        self.lists, self.viewpoint = PlanLists(workspace, self.desk), ViewpointPage(workspace, self.desk, stage)
+        self._result, self._verdict = QLabel(), QLabel()
+        self._plan_button = QPushButton(self.tr("Plan"))
+        self._make_actions()
+        self.left = self._make_left()
+        self.right: QWidget | None = self._make_right()
+        self.bottom: QWidget | None = self.lists
+        stage.add_overlay_bar(self.paint)
+        self.paint.hide()
+        self._connect()
+        self._show_document(workspace.document)
+        self._show_units(workspace.units)
+        self._show_in_hand(self.desk.in_hand)
+
+    def _make_actions(self) -> None:
+        self._plan_action = QAction(self.tr("Plan the flight"), self)
+        self._plan_action.setShortcut(QKeySequence("Ctrl+P"))
+        self._plan_action.triggered.connect(self.desk.plan)
+        self._enough_action = QAction(self.tr("Good enough, stop here"), self)
+        self._enough_action.setShortcut(QKeySequence("Ctrl+Return"))
+        self._enough_action.triggered.connect(self.desk.stop_here)
+        compare = QAction(self.tr("Compare plans"), self)
+        compare.setShortcut(QKeySequence("Ctrl+Shift+P"))
+        compare.triggered.connect(lambda _checked=False: self.lists.compare(self.lists.plans.selected()))
+        self._actions = (self._plan_action, self._enough_action, *self.viewpoint.make_actions(), compare)
+
+    def _make_left(self) -> QWidget:
+        left = QWidget()
+        layout = QVBoxLayout(left)
+        layout.setContentsMargins(0, 0, 0, 4)
+        self._plan_button.setProperty("primary", True)
+        self._result.setWordWrap(True)
+        self._verdict.setWordWrap(True)
+        for label in (self._result, self._verdict):
+            label.setContentsMargins(8, 0, 8, 0)
+        for widget in (self.form, self._plan_button, self._verdict, self._result):
+            layout.addWidget(widget)
+        layout.addStretch(1)
+        return left
+
+    def _make_right(self) -> QTabWidget:
+        self._detail = QTabWidget()
+        self._detail.addTab(self.chart, self.tr("Quality"))
+        self._detail.addTab(self.effects, self.tr("Effects"))
+        self._detail.addTab(self.panel, self.tr("Panel"))
+        self._detail.addTab(scrolled(self.viewpoint), self.tr("View"))
+        return self._detail
+
+    def _connect(self) -> None:
+        desk, workspace = self.desk, self._workspace
+        self.form.valueChanged.connect(desk.set_request)
+        self._plan_button.clicked.connect(desk.plan)
+        self.chart.enough.clicked.connect(desk.stop_here)
+        self.effects.wishChanged.connect(self._wish_changed)
+        self.panel.viewpointPicked.connect(
+            lambda viewpoint_id: workspace.jump_to(Item(ItemKind.VIEWPOINT, viewpoint_id))
+        )
+        self.lists.sectionPicked.connect(self._show_section)
+        self.paint.valueChanged.connect(lambda *_: self._paint())
+        desk.planningStarted.connect(self._planning_started)
+        desk.planningEnded.connect(self._planning_ended)
+        desk.inHandChanged.connect(self._show_in_hand)
+        desk.effectsChanged.connect(self._show_effects)
+        desk.refused.connect(lambda text: workspace.say(Severity.ERROR, text))
+        workspace.bridge.improved.connect(self._improved)
+        workspace.bridge.bounded.connect(self._bounded)
+        workspace.jobsChanged.connect(desk.job_ended)
+        workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
+        workspace.selectionChanged.connect(self._show_selection)
+        workspace.unitsChanged.connect(self._show_units)
+
+    # A tab
+
+    def shown(self) -> None:
+        """Take the shared view over."""
+        self.paint.show()
+        self._paint()
+
+    def hidden(self) -> None:
+        """Give the shared view back as it was."""
+        self.paint.hide()
+        self.viewpoint.stop_moving()
+
+    def actions(self) -> tuple[QAction, ...]:
+        """For the tab's menu."""
+        return self._actions
+
+    # What changes
+
+    def _show_document(self, document: Document) -> None:
+        if self.form.value() != document.request:
+            self.form.setValue(document.request)
+        can_plan = document.site is not None and not self.desk.is_planning
+        self._plan_button.setEnabled(can_plan)
+        self._plan_action.setEnabled(can_plan)
+        entry = document.current
+        if document.site is None:
+            self._say_verdict(self.tr("Open or import a site first, on the Site tab."), "muted")
+            self._result.clear()
+        elif entry is None:
+            words = self.tr("Planning ...") if self.desk.is_planning else self.tr("No plan yet.")
+            self._say_verdict(words, "muted")
+            self._result.clear()
+        if entry is not None and not self.desk.is_planning:
+            points = tuple(QualityPoint(point.t_s, float(point.covered)) for point in entry.plan.history)
+            self.chart.show_history(points, float(entry.plan.coverage.reachable_upper_bound))
+
+    def _show_in_hand(self, in_hand: PlanInHand | None) -> None:
+        self.panel.set_plan(None if in_hand is None else in_hand.insight, None if in_hand is None else in_hand.plan)
+        self._show_selection(self._workspace.selection)
+        self._paint()
+        if in_hand is None:
+            if self._workspace.document.current is not None:
+                self._say_verdict(self.tr("The plan is being looked at ..."), "muted")
+                self._result.clear()
+            return
+        self._show_result(in_hand)
+
+    def _show_result(self, in_hand: PlanInHand) -> None:
+        findings, plan = in_hand.revision.findings, in_hand.plan
+        wrong = [finding for finding in findings if finding.severity is Severity.ERROR]
+        warned = sum(finding.severity is Severity.WARNING for finding in findings)
+        if is_flyable(findings):
+            self._say_verdict(self.tr("Ready to fly; warnings: {0}").format(warned), "ok")
+        else:
+            self._say_verdict(
+                self.tr("NOT ready to fly; errors: {0}. {1}").format(len(wrong), wrong[0].message), "error"
+            )
+        coverage, units = plan.coverage, self._workspace.units
+        finest = in_hand.insight.sampling.best_m
+        lines = [
+            self.tr("Views: {0}, sorties: {1}").format(len(plan.viewpoints), len(plan.sorties)),
+            self.tr("{0} of {1} sections covered ({2:.1f} % of the {3} that any flight could cover)").format(
+                coverage.covered,
+                coverage.total,
+                100.0 * coverage.covered / max(coverage.reachable_upper_bound, 1),
+                coverage.reachable_upper_bound,
+            ),
+            self.tr("{0} minutes, {1}").format(
+                minutes_text(plan.duration_s),
+                distance_unit(units).text(sum(sortie.length_m for sortie in plan.sorties)),
+            ),
+        ]
+        gaps = [float(m) for sortie in plan.sorties for m in in_hand.revision.leg_clearances_m(sortie)]
+        if gaps:
+            lines.append(self.tr("smallest clearance {0}").format(length_unit(units).text(min(gaps))))
+        known = finest[finest == finest]
+        if len(known):
+            lines.append(self.tr("pixels from {0}").format(sampling_unit(units).text(float(known.min()))))
+        self._result.setText("\n".join(lines))
+
+    def _say_verdict(self, text: str, role: str) -> None:
+        self._verdict.setText(text)
+        self._verdict.setProperty("role", role)
+        self._verdict.style().polish(self._verdict)
+
+    def verdict(self) -> str:
+        """What is said of the current plan."""
+        return f"{self._verdict.text()}\n{self._result.text()}"
+
+    def _paint(self) -> None:
+        scene = self._stage.scene()
+        if scene is None:
+            self._stage.with_scene(lambda _scene: self._paint())
+            return
+        if not self.paint.isHidden():
+            from groundstation.gui.plan.plan_pictures import paint_plan
+
+            paint_plan(scene, self.desk.in_hand, *self.paint.value(), self._workspace.units)
+
+    def _show_selection(self, item: Item | None) -> None:
+        if item is None or self.desk.is_planning:
+            return
+        if item.kind is ItemKind.PANEL:
+            self.panel.set_panel(item.id)
+            self._detail.setCurrentWidget(self.panel)
+        elif item.kind is ItemKind.VIEWPOINT:
+            self._detail.setCurrentIndex(self._detail.count() - 1)
+
+    def _show_section(self, panel_id: str, section: int) -> None:
+        self._workspace.jump_to(Item(ItemKind.PANEL, panel_id))
+        self.panel.set_panel(panel_id)
+        self.panel.pick_section(section)
+        self._detail.setCurrentWidget(self.panel)
+
+    def _show_effects(self, choices: tuple[EffectChoice, ...]) -> None:
+        self.effects.set_effects(choices)
+
+    def _wish_changed(self, effect: str, wish: str) -> None:
+        request: PlanRequest = self._workspace.document.request
+        if effect == "occlusion":
+            self.desk.set_request(replace(request, constraints=replace(request.constraints, occlusion=wish)))
+
+    def _show_units(self, units: UnitSystem) -> None:
+        for widget in (self.form, self.panel, self.lists):
+            widget.set_units(units)
+        if self.desk.in_hand is not None:
+            self._show_result(self.desk.in_hand)
+        self._paint()
+
+    # While a plan runs
+
+    def _planning_started(self, job: Job[object], budget_s: float) -> None:
+        self._planning_id = job.id
+        self.chart.start(budget_s)
+        self._detail.setCurrentWidget(self.chart)
+        self._enough_action.setEnabled(True)
+        self._show_document(self._workspace.document)
+
+    def _planning_ended(self) -> None:
+        self._planning_id = None
+        self.chart.finish()
+        self._enough_action.setEnabled(False)
+        self._show_document(self._workspace.document)
+
+    def _improved(self, event: JobImproved) -> None:
+        if event.job_id == self._planning_id:
+            self.chart.add_point(event.point)
+
+    def _bounded(self, event: JobBounded) -> None:
+        if event.job_id == self._planning_id:
+            self.chart.set_bound(event.bound)

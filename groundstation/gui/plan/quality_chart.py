@@ -1,0 +1,145 @@
+"""Quality against time of the running plan, with the bound above it and the time that is left."""
+
+from __future__ import annotations
+
+import pyqtgraph as pg
+from PySide6.QtCore import QEvent, Qt, QTimer
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from groundstation.gui.theme import colours
+from planning.progress import Clock, QualityPoint
+
+REDRAW_MS = 100
+"""Improvements can come a thousand times a second; the eye needs ten."""
+
+
+class QualityChart(QWidget):
+    """Covered sections over seconds as they come, the upper bound once it is known, and the time budget.
+
+    `enough` is the button "good enough, stop here".
+    """
+
+    def __init__(self, clock: Clock, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._clock = clock
+        self._points: list[QualityPoint] = []
+        self._bound: float | None = None
+        self._started_s: float | None = None
+        self._budget_s = 0.0
+        self._plot = pg.PlotWidget()
+        self._plot.setMenuEnabled(False)
+        self._plot.setMouseEnabled(x=False, y=False)
+        self._plot.hideButtons()
+        self._plot.setMinimumHeight(110)
+        self._line = self._plot.plot(stepMode="right")
+        self._bound_line = pg.InfiniteLine(angle=0, movable=False)
+        self._now_line = pg.InfiniteLine(angle=90, movable=False)
+        for line in (self._bound_line, self._now_line):
+            line.setVisible(False)
+            self._plot.addItem(line, ignoreBounds=True)
+        self._words, self._left = QLabel(), QLabel()
+        self._words.setWordWrap(True)
+        self.enough = QPushButton(self.tr("Good enough, stop here"))
+        self.enough.setToolTip(self.tr("Keep the best views found so far and plan the route"))
+        self.enough.setVisible(False)
+        below = QHBoxLayout()
+        below.addWidget(self._left, 1)
+        below.addWidget(self.enough)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(4, 4, 4, 4)
+        layout.addWidget(self._plot, 1)
+        layout.addWidget(self._words)
+        layout.addLayout(below)
+        self._redraw = QTimer(self)
+        self._redraw.setInterval(REDRAW_MS)
+        self._redraw.timeout.connect(self._draw)
+        self._dress()
+        self._draw()
+
+    def start(self, budget_s: float) -> None:
+        """A plan begins, with so much time."""
+        self._points, self._bound = [], None
+        self._started_s, self._budget_s = self._clock(), budget_s
+        self.enough.setVisible(True)
+        self.enough.setEnabled(True)
+        self._redraw.start()
+        self._draw()
+
+    def add_point(self, point: QualityPoint) -> None:
+        """Another improvement."""
+        self._points.append(point)
+
+    def set_bound(self, sections: float) -> None:
+        """No plan covers more than this."""
+        self._bound = sections
+
+    def finish(self) -> None:
+        """The plan ended, one way or another."""
+        self._started_s = None
+        self.enough.setVisible(False)
+        self._redraw.stop()
+        self._draw()
+
+    def show_history(self, points: tuple[QualityPoint, ...], bound: float | None) -> None:
+        """The curve of a plan that was made before."""
+        self._points, self._bound = list(points), bound
+        self._draw()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Follow the theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_redraw"):
+            self._dress()
+
+    def text(self) -> str:
+        """What stands below the curve."""
+        return f"{self._words.text()} {self._left.text()}".strip()
+
+    def _dress(self) -> None:
+        found = colours()
+        self._plot.setBackground(found.base)
+        for side, text in (("left", self.tr("covered sections")), ("bottom", self.tr("time in s"))):
+            axis = self._plot.getAxis(side)
+            axis.setLabel(text, color=found.text)
+            axis.setPen(found.line)
+            axis.setTextPen(found.text)
+            axis.enableAutoSIPrefix(False)
+        self._plot.showGrid(x=True, y=True, alpha=0.15)
+        self._line.setPen(pg.mkPen(found.covered if not found.is_dark else found.accent, width=2.5))
+        self._bound_line.setPen(pg.mkPen(found.error, width=1.5, style=Qt.PenStyle.DashLine))
+        self._now_line.setPen(pg.mkPen(found.muted, width=1, style=Qt.PenStyle.DotLine))
+
+    def _draw(self) -> None:
+        times, values = [p.t_s for p in self._points], [p.value for p in self._points]
+        elapsed_s = None if self._started_s is None else self._clock() - self._started_s
+        end_s = max([*times[-1:], 0.0 if elapsed_s is None else elapsed_s, 1.0])
+        if times and end_s > times[-1]:
+            times, values = [*times, end_s], [*values, values[-1]]
+        self._line.setData(times, values)
+        self._bound_line.setVisible(self._bound is not None)
+        highest = max([*values, 1.0])
+        if self._bound is not None:
+            self._bound_line.setValue(self._bound)
+            highest = max(highest, self._bound)
+        self._now_line.setVisible(elapsed_s is not None)
+        self._now_line.setValue(0.0 if elapsed_s is None else elapsed_s)
+        self._plot.setXRange(0.0, 1.05 * end_s, padding=0.0)
+        self._plot.setYRange(0.0, 1.08 * highest, padding=0.0)
+        self._say(values, elapsed_s)
+
+    def _say(self, values: list[float], elapsed_s: float | None) -> None:
+        if not values:
+            self._words.setText(self.tr("Quality against time appears here while a plan runs."))
+        elif self._bound:
+            self._words.setText(
+                self.tr("{0:.0f} sections covered, {1:.1f} % of the {2:.0f} that any flight could cover").format(
+                    values[-1], 100.0 * values[-1] / self._bound, self._bound
+                )
+            )
+        else:
+            self._words.setText(self.tr("{0:.0f} sections covered").format(values[-1]))
+        if elapsed_s is None:
+            self._left.clear()
+        else:
+            left_s = max(0.0, self._budget_s - elapsed_s)
+            self._left.setText(self.tr("{0:.0f} s, at most {1:.0f} s left").format(elapsed_s, left_s))

@@ -1,0 +1,187 @@
+"""The selected viewpoint: what it covers, and everything that can be done to it by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
+
+from groundstation.gui.plan.plan_desk import PlanDesk
+from groundstation.gui.plan.viewpoint_editor import ViewpointEditor
+from groundstation.gui.stage import Stage
+from groundstation.gui.workspace import Workspace
+from groundstation.services.document import Document, Item, ItemKind
+from groundstation.services.units import UnitSystem
+from planning.findings import Severity
+from planning.plan import Viewpoint
+
+BESIDE_M = 2.0
+"""A new viewpoint stands this far beside the one it is added to: two aircraft lengths, clearly another place."""
+
+
+class ViewpointPage(QWidget):
+    """The editor, connected."""
+
+    def __init__(self, workspace: Workspace, desk: PlanDesk, stage: Stage) -> None:
+        super().__init__()
+        self._workspace, self._desk, self._stage = workspace, desk, stage
+        self._aim_panel = ""
+        self.editor = ViewpointEditor()
+        self._move = QCheckBox(self.tr("Move in the 3-D view"))
+        self._move.setToolTip(self.tr("Drag the selected viewpoint; with Shift along its line of sight; or arrow keys"))
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.editor)
+        layout.addWidget(self._move)
+        layout.addStretch(1)
+        self._connect()
+        self._show_document(workspace.document)
+
+    def _connect(self) -> None:
+        desk, workspace = self._desk, self._workspace
+        self.editor.valueChanged.connect(desk.set_viewpoint)
+        self.editor.addWanted.connect(self.add_viewpoint)
+        self.editor.deleteWanted.connect(self.delete_viewpoint)
+        self.editor.aimWanted.connect(self._aim)
+        self._move.toggled.connect(self._move_toggled)
+        desk.inHandChanged.connect(lambda _in_hand: self._say_of_viewpoint())
+        desk.refused.connect(lambda text: self.editor.say(text, wrong=True))
+        workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
+        workspace.selectionChanged.connect(self._show_selection)
+        workspace.unitsChanged.connect(self.set_units)
+        self._stage.with_scene(
+            lambda scene: (scene.toolFinished.connect(self._moved_in_scene), scene.toolEnded.connect(self._tool_ended))
+        )
+
+    def make_actions(self) -> tuple[QAction, ...]:
+        """For the tab's menu."""
+        found = []
+        for text, key, slot in (
+            (self.tr("Add viewpoint"), "Ctrl+Shift+A", self.add_viewpoint),
+            (self.tr("Delete viewpoint"), "Ctrl+Del", self.delete_viewpoint),
+            (self.tr("Keep viewpoint when planning again"), "Ctrl+L", self.toggle_lock),
+            (self.tr("Move viewpoint in the 3-D view"), "Ctrl+M", self._move.toggle),
+        ):
+            action = QAction(text, self)
+            action.setShortcut(QKeySequence(key))
+            action.triggered.connect(lambda _checked=False, slot=slot: slot())
+            found.append(action)
+        return tuple(found)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self.editor.set_units(units)
+
+    def _show_document(self, document: Document) -> None:
+        if document.current is not None:
+            self.editor.set_camera(document.current.plan.camera)
+        self._show_selection(self._workspace.selection)
+
+    def _show_selection(self, item: Item | None) -> None:
+        entry = self._workspace.document.current
+        if item is not None and item.kind is ItemKind.PANEL:
+            self._aim_panel = item.id
+            return
+        viewpoint = None
+        if item is not None and item.kind is ItemKind.VIEWPOINT and entry is not None:
+            viewpoint = entry.viewpoint(item.id)
+        if viewpoint != self.editor.value():
+            self.editor.setValue(viewpoint)
+        self._say_of_viewpoint()
+        if self._move.isChecked():
+            self._start_tool()
+
+    def _say_of_viewpoint(self) -> None:
+        """What the selected viewpoint covers, or what is wrong with it."""
+        in_hand, viewpoint = self._desk.in_hand, self.editor.value()
+        if in_hand is None or viewpoint is None or viewpoint.id not in in_hand.insight.view_ids:
+            return
+        wrong = [
+            finding.message
+            for finding in in_hand.revision.findings
+            if finding.severity is Severity.ERROR and viewpoint.id in finding.place
+        ]
+        if wrong:
+            self.editor.say(wrong[0], wrong=True)
+            return
+        row = in_hand.insight.sections[in_hand.insight.view_ids.index(viewpoint.id)]
+        seen = row >= 0
+        alone = int((in_hand.insight.counts[seen, row[seen]] == 1).sum())
+        coverage = in_hand.plan.coverage
+        self.editor.say(
+            self.tr("Covers {0} panels, {1} sections that no other view covers. The plan covers {2}.").format(
+                int(seen.sum()), alone, coverage.covered
+            )
+        )
+
+    def add_viewpoint(self) -> None:
+        """A new viewpoint, to the right of the selected one or in front of home."""
+        in_hand, value = self._desk.in_hand, self.editor.value()
+        site = self._workspace.document.site
+        if in_hand is None or site is None:
+            return
+        if value is None:
+            x, y, _ = site.site.home_enu_m
+            _, _, floor = site.site.airspace.min_enu_m
+            self._desk.add_viewpoint(Viewpoint("new", (x, y, floor + BESIDE_M), 0.0, 0.0))
+            return
+        heading = math.radians(value.heading_deg)
+        x, y, z = value.position_enu_m
+        place = (x + BESIDE_M * math.cos(heading), y - BESIDE_M * math.sin(heading), z)
+        self._desk.add_viewpoint(replace(value, position_enu_m=place))
+
+    def delete_viewpoint(self) -> None:
+        """The selected viewpoint away."""
+        value = self.editor.value()
+        if value is not None:
+            self._desk.delete_viewpoint(value.id)
+
+    def toggle_lock(self) -> None:
+        """Keep the selected viewpoint when planning again, or no more."""
+        value = self.editor.value()
+        if value is not None:
+            self._desk.set_viewpoint(replace(value, locked=not value.locked))
+
+    def _aim(self) -> None:
+        value = self.editor.value()
+        if value is None:
+            return
+        if self._aim_panel:
+            self._desk.aim(value.id, self._aim_panel)
+        else:
+            self.editor.say(self.tr("Click a panel first, then the viewpoint, then Aim."), wrong=True)
+
+    def _move_toggled(self, checked: bool) -> None:
+        if checked:
+            self._start_tool()
+        else:
+            self.stop_moving()
+
+    def _start_tool(self) -> None:
+        scene, value = self._stage.scene(), self.editor.value()
+        if scene is None or value is None or value.locked:
+            return
+        from groundstation.gui.view3d.viewpoint_tool import ViewpointTool
+
+        angles = math.radians(value.heading_deg), math.radians(value.gimbal_pitch_deg)
+        scene.start_tool(ViewpointTool(value.id, value.position_enu_m, *angles))
+
+    def stop_moving(self) -> None:
+        """Put the tool away."""
+        self._move.setChecked(False)
+        scene = self._stage.scene()
+        if scene is not None:
+            scene.cancel_tool()
+
+    def _tool_ended(self) -> None:
+        if self._move.isChecked() and self._stage.scene() is not None and self._stage.scene().tool() is None:
+            self._move.setChecked(False)
+
+    def _moved_in_scene(self, result: object) -> None:
+        from groundstation.gui.view3d.viewpoint_tool import MovedViewpoint
+
+        value = self.editor.value()
+        if isinstance(result, MovedViewpoint) and value is not None and value.id == result.id:
+            self._desk.set_viewpoint(replace(value, position_enu_m=result.position_enu_m))

@@ -1,0 +1,205 @@
+"""The two sides of the Site tab, and how tree, tools, properties and checks work together."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import (
+    QFrame,
+    QGridLayout,
+    QLabel,
+    QPushButton,
+    QScrollArea,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from groundstation.gui.site.findings_list import FindingsList
+from groundstation.gui.site.grid_form import GridForm
+from groundstation.gui.site.grid_maker import GridMaker
+from groundstation.gui.site.property_panel import PropertyPanel
+from groundstation.gui.site.site_editor import SiteEditor
+from groundstation.gui.site.site_opener import SiteOpener
+from groundstation.gui.site.site_tools import SiteTools
+from groundstation.gui.site.site_tree import SiteTree
+from groundstation.gui.site.start_page import StartPage
+from groundstation.gui.stage import Stage
+from groundstation.gui.workspace import Workspace
+from groundstation.services.document import Document, Item
+from groundstation.services.units import UnitSystem
+from planning.findings import Finding
+
+
+class SiteTab:
+    """The Site tab; see `groundstation.gui.tabs.Tab`."""
+
+    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+        self.left = SiteSide(workspace)
+        self.detail = SiteDetail(workspace, stage, self.left)
+        self.right: QWidget | None = _Column(self.detail)
+        self.bottom: QWidget | None = None
+
+    def shown(self) -> None:
+        """Check the site after edits."""
+        self.detail.editor.set_active(True)
+
+    def hidden(self) -> None:
+        """Put tools and previews away."""
+        self.detail.editor.set_active(False)
+        self.detail.put_away()
+
+    def actions(self) -> tuple[QAction, ...]:
+        """Open and import."""
+        return self.left.actions_of_tab
+
+
+class SiteSide(QWidget):
+    """Where a site comes from, and the tree of what is on it."""
+
+    def __init__(self, workspace: Workspace, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._workspace = workspace
+        self.opener = SiteOpener(workspace, self)
+        self.start = StartPage(self.opener)
+        self.tree = SiteTree()
+        self._pages = QStackedWidget()
+        self._pages.addWidget(self.start)
+        self._pages.addWidget(self._site_page())
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 8, 8, 8)
+        layout.addWidget(self._pages)
+        self.actions_of_tab = self._make_actions()
+        self.tree.valueChanged.connect(self._select)
+        self.tree.lookAsked.connect(workspace.jump_to)
+        workspace.selectionChanged.connect(self.tree.setValue)
+        workspace.documentChanged.connect(self._document_changed)
+        workspace.unitsChanged.connect(self._show_units)
+        self._show_site()
+
+    def _site_page(self) -> QWidget:
+        page = QWidget()
+        buttons = QGridLayout()
+        buttons.setSpacing(4)
+        imported, opened, bundled = (
+            QPushButton(text) for text in (self.tr("Import..."), self.tr("Open..."), self.tr("Bundled site"))
+        )
+        opened.clicked.connect(self.opener.choose_site)
+        imported.clicked.connect(self.opener.choose_import)
+        bundled.setMenu(self.opener.bundled_menu(bundled))
+        buttons.addWidget(imported, 0, 0)
+        buttons.addWidget(opened, 0, 1)
+        buttons.addWidget(bundled, 1, 0, 1, 2)
+        layout = QVBoxLayout(page)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(buttons)
+        layout.addWidget(self.tree, 1)
+        return page
+
+    def _make_actions(self) -> tuple[QAction, ...]:
+        actions = []
+        for text, shortcut, slot in (
+            (self.tr("Open site..."), "Ctrl+Shift+O", self.opener.choose_site),
+            (self.tr("Import building model..."), "Ctrl+I", self.opener.choose_import),
+            (self.tr("Remove what is selected"), "Del", self.tree.ask_remove),
+        ):
+            action = QAction(text, self)
+            action.setShortcut(shortcut)
+            action.triggered.connect(slot)
+            actions.append(action)
+        return tuple(actions)
+
+    def _select(self, item: Item | None) -> None:
+        self._workspace.select(item)
+
+    def _document_changed(self, before: Document, after: Document) -> None:
+        if after.site is not before.site:
+            self._show_site()
+
+    def _show_units(self, _units: UnitSystem) -> None:
+        self._show_site()
+
+    def _show_site(self) -> None:
+        model = self._workspace.document.site
+        self.tree.set_site(model, self._workspace.units)
+        self.tree.setValue(self._workspace.selection)
+        self._pages.setCurrentIndex(0 if model is None else 1)
+
+
+class SiteDetail(QWidget):
+    """Tools, the panel grid while one is made, properties of what is selected, and what the check found."""
+
+    def __init__(self, workspace: Workspace, stage: Stage, side: SiteSide, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._workspace = workspace
+        self.editor = SiteEditor(workspace, self)
+        self.tools = SiteTools(workspace, stage, self.editor)
+        self.grid_form = GridForm(workspace.units)
+        self.grid_maker = GridMaker(workspace, stage, self.editor, self.tools, self.grid_form)
+        self.properties = PropertyPanel(workspace, self.editor)
+        self.findings = FindingsList()
+        self._empty = QLabel(self.tr("What is selected on the site is shown here."))
+        self._empty.setProperty("role", "muted")
+        self._empty.setWordWrap(True)
+        self._filled = QWidget()
+        column = QVBoxLayout(self._filled)
+        column.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.tools, self.grid_form, self.properties, self.findings):
+            column.addWidget(widget)
+        column.addStretch(1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 8, 8, 8)
+        layout.addWidget(self._empty)
+        layout.addWidget(self._filled)
+        layout.addStretch(1)
+        self.editor.findingsChanged.connect(self._show_findings)
+        self.findings.chosen.connect(workspace.jump_to)
+        self.grid_maker.activeChanged.connect(self.properties.setHidden)
+        side.tree.removeAsked.connect(self.editor.remove)
+        side.tree.flipAsked.connect(self.editor.flip)
+        side.tree.renameAsked.connect(self._rename)
+        workspace.documentChanged.connect(self._document_changed)
+        workspace.unitsChanged.connect(self.grid_form.set_units)
+        self._show_site()
+
+    def put_away(self) -> None:
+        """Put away what the user began to draw."""
+        self.tools.put_away()
+        if not self.grid_form.isHidden():
+            self.grid_maker.end()
+
+    def _rename(self, item: Item) -> None:
+        self._workspace.select(item)
+        self.properties.focus_name()
+
+    def _show_findings(self, findings: tuple[Finding, ...] | None) -> None:
+        self.findings.set_findings(findings)
+
+    def _document_changed(self, before: Document, after: Document) -> None:
+        if after.site is not before.site:
+            self._show_site()
+
+    def _show_site(self) -> None:
+        has_site = self._workspace.document.site is not None
+        self._empty.setVisible(not has_site)
+        self._filled.setVisible(has_site)
+        if not has_site:
+            self.put_away()
+
+
+class _Column(QScrollArea):
+    """Scrolls a column up and down, and is never narrower than it."""
+
+    def __init__(self, widget: QWidget) -> None:
+        super().__init__()
+        self.setWidget(widget)
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        widget.installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Ask for another width when the column needs one."""
+        if watched is self.widget() and event.type() is QEvent.Type.LayoutRequest:
+            self.setMinimumWidth(self.widget().minimumSizeHint().width() + self.verticalScrollBar().sizeHint().width())
+        return super().eventFilter(watched, event)

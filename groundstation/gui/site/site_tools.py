@@ -1,0 +1,222 @@
+"""Tools that draw on the site: buttons that start them in the 3-D view, and what becomes of their results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum, auto
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QFileDialog, QGridLayout, QPushButton, QWidget
+
+from groundstation.gui.site.pages import Edit
+from groundstation.gui.site.site_editor import SiteEditor
+from groundstation.gui.stage import Stage, StagePage
+from groundstation.gui.workspace import Workspace
+from groundstation.services.document import Item, ItemKind
+from groundstation.services.site_edits import add_box, add_mesh_obstacle, add_zone, move_home, set_airspace
+from planning.findings import Severity
+from planning.mesh import MESH_SUFFIXES, TriangleMesh, read_mesh
+from planning.site import SiteModel
+
+if TYPE_CHECKING:
+    from groundstation.gui.view3d.drawing_tools import DrawnBox, DrawnPolygon, PickedRectangle, RectangleTool
+    from groundstation.gui.view3d.scene_view import SceneView
+    from groundstation.gui.view3d.tools import PickedHome, Tool
+
+
+class SiteTool(Enum):
+    """What the user draws."""
+
+    NO_FLY = auto()
+    BOX = auto()
+    HOME = auto()
+    AIRSPACE = auto()
+    GRID = auto()
+
+
+class SiteTools(QWidget):
+    """One button for each tool; a tool that is in use has its button down, and pressing that puts it away.
+
+    Signals
+    -------
+    gridPicked(Rectangle)
+        The rectangle of a panel grid.
+    gridAsked()
+        The user wants to make a panel grid.
+    """
+
+    gridPicked = Signal(object)  # noqa: N815  (Qt's own way of naming)
+    gridAsked = Signal()  # noqa: N815
+
+    def __init__(self, workspace: Workspace, stage: Stage, editor: SiteEditor, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._workspace, self._stage, self._editor = workspace, stage, editor
+        self._active: SiteTool | None = None
+        self._scene: SceneView | None = None
+        self._grid_tool: RectangleTool | None = None
+        self._buttons: dict[SiteTool, QPushButton] = {}
+        layout = QGridLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        for number, (tool, text, tip) in enumerate(self._texts()):
+            button = QPushButton(text)
+            button.setCheckable(True)
+            button.setToolTip(tip)
+            button.clicked.connect(lambda checked, tool=tool: self.use(tool) if checked else self.put_away())
+            self._buttons[tool] = button
+            layout.addWidget(button, number // 2, number % 2)
+        mesh = QPushButton(self.tr("Obstacle mesh..."))
+        mesh.setToolTip(self.tr("Add an obstacle from a mesh file in the site's coordinates (a crane, a tree)"))
+        mesh.clicked.connect(self._choose_mesh)
+        layout.addWidget(mesh, 2, 1)
+        stage.with_scene(self._connect)
+
+    def _texts(self) -> tuple[tuple[SiteTool, str, str], ...]:
+        return (
+            (SiteTool.GRID, self.tr("Panel grid"), self.tr("Equal panels in a rectangle on a wall")),
+            (SiteTool.HOME, self.tr("Home"), self.tr("Click where the aircraft takes off and lands")),
+            (SiteTool.NO_FLY, self.tr("No-fly zone"), self.tr("Draw a zone that must not be entered on the ground")),
+            (SiteTool.BOX, self.tr("Obstacle box"), self.tr("Draw a box: two corners on the ground, then the height")),
+            (SiteTool.AIRSPACE, self.tr("Airspace"), self.tr("Draw the box in which the aircraft must stay")),
+        )
+
+    def active(self) -> SiteTool | None:
+        """The tool in use."""
+        return self._active
+
+    def button(self, tool: SiteTool) -> QPushButton:
+        """The button of a tool."""
+        return self._buttons[tool]
+
+    def use(self, tool: SiteTool, n_rows: int = 1, n_columns: int = 1) -> None:
+        """Start a tool in the 3-D view; rows and columns are those of a panel grid."""
+        if tool is SiteTool.GRID and self._active is not SiteTool.GRID:
+            self.gridAsked.emit()
+        self._stage.show_page(StagePage.SCENE)
+
+        def start(scene: SceneView) -> None:
+            scene.start_tool(self._made(tool, n_rows, n_columns))
+            self._set_active(tool)
+
+        self._stage.with_scene(start)
+
+    def put_away(self) -> None:
+        """Put the tool in use away; nothing comes of it."""
+        if self._scene is not None and self._active is not None:
+            self._scene.cancel_tool()
+        self._set_active(None)
+
+    def set_grid(self, n_rows: int, n_columns: int) -> None:
+        """Rows and columns that a panel grid is shown with while it is picked."""
+        if self._grid_tool is not None:
+            self._grid_tool.set_grid(n_rows, n_columns)
+
+    def add_mesh(self, path: Path) -> None:
+        """Add an obstacle from a mesh file."""
+
+        def added(mesh: TriangleMesh) -> None:
+            chosen = ""
+
+            def edit(model: SiteModel) -> SiteModel:
+                nonlocal chosen
+                edited, chosen = add_mesh_obstacle(model, path.stem, mesh)
+                return edited
+
+            self._apply(self.tr("Add obstacle {0}").format(path.stem), edit)
+            if chosen:
+                self._workspace.jump_to(Item(ItemKind.OBSTACLE, chosen))
+
+        self._workspace.start(self.tr("Read {0}").format(path.name), lambda _context: read_mesh(path), added)
+
+    def _connect(self, scene: SceneView) -> None:
+        self._scene = scene
+        scene.toolFinished.connect(self._finished)
+        scene.toolEnded.connect(self._ended)
+
+    def _made(self, tool: SiteTool, n_rows: int, n_columns: int) -> Tool:
+        from groundstation.gui.view3d.drawing_tools import BoxTool, PolygonTool, RectangleTool
+        from groundstation.gui.view3d.tools import HomeTool
+
+        match tool:
+            case SiteTool.NO_FLY:
+                return PolygonTool()
+            case SiteTool.BOX | SiteTool.AIRSPACE:
+                return BoxTool()
+            case SiteTool.HOME:
+                return HomeTool()
+            case SiteTool.GRID:
+                self._grid_tool = RectangleTool(n_rows, n_columns)
+                return self._grid_tool
+
+    def _set_active(self, tool: SiteTool | None) -> None:
+        self._active = tool
+        if tool is not SiteTool.GRID:
+            self._grid_tool = None
+        for known, button in self._buttons.items():
+            button.setChecked(known is tool)
+
+    def _ended(self) -> None:
+        # Other tabs use tools as well; theirs end without anything to do here.
+        if self._active is not None:
+            self._set_active(None)
+
+    def _finished(self, result: object) -> None:
+        tool = self._active
+        if tool is None:
+            return
+        self._set_active(None)
+        take = {
+            SiteTool.NO_FLY: self._add_zone,
+            SiteTool.BOX: self._add_box,
+            SiteTool.AIRSPACE: self._set_airspace,
+            SiteTool.HOME: self._move_home,
+            SiteTool.GRID: self._take_rectangle,
+        }[tool]
+        take(result)
+
+    def _add_zone(self, drawn: DrawnPolygon) -> None:
+        self._add(self.tr("Draw no-fly zone"), lambda model: add_zone(model, drawn.corners_enu_m), ItemKind.NO_FLY)
+
+    def _add_box(self, drawn: DrawnBox) -> None:
+        low, high = drawn.min_enu_m, drawn.max_enu_m
+        self._add(self.tr("Draw obstacle"), lambda model: add_box(model, low, high), ItemKind.OBSTACLE)
+
+    def _set_airspace(self, drawn: DrawnBox) -> None:
+        def edit(model: SiteModel) -> SiteModel:
+            airspace = model.site.airspace
+            (x0, y0, _), floor = drawn.min_enu_m, airspace.min_enu_m[2]
+            return set_airspace(model, (x0, y0, floor), drawn.max_enu_m, airspace.ground_z_m)
+
+        self._apply(self.tr("Draw airspace"), edit, Item(ItemKind.AIRSPACE))
+
+    def _move_home(self, picked: PickedHome) -> None:
+        self._apply(self.tr("Move home"), lambda model: move_home(model, picked.point_enu_m), Item(ItemKind.HOME))
+
+    def _take_rectangle(self, picked: PickedRectangle) -> None:
+        self.gridPicked.emit((picked.lower_left_enu_m, picked.lower_right_enu_m, picked.upper_left_enu_m))
+
+    def _add(self, label: str, edit: Callable[[SiteModel], tuple[SiteModel, str]], kind: ItemKind) -> None:
+        """An edit that also returns the name of what it added; that is selected."""
+        names: list[str] = []
+
+        def only_model(model: SiteModel) -> SiteModel:
+            edited, name = edit(model)
+            names.append(name)
+            return edited
+
+        self._apply(label, only_model)
+        if names:
+            self._workspace.select(Item(kind, names[-1]))
+
+    def _apply(self, label: str, edit: Edit, select: Item | None = None) -> None:
+        error = self._editor.apply(label, edit, select)
+        if error:
+            self._workspace.say(Severity.ERROR, f"{label}: {error}")
+
+    def _choose_mesh(self) -> None:
+        kinds = " ".join(f"*{suffix}" for suffix in MESH_SUFFIXES)
+        name, _ = QFileDialog.getOpenFileName(self, self.tr("Obstacle mesh"), "", self.tr("Meshes ({0})").format(kinds))
+        if name:
+            self.add_mesh(Path(name))

@@ -1,0 +1,219 @@
+"""The OpenGL widget: draws drawables by name through a pinhole, and reports the mouse. It knows nothing of sites.
+
+A change only marks the widget for repainting; Qt paints once per turn of its event loop, and not at all while the
+widget is hidden. Nothing here asks VTK to render.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QImage
+from PySide6.QtWidgets import QWidget
+from pyvistaqt import QtInteractor
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+
+from groundstation.gui.view3d.layers import Drawable
+from groundstation.gui.view3d.pinhole import Pinhole
+
+COLOURS = "colours"
+
+FAINTEST_EDGE_PX, FULL_EDGE_PX = 8.0, 40.0
+"""Outlines of cells that are smaller on screen than the first are not drawn, for they would be all that is seen; up to
+the second they grow from faint to opaque."""
+
+DEPTH_RATIO = 1e-4
+"""Nearest depth drawn as a part of the farthest: 24 bits of depth still part surfaces 2 cm apart 250 m away."""
+
+
+SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render driver")
+"""Names that OpenGL gives itself where the processor draws: Mesa's, Google's and Microsoft's."""
+
+
+@dataclass(slots=True)
+class _Drawn:
+    """A drawable in VTK's hands."""
+
+    actor: vtkActor
+    data: pv.PolyData
+    edge_size_m: float
+    nearer: float
+    bounds: tuple[float, ...]
+
+    def stand_before(self, eye_enu_m: NDArray[np.float64]) -> None:
+        """Scale about the eye, which changes depths but no pixel."""
+        self.actor.SetScale(1.0 - self.nearer)
+        self.actor.SetPosition(*(self.nearer * eye_enu_m))
+
+
+class Canvas(QtInteractor):
+    """Drawables by name, shown or hidden, seen through a pinhole.
+
+    Multi-sampling, lamps and order-independent transparency are off: each costs a processor that draws in place of a
+    graphics card more than the rest of the picture.
+    """
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent, auto_update=False, multi_samples=0)
+        # Files that are dropped belong to the window, not to VTK's readers.
+        self.setAcceptDrops(False)
+        # The wheel moves the view and leaves the focus where it is.
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.remove_all_lights()
+        self.renderer.SetUseOIT(False)
+        self._drawn: dict[Hashable, list[_Drawn]] = {}
+        self._hidden: set[Hashable] = set()
+        self._pinhole: Pinhole | None = None
+        self.n_painted = 0
+        self.is_open = True
+
+    def close(self) -> None:
+        """Free the OpenGL context. What comes after, such as the end of a job, is heard and draws nothing."""
+        self.is_open = False
+        self._drawn.clear()
+        super().close()
+
+    def draw(self, name: Hashable, drawables: Sequence[Drawable]) -> None:
+        """Draw these under a name, in place of what was drawn under it."""
+        if not self.is_open:
+            return
+        for old in self._drawn.pop(name, []):
+            self.renderer.RemoveActor(old.actor)
+        made = [_drawn(drawable) for drawable in drawables if len(drawable.cells)]
+        for new in made:
+            self.renderer.AddActor(new.actor)
+            if new.nearer and self._pinhole is not None:
+                new.stand_before(self._pinhole.eye_enu_m)
+        if made:
+            self._drawn[name] = made
+        self._show_detail()
+        self.update()
+
+    def recolour(self, name: Hashable, colours: NDArray[np.uint8]) -> None:
+        """Give the cells of what is drawn under a name, one drawable, other colours, shape (k, 4)."""
+        if not self.is_open:
+            return
+        (drawn,) = self._drawn[name]
+        n_corners = drawn.data.n_points // len(colours)
+        drawn.data.point_data[COLOURS] = np.repeat(colours, n_corners, axis=0)
+        drawn.data.Modified()
+        self.update()
+
+    def set_shown(self, name: Hashable, is_shown: bool) -> None:
+        """Show or hide what is, or will be, drawn under a name."""
+        (self._hidden.discard if is_shown else self._hidden.add)(name)
+        self._show_detail()
+        self.update()
+
+    def set_background_colour(self, colour: str) -> None:
+        """Colour behind everything, `#rrggbb`."""
+        if self.is_open:
+            self.renderer.SetBackground(*QColor(colour).getRgbF()[:3])
+            self.update()
+
+    def look_through(self, pinhole: Pinhole) -> None:
+        """See the scene through a pinhole; its size counts only by its aspect ratio."""
+        if not self.is_open:
+            return
+        self._pinhole = pinhole
+        for drawn in self._drawn.values():
+            for part in drawn:
+                if part.nearer:
+                    part.stand_before(pinhole.eye_enu_m)
+        camera = self.renderer.GetActiveCamera()
+        camera.SetPosition(*pinhole.eye_enu_m)
+        camera.SetFocalPoint(*(pinhole.eye_enu_m + pinhole.forward))
+        camera.SetViewUp(*pinhole.up)
+        camera.SetViewAngle(float(np.degrees(2.0 * np.arctan(pinhole.half_height))))
+        camera.SetUseExplicitAspectRatio(True)
+        camera.SetExplicitAspectRatio(pinhole.half_width / pinhole.half_height)
+        self._show_detail()
+        self.update()
+
+    def initializeGL(self) -> None:  # noqa: N802
+        """Smooth edges where a graphics card draws; a processor in its place takes 50 ms for that."""
+        super().initializeGL()
+        renderer = self.ren_win.ReportCapabilities().lower()
+        self.renderer.SetUseFXAA(not any(name in renderer for name in SOFTWARE_RENDERERS))
+
+    def paintGL(self) -> None:  # noqa: N802
+        """Draw, and count it."""
+        self.n_painted += 1
+        super().paintGL()
+
+    def picture(self) -> NDArray[np.uint8]:
+        """What is drawn, without what lies over the widget, shape (height, width, 3)."""
+        return image_array(self.grabFramebuffer())
+
+    def _show_detail(self) -> None:
+        """Switch on what the layers and the distance call for; fit near and far to it."""
+        depths = []
+        for name, drawn in self._drawn.items():
+            for part in drawn:
+                is_shown = name not in self._hidden
+                part.actor.SetVisibility(is_shown)
+                if is_shown and self._pinhole is not None:
+                    nearest, farthest = _depths(part.bounds, self._pinhole)
+                    depths.append((nearest, farthest))
+                    if part.edge_size_m > 0.0:
+                        middle = max(0.5 * (nearest + farthest), 1e-3)
+                        size_px = part.edge_size_m / self._pinhole.metres_per_px(middle)
+                        strength = (size_px - FAINTEST_EDGE_PX) / (FULL_EDGE_PX - FAINTEST_EDGE_PX)
+                        part.actor.GetProperty().SetEdgeVisibility(strength > 0.0)
+                        part.actor.GetProperty().SetEdgeOpacity(min(1.0, max(0.0, strength)))
+        if depths:
+            far = max(1.0, 1.05 * max(farthest for _, farthest in depths))
+            near = max(DEPTH_RATIO * far, 0.95 * min(nearest for nearest, _ in depths))
+            self.renderer.GetActiveCamera().SetClippingRange(min(near, 0.5 * far), far)
+
+
+def image_array(image: QImage) -> NDArray[np.uint8]:
+    """Pixels of an image, shape (height, width, 3)."""
+    image = image.convertToFormat(QImage.Format.Format_RGB888)
+    rows = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
+    return rows[:, : 3 * image.width()].reshape(image.height(), image.width(), 3).copy()
+
+
+def _drawn(drawable: Drawable) -> _Drawn:
+    data = pv.PolyData()
+    # Every cell has points of its own that carry its colour: fetching colours of cells costs more for every pixel.
+    n_cells, size = drawable.cells.shape
+    data.points = drawable.points_enu_m.astype(np.float32)[drawable.cells].reshape(-1, 3)
+    cells = pv.CellArray.from_regular_cells(np.arange(n_cells * size).reshape(n_cells, size))
+    (data.SetVerts if size == 1 else data.SetLines if size == 2 else data.SetPolys)(cells)
+    data.point_data[COLOURS] = np.repeat(drawable.colours, size, axis=0)
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray(COLOURS)
+    mapper.SetColorModeToDirectScalars()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetLighting(False)
+    look.SetLineWidth(drawable.width_px)
+    look.SetPointSize(drawable.width_px)
+    edge_size_m = 0.0
+    if drawable.edge_colour:
+        look.SetEdgeColor(*QColor(drawable.edge_colour).getRgbF()[:3])
+        first = drawable.points_enu_m[drawable.cells[:, :2]]
+        edge_size_m = float(np.median(np.linalg.norm(first[:, 1] - first[:, 0], axis=1)))
+    if drawable.depth_shift:
+        mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, drawable.depth_shift)
+        mapper.SetRelativeCoincidentTopologyPointOffsetParameter(drawable.depth_shift)
+    return _Drawn(actor, data, edge_size_m, drawable.nearer, data.GetBounds())
+
+
+def _depths(bounds: tuple[float, ...], pinhole: Pinhole) -> tuple[float, float]:
+    """Nearest and farthest depth of a box."""
+    low, high = np.array(bounds[::2]), np.array(bounds[1::2])
+    centre, half = 0.5 * (low + high), 0.5 * (high - low)
+    depth = float((centre - pinhole.eye_enu_m) @ pinhole.forward)
+    reach = float(half @ np.abs(pinhole.forward))
+    return depth - reach, depth + reach

@@ -1,0 +1,193 @@
+"""What lies under a pixel: rays against the triangles of a site, and viewpoints and routes by their pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from groundstation.gui.view3d.layers import Layer
+from groundstation.gui.view3d.pinhole import Pinhole
+from groundstation.gui.view3d.plan_scene import PlanScene
+from groundstation.gui.view3d.shapes import shown_panels
+from groundstation.gui.view3d.site_scene import SiteScene, home_pad
+from groundstation.services.document import Item, ItemKind
+from planning.geometry.bvh import Bvh, build_bvh, segment_hits
+from planning.geometry.distance import segment_hits_triangle
+from planning.site import panel_triangles
+
+Array = NDArray[np.float64]
+
+REACH_M = 50_000.0
+"""Length of a picking ray."""
+
+VIEWPOINT_PX, ROUTE_PX = 10.0, 6.0
+"""How near to a viewpoint or a route the pointer must be: a mouse is steadier than that, a finger nearly so."""
+
+MAX_HITS = 4096
+
+_LAYERS = {
+    ItemKind.BUILDING: Layer.BUILDING,
+    ItemKind.PANEL: Layer.PANELS,
+    ItemKind.OBSTACLE: Layer.OBSTACLES,
+    ItemKind.NO_FLY: Layer.NO_FLY,
+    ItemKind.HOME: Layer.HOME,
+    ItemKind.VIEWPOINT: Layer.VIEWPOINTS,
+    ItemKind.LEG: Layer.ROUTES,
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hit:
+    """A place on something that can be pointed at.
+
+    Parameters
+    ----------
+    point_enu_m
+        Shape (3,).
+    normal
+        Unit normal on the side of the eye, shape (3,); zero where the thing has none (a viewpoint, a route).
+    depth_m
+        Distance from the eye.
+    """
+
+    item: Item
+    point_enu_m: Array
+    normal: Array
+    depth_m: float
+
+
+class PickIndex:
+    """Answers what a ray meets. Made once per site; viewpoints and routes are looked up by their pixels."""
+
+    def __init__(self, scene: SiteScene) -> None:
+        site, model = scene.model.site, scene.model
+        parts: list[tuple[Item | None, Array]] = [(None, panel_triangles(shown_panels(scene.frames)))]
+        parts.append((Item(ItemKind.BUILDING), model.building.corners_enu_m))
+        for obstacle, mesh in zip(site.obstacles, model.obstacles, strict=True):
+            parts.append((Item(ItemKind.OBSTACLE, obstacle.id), mesh.corners_enu_m))
+        for zone in site.airspace.no_fly:
+            parts.append((Item(ItemKind.NO_FLY, zone.id), zone.prism().corners_enu_m))
+        parts.append((Item(ItemKind.HOME), home_pad(model).corners_enu_m))
+        self._panels = tuple(Item(ItemKind.PANEL, panel.id) for panel in site.panels)
+        self._items = [item for item, _ in parts]
+        self._starts = np.cumsum([0, *(len(corners) for _, corners in parts)])
+        self._bvh: Bvh = build_bvh(np.concatenate([corners for _, corners in parts]))
+        self._ground_z_m = site.airspace.ground_z_m
+
+    def surface(self, eye_enu_m: Array, direction: Array, hidden: frozenset[Layer] = frozenset()) -> Hit | None:
+        """The first thing that a ray from the eye meets.
+
+        A no-fly volume is transparent: what lies in it or behind it comes first, unless that is only the building.
+        """
+        found = np.empty(MAX_HITS, np.int64)
+        end = eye_enu_m + REACH_M * direction
+        n = min(segment_hits(self._bvh, eye_enu_m, end, found), MAX_HITS)
+        hits = []
+        for k in found[:n]:
+            depth = REACH_M * segment_hits_triangle(eye_enu_m, end, self._bvh.corners[k])
+            item = self._item(int(self._bvh.source[k]))
+            if _LAYERS[item.kind] not in hidden:
+                hits.append((depth, int(k), item))
+        if not hits:
+            return None
+        hits.sort(key=lambda hit: hit[0])
+        solid = next((hit for hit in hits if hit[2].kind is not ItemKind.NO_FLY), None)
+        first = hits[0] if solid is None or solid[2].kind is ItemKind.BUILDING else solid
+        depth, k, item = first
+        corners = self._bvh.corners[k]
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        normal /= max(float(np.linalg.norm(normal)), 1e-12)
+        if normal @ direction > 0.0:
+            normal = -normal
+        return Hit(item, eye_enu_m + depth * direction, normal, depth)
+
+    def ground(self, eye_enu_m: Array, direction: Array) -> Array | None:
+        """Where a ray from the eye meets the level of the ground, shape (3,); None for rays that rise."""
+        if direction[2] >= -1e-6:
+            return None
+        along = (self._ground_z_m - eye_enu_m[2]) / direction[2]
+        return np.asarray(eye_enu_m + along * direction) if 0.0 < along < REACH_M else None
+
+    def _item(self, triangle: int) -> Item:
+        part = int(np.searchsorted(self._starts, triangle, side="right")) - 1
+        item = self._items[part]
+        return self._panels[triangle // 2] if item is None else item
+
+
+def nearest_viewpoint(plan: PlanScene, view: Pinhole, x_px: float, y_px: float, depth_m: float) -> Hit | None:
+    """The viewpoint whose dot lies nearest to a pixel, no deeper than the surface there and within `VIEWPOINT_PX`."""
+    positions = plan.views.positions_enu_m
+    if len(positions) == 0:
+        return None
+    pixels, depths = view.project(positions)
+    distance_px = np.hypot(pixels[:, 0] - x_px, pixels[:, 1] - y_px)
+    away_m = np.linalg.norm(positions - view.eye_enu_m, axis=1)
+    distance_px = np.where((depths > 0.0) & (away_m <= depth_m), distance_px, np.inf)
+    i = int(np.argmin(distance_px))
+    if not distance_px[i] <= VIEWPOINT_PX:
+        return None
+    item = Item(ItemKind.VIEWPOINT, plan.plan.viewpoints[i].id)
+    return Hit(item, positions[i], np.zeros(3), float(away_m[i]))
+
+
+def nearest_leg(plan: PlanScene, view: Pinhole, x_px: float, y_px: float, depth_m: float) -> Hit | None:
+    """The leg of a route that passes a pixel within `ROUTE_PX`, no deeper than the surface there."""
+    best: tuple[float, Hit] | None = None
+    deepest = depth_m * float(view.ray(x_px, y_px) @ view.forward)
+    for number, path in enumerate(plan.paths, start=1):
+        if len(path) < 2:
+            continue
+        pixels, depths = view.project(path)
+        a, b = pixels[:-1], pixels[1:]
+        along = b - a
+        squared = np.maximum(np.einsum("ij,ij->i", along, along), 1e-12)
+        share = np.clip(np.einsum("ij,ij->i", np.array([x_px, y_px]) - a, along) / squared, 0.0, 1.0)
+        distance_px = np.linalg.norm(a + share[:, None] * along - [x_px, y_px], axis=1)
+        # In perspective the depth runs evenly in 1 / depth along the pixels of a line.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            leg_depth = 1.0 / ((1.0 - share) / depths[:-1] + share / depths[1:])
+        in_front = (depths[:-1] > 0.0) & (depths[1:] > 0.0) & (leg_depth <= deepest)
+        distance_px = np.where(in_front, distance_px, np.inf)
+        i = int(np.argmin(distance_px))
+        if distance_px[i] <= ROUTE_PX and (best is None or distance_px[i] < best[0]):
+            point = path[i] + share[i] * leg_depth[i] / depths[i + 1] * (path[i + 1] - path[i])
+            away_m = float(np.linalg.norm(point - view.eye_enu_m))
+            best = float(distance_px[i]), Hit(Item(ItemKind.LEG, f"{number}/{i + 1}"), point, np.zeros(3), away_m)
+    return None if best is None else best[1]
+
+
+def pick(
+    index: PickIndex | None,
+    plan: PlanScene | None,
+    view: Pinhole,
+    x_px: float,
+    y_px: float,
+    hidden: frozenset[Layer] = frozenset(),
+) -> Hit | None:
+    """What lies under a pixel: viewpoints before routes before surfaces, as far as no surface hides them."""
+    surface = None if index is None else index.surface(view.eye_enu_m, view.ray(x_px, y_px), hidden)
+    # A no-fly volume is transparent and hides nothing.
+    hides = surface is not None and surface.item.kind is not ItemKind.NO_FLY
+    depth_m = surface.depth_m + 0.5 if surface is not None and hides else np.inf
+    if plan is not None:
+        if Layer.VIEWPOINTS not in hidden:
+            viewpoint = nearest_viewpoint(plan, view, x_px, y_px, depth_m)
+            if viewpoint is not None:
+                return viewpoint
+        if Layer.ROUTES not in hidden:
+            leg = nearest_leg(plan, view, x_px, y_px, depth_m)
+            if leg is not None:
+                return leg
+    return surface
+
+
+def _load_kernels() -> None:
+    """Load the compiled code (0.2 s) with this module, on whatever thread imports it, not at the first mouse move."""
+    triangle = np.eye(3)
+    segment_hits(build_bvh(triangle[None]), np.zeros(3), np.ones(3), np.empty(1, np.int64))
+    segment_hits_triangle(np.zeros(3), np.ones(3), triangle)
+
+
+_load_kernels()

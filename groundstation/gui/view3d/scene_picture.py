@@ -1,0 +1,406 @@
+"""A picture of a site and a plan in three dimensions, with values and coverage painted on it. It takes no input.
+
+It draws what it gets and decides nothing. Setters only note what is to be drawn; Qt paints once per turn of its event
+loop, and not while the picture is hidden.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from enum import Enum, auto
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QEvent, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from groundstation.gui.theme import colours
+from groundstation.gui.view3d.canvas import Canvas, image_array
+from groundstation.gui.view3d.coverage_painter import CoveragePainter
+from groundstation.gui.view3d.footprint import footprint
+from groundstation.gui.view3d.item_shapes import ItemShape, item_shape, with_surroundings
+from groundstation.gui.view3d.layers import Drawable, Layer
+from groundstation.gui.view3d.navigator import Navigator
+from groundstation.gui.view3d.orbit import Orbit, facing
+from groundstation.gui.view3d.overlay import Overlay
+from groundstation.gui.view3d.paint import ColourScale, flat
+from groundstation.gui.view3d.picking import Hit, PickIndex, pick
+from groundstation.gui.view3d.pinhole import photo_pinhole
+from groundstation.gui.view3d.plan_scene import PlanScene, plan_scene
+from groundstation.gui.view3d.scene_texts import SceneTexts
+from groundstation.gui.view3d.shapes import joined, polyline
+from groundstation.gui.view3d.site_scene import SiteScene, facade_colours, panels_drawable, site_scene
+from groundstation.services.document import Item, ItemKind
+from groundstation.services.units import UnitSystem
+from planning.coverage.sections import SectionGrid
+from planning.plan import Plan
+from planning.site import SiteModel
+
+Array = NDArray[np.float64]
+
+SELECTED_PX, HOVERED_PX, FOOTPRINT_PX = 4.0, 2.0, 3.0
+
+ASIDE_DEG, ABOVE_DEG = 28.0, 22.0
+"""Standard view: from the right and from above, so that depth can be seen."""
+
+
+class StandardView(Enum):
+    """Views that a user asks for by name."""
+
+    ALL = auto()
+    FRONT = auto()
+    TOP = auto()
+    HOME = auto()
+
+
+class ScenePicture(QWidget):
+    """Shows a site and a plan, and is looked at from where its owner wants.
+
+    Signals
+    -------
+    orbitChanged(Orbit)
+        It is looked at from elsewhere, but not by `set_orbit`.
+    """
+
+    orbitChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._site: SiteScene | None = None
+        self._plan: PlanScene | None = None
+        self._index: Future[PickIndex] | None = None
+        self._indexer = ThreadPoolExecutor(1, "pick-index")
+        self._locked: frozenset[str] = frozenset()
+        self._route_values: tuple[ColourScale, tuple[Array, ...]] | None = None
+        self._panel_values: tuple[ColourScale, Array] | None = None
+        self._selection: tuple[Item, ...] = ()
+        self._hover: Item | None = None
+        self._hidden: frozenset[Layer] = frozenset()
+        self._units = UnitSystem.METRIC
+        self._canvas = Canvas(self)
+        self._coverage = CoveragePainter(self._canvas)
+        self._overlay = Overlay(self)
+        self._navigator = Navigator(self._canvas)
+        self._texts = SceneTexts(self)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self._canvas)
+        self.setFocusProxy(self._canvas)
+        self.setMinimumSize(200, 150)
+        self._navigator.changed.connect(self._follow_orbit)
+        self._navigator.moved.connect(self.orbitChanged)
+        self._navigator.rested.connect(self._come_to_rest)
+        self._dress()
+
+    # What is shown
+
+    def set_site(self, model: SiteModel | None, *, keep_camera: bool = False) -> None:
+        """Draw a site, or none; the plan stays. Values and coverage of other panels go."""
+        had = self._site
+        self._site = None if model is None else site_scene(model, colours())
+        self._index = None
+        is_same = had is not None and self._site is not None and had.panel_index == self._site.panel_index
+        if not is_same:
+            self._panel_values = None
+            self._coverage.set_states(None, None)
+        self._coverage.set_frames(None if self._site is None else self._site.frames)
+        self._draw_site()
+        self._navigator.wait_for_rest()
+        if not keep_camera:
+            self.look_at_all()
+
+    def set_plan(self, plan: Plan | None, locked: frozenset[str] = frozenset()) -> None:
+        """Draw a plan, or none; `locked` names the viewpoints that are kept as they are. Values of its routes go."""
+        self._locked, self._route_values = locked, None
+        self._plan = None if plan is None else plan_scene(plan, colours(), locked)
+        self._draw_plan()
+
+    def set_route_values(self, scale: ColourScale | None, values: Sequence[Array] = ()) -> None:
+        """Colour the routes by a value per vertex of each sortie's path, NaN where it is not known; None by sortie."""
+        if self._plan is None:
+            return
+        self._route_values = None if scale is None else (scale, tuple(values))
+        self._plan = plan_scene(self._plan.plan, colours(), self._locked, self._route_values)
+        self._draw_plan()
+
+    def set_panel_values(self, scale: ColourScale | None, values: Array | None = None) -> None:
+        """Colour the panels by a value each, shape (m,), NaN where it is not known; None by facade."""
+        if scale is None or values is None:
+            self._panel_values = None
+        elif self._site is None or values.shape != (len(self._site.frames),):
+            n = 0 if self._site is None else len(self._site.frames)
+            raise ValueError(f"values: expected one for each of {n} panels, got shape {values.shape}")
+        else:
+            self._panel_values = (scale, values)
+        self._paint_panels()
+
+    def paint_hemispheres(self, grid: SectionGrid | None, states: NDArray[np.int64] | None = None) -> None:
+        """Paint coverage on the hemispheres, or no more.
+
+        Parameters
+        ----------
+        states
+            Shape (m, n_sections): the number of views that cover a section where there are any, else 0 open,
+            -1 unreachable, -2 undecided (`hemispheres.OPEN` and so on).
+        """
+        self._coverage.set_states(grid, states)
+        self._paint_panels()
+        self._paint_domes()
+
+    def set_selection(self, items: Iterable[Item]) -> None:
+        """Mark what is selected."""
+        self._selection = tuple(items)
+        self._draw_marks()
+        self._paint_domes()
+
+    def set_hover(self, item: Item | None) -> None:
+        """Mark what is pointed at, here or elsewhere."""
+        if item != self._hover:
+            self._hover = item
+            self._canvas.draw("hover", self._marks((item,) if item is not None else (), HOVERED_PX))
+
+    def set_layer_visible(self, layer: Layer, is_visible: bool) -> None:
+        """Show or hide a layer; what is hidden cannot be picked."""
+        self._hidden = self._hidden - {layer} if is_visible else self._hidden | {layer}
+        self._canvas.set_shown(layer, is_visible)
+        self._show_labels()
+
+    def is_layer_visible(self, layer: Layer) -> bool:
+        """Whether a layer is shown."""
+        return layer not in self._hidden
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Units of lengths on screen."""
+        self._units = units
+        self._overlay.set_units(units)
+
+    # Where it is looked at from
+
+    def orbit(self) -> Orbit:
+        """Where the view is looked at from."""
+        return self._navigator.orbit
+
+    def set_orbit(self, orbit: Orbit) -> None:
+        """Look from elsewhere, without a signal: for views that follow one another."""
+        self._navigator.follow(orbit)
+
+    def look_at(self, item: Item) -> None:
+        """Bring an item into view: panels from their front, all else from where the view stands."""
+        shape = self._shape(item)
+        if shape is None:
+            return
+        points = with_surroundings(shape.points_enu_m)
+        if np.linalg.norm(shape.normal) > 1e-6:
+            orbit = facing(shape.normal, points, self._navigator.aspect, 20.0, 12.0)
+        else:
+            orbit = self._navigator.orbit.fitted(points, self._navigator.aspect)
+        self._navigator.go(self._in_sight(orbit, shape))
+
+    def look_at_all(self) -> None:
+        """Show the whole site and plan from the standard direction."""
+        self.look_from(StandardView.ALL)
+
+    def look_from(self, view: StandardView) -> None:
+        """Take a standard view."""
+        points, normal = self._extent(), self._front()
+        if points is None:
+            return
+        aspect = self._navigator.aspect
+        match view:
+            case StandardView.ALL:
+                self._navigator.go(facing(normal, points, aspect, ASIDE_DEG, ABOVE_DEG))
+            case StandardView.FRONT:
+                self._navigator.go(facing(normal, points, aspect))
+            case StandardView.TOP:
+                self._navigator.go(Orbit(pitch_deg=-90.0).fitted(points, aspect))
+            case StandardView.HOME:
+                if self._site is not None:
+                    home = np.array(self._site.model.site.home_enu_m)
+                    towards = points.mean(axis=0) - home
+                    self._navigator.go(
+                        facing(np.array([*-towards[:2], 0.0]), np.vstack([points, home]), aspect, 0.0, 12.0)
+                    )
+
+    # Pictures and the end
+
+    def screenshot(self) -> NDArray[np.uint8]:
+        """What is on screen, with labels, shape (height, width, 3)."""
+        return image_array(self.grab().toImage())
+
+    def close_view(self) -> None:
+        """Free the OpenGL context; call before the widget goes away."""
+        self._navigator.stop()
+        self._indexer.shutdown(wait=False, cancel_futures=True)
+        self._canvas.close()
+
+    def canvas(self) -> Canvas:
+        """The OpenGL widget, for what measures it."""
+        return self._canvas
+
+    def pick_at(self, x_px: float, y_px: float) -> Hit | None:
+        """What lies under a pixel of the view."""
+        return pick(self._pick_index(), self._plan, self._navigator.pinhole(), x_px, y_px, self._hidden)
+
+    # Qt
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Keep the overlay over the whole picture."""
+        super().resizeEvent(event)
+        self._overlay.setGeometry(self._canvas.geometry())
+        self._overlay.raise_()
+        self._follow_orbit()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Follow the theme."""
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.PaletteChange and hasattr(self, "_texts"):
+            self._dress()
+
+    def _dress(self) -> None:
+        """Take over the theme's colours."""
+        self._canvas.set_background_colour(colours().scene)
+        if self._site is not None:
+            self._site = site_scene(self._site.model, colours())
+            self._draw_site()
+        if self._plan is not None:
+            self._plan = plan_scene(self._plan.plan, colours(), self._locked, self._route_values)
+            self._draw_plan()
+        self._show_legend()
+        self._overlay.update()
+
+    # Drawing
+
+    def _draw_site(self) -> None:
+        site = self._site
+        for layer in (Layer.GROUND, Layer.BUILDING, Layer.OBSTACLES, Layer.NO_FLY, Layer.AIRSPACE, Layer.HOME):
+            self._canvas.draw(layer, () if site is None else site.drawables[layer])
+        self._canvas.draw(
+            Layer.PANELS, () if site is None else [panels_drawable(site.frames, self._panel_colours(site))]
+        )
+        self._paint_domes()
+        self._draw_marks()
+        self._show_labels()
+        self._show_legend()
+
+    def _draw_plan(self) -> None:
+        plan = self._plan
+        for layer in (Layer.VIEWPOINTS, Layer.ROUTES):
+            self._canvas.draw(layer, () if plan is None else plan.drawables[layer])
+        self._draw_marks()
+        self._show_labels()
+        self._show_legend()
+
+    def _panel_colours(self, site: SiteScene) -> NDArray[np.uint8]:
+        if self._panel_values is not None:
+            scale, values = self._panel_values
+            return scale.colours(values)
+        covered = self._coverage.panel_colours(colours())
+        return facade_colours(site.facade) if covered is None else covered
+
+    def _paint_panels(self) -> None:
+        if self._site is not None:
+            panels = panels_drawable(self._site.frames, self._panel_colours(self._site))
+            self._canvas.recolour(Layer.PANELS, panels.colours)
+        self._show_legend()
+
+    def _paint_domes(self) -> None:
+        chosen = next((item.id for item in self._selection if item.kind is ItemKind.PANEL), None)
+        selected = None if self._site is None or chosen is None else self._site.panel_index.get(chosen)
+        self._coverage.paint(self._navigator.pinhole(), selected, colours())
+
+    def _shape(self, item: Item) -> ItemShape | None:
+        return item_shape(item, self._site, self._plan)
+
+    def _marks(self, items: Sequence[Item], width_px: float) -> tuple[Drawable, ...]:
+        shapes = [shape for shape in map(self._shape, items) if shape is not None]
+        if not shapes:
+            return ()
+        points, cells = joined([shape.lines for shape in shapes])
+        return (Drawable(points, cells, flat(colours().text, len(cells)), width_px=width_px),)
+
+    def _footprint(self) -> tuple[Drawable, ...]:
+        """What the selected viewpoint's picture covers, on whatever it meets."""
+        chosen = next((item.id for item in self._selection if item.kind is ItemKind.VIEWPOINT), None)
+        plan = self._plan
+        number = None if plan is None or chosen is None else plan.viewpoint_index.get(chosen)
+        if plan is None or number is None:
+            return ()
+        index = self._pick_index()
+        if index is None:
+            return ()
+        views = plan.views
+        heading, pitch = float(views.heading_rad[number]), float(views.pitch_rad[number])
+        view = photo_pinhole(views.positions_enu_m[number], heading, pitch, plan.plan.camera, 1000.0)
+        pieces = footprint(index, view)
+        if not pieces:
+            return ()
+        points, cells = joined([polyline(piece) for piece in pieces])
+        return (Drawable(points, cells, flat(colours().accent, len(cells)), width_px=FOOTPRINT_PX),)
+
+    def _draw_marks(self) -> None:
+        self._canvas.draw("selection", self._marks(self._selection, SELECTED_PX))
+        self._canvas.draw("footprint", self._footprint())
+        self._canvas.draw("hover", self._marks((self._hover,) if self._hover is not None else (), HOVERED_PX))
+
+    def _show_labels(self) -> None:
+        self._overlay.set_labels(self._texts.labels(self._site, self._plan, self._hidden))
+
+    def _show_legend(self) -> None:
+        scale = self._panel_values[0] if self._panel_values is not None else None
+        if scale is None and self._route_values is not None:
+            scale = self._route_values[0]
+        self._overlay.set_scale(scale)
+        self._overlay.set_legend(self._texts.coverage_legend() if self._coverage.is_on else ())
+
+    # Moving
+
+    def _extent(self) -> Array | None:
+        parts = [] if self._site is None else [self._site.extent()]
+        if self._plan is not None and len(self._plan.views.positions_enu_m):
+            parts.append(self._plan.views.positions_enu_m)
+        return np.concatenate(parts) if parts else None
+
+    def _front(self) -> Array:
+        """Outward direction of the facade with most panels."""
+        if self._site is None:
+            return np.array([0.0, -1.0, 0.0])
+        largest = np.bincount(self._site.facade).argmax()
+        normal = self._site.frames.normals[self._site.facade == largest].sum(axis=0)
+        return np.asarray(normal)
+
+    def _in_sight(self, orbit: Orbit, shape: ItemShape) -> Orbit:
+        """Nearer, where something stands between the eye and what is looked at."""
+        index = self._pick_index()
+        if index is None:
+            return orbit
+        size_m = 0.5 * float(np.linalg.norm(np.ptp(shape.points_enu_m, axis=0)))
+        back = orbit.eye_enu_m - np.array(orbit.focus_enu_m)
+        back /= orbit.distance_m
+        # From in front of the item, or the item itself would be what stands there.
+        start_m = size_m + 1.0
+        hit = index.surface(np.array(orbit.focus_enu_m) + start_m * back, back, self._hidden | {Layer.NO_FLY})
+        if hit is None or start_m + hit.depth_m >= orbit.distance_m:
+            return orbit
+        return orbit.zoomed(orbit.distance_m / (start_m + 0.9 * hit.depth_m))
+
+    def _follow_orbit(self) -> None:
+        view = self._navigator.pinhole()
+        self._canvas.look_through(view)
+        self._overlay.set_view(view, self._navigator.orbit.distance_m)
+
+    def _come_to_rest(self) -> None:
+        self._paint_domes()
+        self._make_index()
+
+    # Picking
+
+    def _pick_index(self) -> PickIndex | None:
+        self._make_index()
+        return None if self._index is None else self._index.result()
+
+    def _make_index(self) -> None:
+        """Start to index the site: on another thread, for a mesh of a million triangles takes most of a second."""
+        if self._index is None and self._site is not None and self._canvas.is_open:
+            self._index = self._indexer.submit(PickIndex, self._site)

@@ -1,0 +1,109 @@
+"""Shapes as arrays: points and the cells between them, for triangles, panels, frusta, arrows and outlines."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.coverage.sections import PanelFrames
+from planning.mesh import TriangleMesh
+from planning.plan import Camera, ViewpointArrays
+from planning.positions import picture_corners
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Shape = tuple[Array, Ints]
+"""Points, shape (n, 3), ENU metres, and cells, shape (k, c), indices into them."""
+
+PANEL_OFFSET_M = 0.05
+"""Panels are drawn this far in front of their place. Less, and the depth buffer cannot tell panel and wall apart from
+100 m away."""
+
+FRUSTUM_LINES = np.array([[0, 1], [0, 2], [0, 3], [0, 4], [1, 2], [2, 3], [3, 4], [4, 1]])
+"""Pyramid of an eye (0) and the corners of its picture (1 to 4, from the lower left, anti-clockwise)."""
+
+BOX_LINES = np.array([[0, 1], [1, 3], [3, 2], [2, 0], [4, 5], [5, 7], [7, 6], [6, 4], [0, 4], [1, 5], [2, 6], [3, 7]])
+
+
+def repeated(pattern: Ints, n: int, points_each: int) -> Ints:
+    """Cells of n equal shapes, shape (n k, c), from the cells (k, c) of one that has `points_each` points."""
+    return np.asarray((pattern[None] + points_each * np.arange(n)[:, None, None]).reshape(-1, pattern.shape[1]))
+
+
+def quads(corners_enu_m: Array) -> Shape:
+    """Quadrilaterals from corners of shape (m, 4, 3)."""
+    return corners_enu_m.reshape(-1, 3), np.arange(4 * len(corners_enu_m)).reshape(-1, 4)
+
+
+def shown_panels(frames: PanelFrames) -> Array:
+    """Corners of panels as they are drawn, a little in front of the walls on which they lie, shape (m, 4, 3)."""
+    return np.asarray(frames.corners + PANEL_OFFSET_M * frames.normals[:, None])
+
+
+def outlines(corners_enu_m: Array) -> Shape:
+    """Edges of polygons of equal size, corners of shape (m, c, 3), as lines."""
+    c = corners_enu_m.shape[1]
+    ring = np.stack([np.arange(c), (np.arange(c) + 1) % c], axis=1)
+    return corners_enu_m.reshape(-1, 3), repeated(ring, len(corners_enu_m), c)
+
+
+def polyline(points_enu_m: Array) -> Shape:
+    """Lines from point to point, shape (n, 3)."""
+    n = len(points_enu_m)
+    return points_enu_m, np.stack([np.arange(n - 1), np.arange(1, n)], axis=1) if n > 1 else np.zeros((0, 2), np.int64)
+
+
+def box_edges(low_enu_m: Array, high_enu_m: Array) -> Shape:
+    """The twelve edges of an axis-aligned box."""
+    upper = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)], bool)
+    return np.where(upper, high_enu_m, low_enu_m).astype(np.float64), BOX_LINES
+
+
+def frusta(views: ViewpointArrays, camera: Camera, length_m: float) -> Shape:
+    """A pyramid of lines per viewpoint, 8 lines each, that opens as the camera sees."""
+    corners = picture_corners(views, camera, length_m)
+    points = np.concatenate([views.positions_enu_m[:, None], corners], axis=1)
+    return points.reshape(-1, 3), repeated(FRUSTUM_LINES, len(points), 5)
+
+
+def triangle_normals(mesh: TriangleMesh) -> Array:
+    """Unit normals of a mesh's triangles, shape (t, 3); zero for triangles without area."""
+    a, b, c = (mesh.vertices_enu_m[mesh.triangles[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+
+
+def arrows(path_enu_m: Array, length_m: float) -> Shape:
+    """Arrowheads along a polyline, shape (n, 3), that point the way it is flown, as triangles.
+
+    Two crossed triangles each, so that one is seen from every side; on legs of at least twice their length, at the
+    middle, and no nearer to one another than four times their length.
+    """
+    legs = np.diff(path_enu_m, axis=0)
+    lengths = np.linalg.norm(legs, axis=1)
+    middle_s = np.cumsum(lengths) - 0.5 * lengths
+    kept, last_s = [], -np.inf
+    for i in np.flatnonzero(lengths >= 2.0 * length_m):
+        if middle_s[i] - last_s >= 4.0 * length_m:
+            kept.append(i)
+            last_s = middle_s[i]
+    if not kept:
+        return np.zeros((0, 3)), np.zeros((0, 3), np.int64)
+    along = legs[kept] / lengths[kept, None]
+    aside = np.cross(along, [0.0, 0.0, 1.0])
+    width = np.linalg.norm(aside, axis=1, keepdims=True)
+    aside = np.where(width > 1e-6, aside / np.maximum(width, 1e-6), [1.0, 0.0, 0.0])
+    above = np.cross(aside, along)
+    tip = 0.5 * (path_enu_m[:-1] + path_enu_m[1:])[kept] + 0.5 * length_m * along
+    tail = tip - length_m * along
+    half = 0.35 * length_m
+    points = np.stack([tip, tail - half * aside, tail + half * aside, tail - half * above, tail + half * above], axis=1)
+    return points.reshape(-1, 3), repeated(np.array([[0, 1, 2], [0, 3, 4]]), len(kept), 5)
+
+
+def joined(shapes: list[Shape]) -> Shape:
+    """All shapes, of cells of one kind, in one."""
+    starts = np.cumsum([0, *(len(points) for points, _ in shapes[:-1])])
+    points = np.concatenate([points for points, _ in shapes])
+    return points, np.concatenate([cells + start for (_, cells), start in zip(shapes, starts, strict=True)])

@@ -1,0 +1,152 @@
+"""What a site looks like: its drawables by layer, and its labels. Plain arrays; nothing is drawn here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from groundstation.gui.theme import FACADES, Colours
+from groundstation.gui.view3d.layers import Drawable, Label, Layer
+from groundstation.gui.view3d.paint import flat, shaded
+from groundstation.gui.view3d.shapes import (
+    box_edges,
+    quads,
+    shown_panels,
+    triangle_normals,
+)
+from planning.coverage.sections import PanelFrames, panel_frames
+from planning.mesh import TriangleMesh, box_mesh
+from planning.site import SiteModel, panel_corners
+
+Array = NDArray[np.float64]
+
+BUILDING, OBSTACLE, NO_FLY, HOME = "#aeb6bf", "#c98f5a", "#d64545", "#1d7a3c"
+"""Paler than panels; brown for what stands in the way, red for what is forbidden, green for home."""
+
+GROUND_LIGHT, GROUND_DARK = "#dfe6d8", "#2e3630"
+PANEL_EDGE = "#23415a"
+
+HOME_PAD_M = (1.2, 1.2, 0.25)
+"""Half the width and the height of the pad that marks home: room for the aircraft with its propellers."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SiteScene:
+    """A site ready to be drawn.
+
+    Parameters
+    ----------
+    frames
+        Of all panels.
+    facade
+        Number of the facade of each panel, shape (m,).
+    drawables
+        By layer; panels are separate because their colours change.
+    """
+
+    model: SiteModel
+    frames: PanelFrames
+    facade: NDArray[np.int64]
+    panel_index: dict[str, int]
+    drawables: dict[Layer, tuple[Drawable, ...]]
+    labels: tuple[Label, ...]
+
+    def extent(self) -> Array:
+        """Points between which everything worth looking at lies, shape (n, 3): panels, building, obstacles, home."""
+        parts = [self.frames.corners.reshape(-1, 3), np.array([self.model.site.home_enu_m])]
+        for mesh in (self.model.building, *self.model.obstacles):
+            if len(mesh.triangles):
+                parts.append(mesh.vertices_enu_m[np.unique(mesh.triangles)])
+        points = np.concatenate(parts)
+        low, high = points.min(axis=0), points.max(axis=0)
+        return box_edges(low, high)[0]
+
+
+def site_scene(model: SiteModel, look: Colours) -> SiteScene:
+    """Everything of a site but its panels' colours."""
+    site = model.site
+    frames = panel_frames(panel_corners(site))
+    facade = np.repeat(np.arange(len(site.facades)), [len(found.panels) for found in site.facades])
+    drawables = {
+        Layer.GROUND: (_ground(model, look),),
+        Layer.BUILDING: _solid(model.building, BUILDING),
+        Layer.OBSTACLES: tuple(part for mesh in model.obstacles for part in _solid(mesh, OBSTACLE)),
+        Layer.NO_FLY: tuple(_prism(zone.prism()) for zone in site.airspace.no_fly),
+        Layer.AIRSPACE: (_airspace(model, look),),
+        Layer.HOME: _home(model),
+    }
+    panel_index = {panel.id: i for i, panel in enumerate(site.panels)}
+    return SiteScene(model, frames, facade, panel_index, drawables, _labels(model))
+
+
+def facade_colours(facade: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """Colours of panels by the number of their facade, shape (m, 4)."""
+    table = np.concatenate([flat(colour, 1) for colour in FACADES])
+    return np.asarray(table[facade % len(FACADES)])
+
+
+def panels_drawable(frames: PanelFrames, colours: NDArray[np.uint8]) -> Drawable:
+    """All panels in one go, with colours of shape (m, 4)."""
+    points, cells = quads(shown_panels(frames))
+    return Drawable(points, cells, shaded(colours, frames.normals), edge_colour=PANEL_EDGE)
+
+
+def _solid(mesh: TriangleMesh, colour: str) -> tuple[Drawable, ...]:
+    n = len(mesh.triangles)
+    if n == 0:
+        return ()
+    return (Drawable(mesh.vertices_enu_m, mesh.triangles, shaded(flat(colour, n), triangle_normals(mesh))),)
+
+
+def _prism(mesh: TriangleMesh) -> Drawable:
+    return Drawable(mesh.vertices_enu_m, mesh.triangles, flat(NO_FLY, len(mesh.triangles), 0.3))
+
+
+def _ground(model: SiteModel, look: Colours) -> Drawable:
+    airspace = model.site.airspace
+    (x0, y0, _), (x1, y1, _), z = airspace.min_enu_m, airspace.max_enu_m, airspace.ground_z_m
+    # A hand's breadth lower than the ground, so that floors that lie on it do not flicker.
+    corners = np.array([[[x0, y0, z], [x1, y0, z], [x1, y1, z], [x0, y1, z]]]) - [0.0, 0.0, 0.1]
+    return Drawable(*quads(corners), flat(GROUND_DARK if look.is_dark else GROUND_LIGHT, 1))
+
+
+def _airspace(model: SiteModel, look: Colours) -> Drawable:
+    airspace = model.site.airspace
+    points, cells = box_edges(np.array(airspace.min_enu_m), np.array(airspace.max_enu_m))
+    return Drawable(points, cells, flat(look.muted, len(cells)))
+
+
+def home_pad(model: SiteModel) -> TriangleMesh:
+    """The pad that marks home."""
+    x, y, z = model.site.home_enu_m
+    width, depth, height = HOME_PAD_M
+    return box_mesh(np.array([x - width, y - depth, z]), np.array([x + width, y + depth, z + height]))
+
+
+def _home(model: SiteModel) -> tuple[Drawable, ...]:
+    """A pad on the ground, and the column in which the aircraft climbs to the airspace."""
+    home, pad = np.array(model.site.home_enu_m), home_pad(model)
+    top = np.array([home[0], home[1], max(model.site.airspace.min_enu_m[2], home[2] + 2.0)])
+    mark = Drawable(pad.vertices_enu_m, pad.triangles, shaded(flat(HOME, len(pad.triangles)), triangle_normals(pad)))
+    column = Drawable(np.stack([home, top]), np.array([[0, 1]]), flat(HOME, 1), width_px=3.0)
+    return mark, column
+
+
+def _labels(model: SiteModel) -> tuple[Label, ...]:
+    """Names of obstacles and zones; home is labelled by the view, in the user's language."""
+    site, labels = model.site, []
+    for obstacle, mesh in zip(site.obstacles, model.obstacles, strict=True):
+        if len(mesh.triangles):
+            labels.append(Label(obstacle.id, _top(mesh.vertices_enu_m), Layer.OBSTACLES, OBSTACLE))
+    for zone in site.airspace.no_fly:
+        x, y = np.mean(zone.polygon_enu_m, axis=0)
+        labels.append(Label(zone.id, (float(x), float(y), zone.ceiling_m), Layer.NO_FLY, NO_FLY))
+    return tuple(labels)
+
+
+def _top(vertices_enu_m: Array) -> tuple[float, float, float]:
+    low, high = vertices_enu_m.min(axis=0), vertices_enu_m.max(axis=0)
+    x, y = 0.5 * (low + high)[:2]
+    return float(x), float(y), float(high[2])

@@ -1,0 +1,186 @@
+"""What all parts of the window share: the session as Qt signals, the thing that is selected, jobs, and messages.
+
+Lives in the window's thread. Widgets read `document`, change it through `change`, and hear of changes through signals;
+work that takes longer than a blink is given to `start`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from groundstation.gui.job_bridge import JobBridge
+from groundstation.services.document import Document, Item, exists
+from groundstation.services.jobs import ENDED, Job, JobContext, JobRunner, JobState, JobStateChanged
+from groundstation.services.session import Session
+from groundstation.services.units import UnitSystem
+from planning.errors import GroundStationError
+from planning.findings import Severity
+
+Work = Callable[[JobContext], Any]
+Done = Callable[[Any], None]
+Failed = Callable[[BaseException], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """Something the user is told; with the thing it is about, where there is one."""
+
+    severity: Severity
+    text: str
+    item: Item | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class _Waiting:
+    """What happens in the window when a job ends."""
+
+    job: Job[Any]
+    done: Done | None
+    failed: Failed | None
+
+
+class Workspace(QObject):
+    """The session for widgets.
+
+    Signals
+    -------
+    documentChanged(Document, Document)
+        As it was and as it is.
+    selectionChanged(Item or None), lookAtRequested(Item)
+        What is selected; what the 3-D view and the map should show now.
+    unitsChanged(UnitSystem)
+    messageShown(Message)
+    jobsChanged()
+        A job was queued or ended.
+    """
+
+    documentChanged = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
+    selectionChanged = Signal(object)  # noqa: N815
+    lookAtRequested = Signal(object)  # noqa: N815
+    unitsChanged = Signal(object)  # noqa: N815
+    messageShown = Signal(object)  # noqa: N815
+    jobsChanged = Signal()  # noqa: N815
+
+    def __init__(self, session: Session, runner: JobRunner, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._session, self._runner = session, runner
+        self._selection: Item | None = None
+        self._units = UnitSystem.METRIC
+        self._waiting: dict[int, _Waiting] = {}
+        self.bridge = JobBridge(runner, self)
+        self.bridge.state_changed.connect(self._job_changed)
+        session.subscribe(self._document_changed)
+
+    @property
+    def session(self) -> Session:
+        """Undo, redo, and where the project is kept."""
+        return self._session
+
+    @property
+    def document(self) -> Document:
+        """As it is now."""
+        return self._session.document
+
+    @property
+    def selection(self) -> Item | None:
+        """What is selected."""
+        return self._selection
+
+    @property
+    def units(self) -> UnitSystem:
+        """What lengths and speeds are shown in."""
+        return self._units
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths and speeds in other units."""
+        if units is not self._units:
+            self._units = units
+            self.unitsChanged.emit(units)
+
+    def change(self, label: str, document: Document) -> None:
+        """Take over an edit as one step that can be undone; `label` says what the user did."""
+        self._session.change(label, document)
+
+    def amend(self, document: Document) -> None:
+        """Take over what is no step of its own, such as which plan is looked at."""
+        self._session.amend(document)
+
+    def select(self, item: Item | None) -> None:
+        """Select a thing, or nothing."""
+        if item != self._selection:
+            self._selection = item
+            self.selectionChanged.emit(item)
+
+    def jump_to(self, item: Item) -> None:
+        """Select a thing and bring it into view."""
+        self.select(item)
+        self.lookAtRequested.emit(item)
+
+    def say(self, severity: Severity, text: str, item: Item | None = None) -> None:
+        """Tell the user something."""
+        self.messageShown.emit(Message(severity, text, item))
+
+    def start(
+        self, name: str, work: Work, when_done: Done | None = None, when_failed: Failed | None = None
+    ) -> Job[Any]:
+        """Queue long work.
+
+        `work` runs on another thread and must touch neither widgets nor the session. `when_done` gets its result, in
+        the window's thread. An error is shown as a message, and passed to `when_failed`; a cancelled job calls neither.
+        """
+        job = self._runner.submit(name, work)
+        self._waiting[job.id] = _Waiting(job, when_done, when_failed)
+        self.jobsChanged.emit()
+        return job
+
+    def jobs(self) -> tuple[Job[Any], ...]:
+        """Jobs that have not ended, in the order in which they run."""
+        return tuple(waiting.job for waiting in self._waiting.values())
+
+    def cancel(self, job: Job[Any]) -> None:
+        """Throw a job away, whether it runs or waits."""
+        self._runner.cancel(job)
+
+    def close(self, timeout_s: float = 10.0) -> bool:
+        """Cancel everything and hear nothing more; True where all jobs ended in time."""
+        jobs = self.jobs()
+        for job in reversed(jobs):
+            self.cancel(job)
+        self.bridge.close()
+        return all(job.wait(timeout_s) for job in jobs)
+
+    def _document_changed(self, before: Document, after: Document) -> None:
+        if self._selection is not None and not exists(after, self._selection):
+            self.select(None)
+        self.documentChanged.emit(before, after)
+
+    def _job_changed(self, event: JobStateChanged) -> None:
+        if event.state not in ENDED:
+            return
+        # Jobs end on another thread, so that Qt brings the news after `start` has noted the job.
+        waiting = self._waiting.pop(event.job_id, None)
+        if waiting is None:
+            return
+        self.jobsChanged.emit()
+        if event.state is JobState.SUCCEEDED:
+            if waiting.done is not None:
+                waiting.done(event.result)
+        elif event.state is JobState.CANCELLED:
+            self.say(Severity.NOTE, self.tr("{0}: cancelled").format(event.name))
+        elif event.error is not None:
+            self._say_error(event.name, event.error)
+            if waiting.failed is not None:
+                waiting.failed(event.error)
+
+    def _say_error(self, name: str, error: BaseException) -> None:
+        if isinstance(error, (GroundStationError, OSError)):
+            text = self.tr("{0}: {1}").format(name, error)
+        else:
+            text = self.tr("{0}: Reflight failed where it should not ({1}: {2}); please report it").format(
+                name, type(error).__name__, error
+            )
+        self.say(Severity.ERROR, text)

@@ -1,0 +1,191 @@
+"""Plans that are open in the window to mission files and back: everything but the reading and writing of plan files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from missions.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot, encode
+from missions.formats import read_missions, sortie_path, write_files
+from missions.model import FileFormat, ReadMission
+from missions.to_plan import viewpoints_and_sorties
+from planning.catalogue import DEFAULT_PROFILE, profile
+from planning.checks import check_plan
+from planning.errors import GroundStationError, InputError
+from planning.evaluate import coverage
+from planning.findings import Finding, Severity
+from planning.plan import Constraints, FlightRules, Plan
+from planning.planner import share_out_anew
+from planning.prepare import prepare
+from planning.progress import QUIET, Monitor
+from planning.site import SiteModel
+
+MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
+
+SUFFIXES = {
+    FileFormat.DJI_KMZ: (".kmz",),
+    FileFormat.MAVLINK_PLAN: (".plan",),
+    FileFormat.MAVLINK_WPL: (".waypoints", ".txt"),
+    FileFormat.KML: (".kml",),
+    FileFormat.CSV: (".csv",),
+}
+"""How the names of files end that other programs offer to open."""
+
+IMPORTED = "imported"
+"""Method written into plans that come from mission files."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreparedExport:
+    """Mission files that are ready to be written, or the reason why there are none.
+
+    Parameters
+    ----------
+    encoded
+        None where the plan cannot be exported so; `refusal` says why then.
+    findings
+        What the pilot should know first; those of the files come last.
+    """
+
+    encoded: EncodedFiles | None
+    findings: tuple[Finding, ...]
+    refusal: str = ""
+
+    @property
+    def n_files(self) -> int:
+        """Number of files that would be written."""
+        return 0 if self.encoded is None else len(self.encoded.contents)
+
+    @property
+    def can_be_written(self) -> bool:
+        """Whether an aircraft would take the files."""
+        errors = any(finding.severity is Severity.ERROR for finding in self.findings)
+        return self.encoded is not None and not errors
+
+
+def prepare_export(
+    plan: Plan, site_model: SiteModel, file_format: FileFormat, options: ExportOptions = DEFAULT_OPTIONS
+) -> PreparedExport:
+    """Mission files of a plan in memory, with everything that is to be said before they are written.
+
+    Nothing is raised for what the user can put right: the refusal is part of the result.
+    """
+    try:
+        findings = list(readiness(plan, site_model))
+        if file_format in MAVLINK_FORMATS:
+            plan, shared_out = within_item_limit(plan, site_model, options)
+            findings += shared_out
+        site = site_model.site
+        encoded = encode(plan, site.origin, site.home_enu_m, file_format, replace(options, site=site_model))
+    except GroundStationError as error:
+        return PreparedExport(None, (), str(error))
+    return PreparedExport(encoded, (*findings, *encoded.findings))
+
+
+def export_paths(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
+    """The files that writing to `path` makes."""
+    return tuple(sortie_path(path, number) for number in range(1, prepared.n_files + 1))
+
+
+def write_export(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
+    """Write prepared mission files, all or none.
+
+    Raises
+    ------
+    InputError, MissionError
+        A file cannot be written, or an aircraft would refuse the mission.
+    """
+    if prepared.encoded is None:
+        raise ValueError(f"nothing to write: {prepared.refusal}")
+    return write_files(prepared.encoded, path)
+
+
+def readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
+    """What the pilot must know of a plan before it flies on this site."""
+    if plan.site_sha256 and plan.site_sha256 != site_model.sha256:
+        text = (
+            f"the site file of '{site_model.site.name}' has changed since this plan was made; what the mission takes "
+            "from it (return height, fences) is as it is now"
+        )
+        yield Finding(Severity.WARNING, "site-changed", text)
+    errors = [found for found in check_plan(plan, site_model) if found.severity is Severity.ERROR]
+    if errors:
+        text = (
+            f"this plan is not ready to fly ({len(errors)} findings of the pre-flight check, the first: "
+            f"{errors[0].message})"
+        )
+        yield Finding(Severity.WARNING, "not-ready", text, errors[0].place, float(len(errors)), 0.0, "findings")
+
+
+def within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions) -> tuple[Plan, tuple[Finding, ...]]:
+    """The plan, its views shared out anew where a sortie has more than the autopilot keeps."""
+    from missions.mavlink.items import photos_that_fit
+
+    autopilot = options.autopilot or default_autopilot(plan.profile)
+    limit = photos_that_fit(autopilot)
+    longest = max((len(sortie.viewpoint_ids) for sortie in plan.sorties), default=0)
+    if longest <= limit:
+        return plan, ()
+    anew = share_out_anew(plan, site_model, limit)
+    text = (
+        f"{autopilot} keeps the items of about {limit} photos, but a sortie of this plan has {longest}; the same views "
+        f"were shared out among {len(anew.sorties)} sorties for these files"
+    )
+    return anew, (Finding(Severity.WARNING, "item-limit", text, "", float(longest), float(limit), "photos"),)
+
+
+def read_mission_files(paths: Sequence[Path]) -> tuple[ReadMission, ...]:
+    """The sorties of mission files of one flight.
+
+    Raises
+    ------
+    InputError, MissionError
+        A file cannot be read, or is given twice.
+    """
+    resolved = [path.resolve() for path in paths]
+    for number, path in enumerate(paths):
+        if resolved[number] in resolved[:number]:
+            raise InputError(f"{path}: this mission file is named twice; name the file of each sortie once")
+    return tuple(mission for path in paths for mission in read_missions(path))
+
+
+def missions_as_plan(
+    paths: Sequence[Path],
+    site_model: SiteModel,
+    profile_id: str = DEFAULT_PROFILE,
+    constraints: Constraints = Constraints(),
+    monitor: Monitor = QUIET,
+) -> tuple[Plan, tuple[Finding, ...]]:
+    """Mission files of one flight as a plan, with the coverage that it has on this site.
+
+    Raises
+    ------
+    InputError, MissionError
+        A file cannot be read, is given twice, or belongs to another place.
+    InfeasibleError
+        Nothing on this site can be covered under the constraints.
+    """
+    monitor.report("reading the mission", 0, 1)
+    chosen, rules = profile(profile_id), FlightRules()
+    read, site = read_mission_files(paths), site_model.site
+    parts = viewpoints_and_sorties(read, site.origin, site.home_enu_m, rules, chosen.aircraft)
+    prepared = prepare(site_model, chosen.camera, constraints, monitor=monitor)
+    plan = Plan(
+        site=site.name,
+        site_sha256=site_model.sha256,
+        method=IMPORTED,
+        seed=0,
+        camera=chosen.camera,
+        aircraft=chosen.aircraft,
+        constraints=prepared.constraints,
+        viewpoints=parts.viewpoints,
+        sorties=parts.sorties,
+        coverage=coverage(prepared.problem.model, parts.viewpoints, prepared.problem.reachability),
+        origin=site.origin,
+        home_enu_m=site.home_enu_m,
+        rules=rules,
+        effects=prepared.effects,
+        profile=chosen.id,
+    )
+    return plan, parts.findings

@@ -1,0 +1,206 @@
+"""Use cases that bring a site into the document: a site file, a bundled site, or an import that is looked at first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from groundstation.services.document import Document
+from planning.errors import InputError
+from planning.frames import Vec3
+from planning.mesh import MAX_COORDINATE_M
+from planning.progress import QUIET, Monitor
+from planning.scenes import SCENES
+from planning.site import Airspace, Facade, Panel, Site, SiteModel, panel_corners
+from planning.site_file import read_site, site_sha256
+from planning.site_import.importer import CITYGML_SUFFIXES, CITYJSON_SUFFIXES, assemble, read_source
+from planning.site_import.options import ImportOptions, PanelGrid
+from planning.site_import.polygons import quad_areas
+from planning.site_import.source import SourceModel
+
+STAND_IN_M = 0.02
+"""Side of the pane that stands for panels not known yet."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImportPreview:
+    """What an import would bring, before anything is decided.
+
+    Parameters
+    ----------
+    source
+        What was read, also where no panels are known yet.
+    model
+        The site it would become, with its checksum; None where it cannot become one yet.
+    problem
+        Why not; empty where it can.
+    notes
+        What was decided, changed or left out.
+    """
+
+    path: Path
+    options: ImportOptions
+    source: SourceModel
+    model: SiteModel | None
+    problem: str
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FacadeSummary:
+    """A facade in numbers."""
+
+    id: str
+    n_panels: int
+    area_m2: float
+
+
+@dataclass(frozen=True, slots=True)
+class SiteSummary:
+    """A site in numbers: the extent of building and panels to the east, to the north and upwards, and its glass."""
+
+    size_m: Vec3
+    n_triangles: int
+    facades: tuple[FacadeSummary, ...]
+
+    @property
+    def n_panels(self) -> int:
+        """Panels on all facades."""
+        return sum(facade.n_panels for facade in self.facades)
+
+    @property
+    def area_m2(self) -> float:
+        """Area of all panels."""
+        return sum(facade.area_m2 for facade in self.facades)
+
+
+def bundled_site(name: str) -> SiteModel:
+    """One of the sites that come with the program.
+
+    Raises
+    ------
+    InputError
+        There is none of that name.
+    """
+    if name not in SCENES:
+        raise InputError(f"there is no bundled site '{name}'; known are: {', '.join(sorted(SCENES))}")
+    model = SCENES[name]()
+    return replace(model, sha256=site_sha256(model.site))
+
+
+def open_site(path: Path, monitor: Monitor = QUIET) -> SiteModel:
+    """The site in a file, with its meshes.
+
+    Raises
+    ------
+    InputError
+        As `planning.site_file.read_site`; a building model is told from a site file.
+    """
+    monitor.report("reading the site", 0, 0)
+    if path.suffix.lower() in (".json", ".cityjson") and _is_cityjson(path):
+        raise InputError(f"{path}: this is a city model, not a site file; use Import")
+    return read_site(path)
+
+
+def _is_cityjson(path: Path) -> bool:
+    """Whether the first few kilobytes say so; a file that cannot be read is left to the reader to refuse."""
+    try:
+        with path.open("rb") as file:
+            return b'"CityJSON"' in file.read(4096)
+    except OSError:
+        return False
+
+
+def preview_import(path: Path, options: ImportOptions, monitor: Monitor = QUIET) -> ImportPreview:
+    """Import into memory, to be looked at; a file whose panels are not known yet is read all the same.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read with these options, or nobody says where it is.
+    """
+    source = read_source(path, replace(options, panels_required=False), monitor)
+    try:
+        imported = assemble(path, source, options, monitor)
+    except InputError as error:
+        return ImportPreview(path, options, source, None, str(error), source.notes)
+    model = replace(imported.model, sha256=site_sha256(imported.model.site))
+    return ImportPreview(path, options, source, model, "", imported.notes)
+
+
+def holds_many_buildings(path: Path) -> bool:
+    """Whether the format has room for more than one building."""
+    return path.suffix.lower() in (*CITYGML_SUFFIXES, *CITYJSON_SUFFIXES)
+
+
+def grid_in_file(
+    preview: ImportPreview, rectangle_enu_m: tuple[Vec3, Vec3, Vec3], n_rows: int, n_columns: int, gap_m: float
+) -> PanelGrid:
+    """Panel grid for the import options, from a rectangle that was picked in the preview.
+
+    Parameters
+    ----------
+    rectangle_enu_m
+        Lower left, lower right and upper left corner as seen from outside, in the preview's local frame.
+    """
+    a, b, c = (
+        (round(x, 6), round(y, 6), round(z, 6))
+        for x, y, z in preview.source.placement.file_coordinates(np.array(rectangle_enu_m)).tolist()
+    )
+    return PanelGrid((a, b, c), n_rows, n_columns, gap_m)
+
+
+def site_summary(model: SiteModel) -> SiteSummary:
+    """A site in numbers."""
+    corners = panel_corners(model.site)
+    points = np.concatenate([corners.reshape(-1, 3), model.building.vertices_enu_m])
+    areas = np.split(quad_areas(corners), np.cumsum([len(facade.panels) for facade in model.site.facades])[:-1])
+    east, north, up = np.ptp(points, axis=0).tolist()
+    return SiteSummary(
+        (east, north, up),
+        len(model.building.triangles),
+        tuple(
+            FacadeSummary(facade.id, len(facade.panels), float(area.sum()))
+            for facade, area in zip(model.site.facades, areas, strict=True)
+        ),
+    )
+
+
+def with_new_site(document: Document, model: SiteModel) -> Document:
+    """The document with another site, and without the plans, which were made for the one before."""
+    return Document(site=model, request=document.request)
+
+
+def shown_site(preview: ImportPreview) -> SiteModel | None:
+    """A site to draw: the one the import brings, or the bare building where no panels are known yet.
+
+    None for buildings far too large, as when millimetres are read as metres.
+
+    Views draw sites, and a site has at least one panel: in the bare building a pane of 2 cm, in the ground below its
+    middle, stands for it. It is drawn and never kept.
+    """
+    if preview.model is not None:
+        return preview.model
+    source = preview.source
+    points = source.building.corners_enu_m.reshape(-1, 3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = preview.options.airspace_margin_m
+    if max(np.abs(low).max(), np.abs(high).max()) + margin > MAX_COORDINATE_M:
+        return None
+    x, y = (0.5 * (low + high)[:2]).tolist()
+    z = source.placement.ground_z_m - STAND_IN_M
+    panel = Panel(
+        "no-panel", ((x, y, z), (x + STAND_IN_M, y, z), (x + STAND_IN_M, y, z + STAND_IN_M), (x, y, z + STAND_IN_M))
+    )
+    x0, y0, z0 = (low - margin).tolist()
+    x1, y1, z1 = (high + margin).tolist()
+    site = Site(
+        name=preview.path.stem,
+        origin=source.placement.origin,
+        facades=(Facade("no-facade", (panel,)),),
+        airspace=Airspace((x0, y0, z0 + margin), (x1, y1, z1), source.placement.ground_z_m),
+        home_enu_m=(x, y0 + 0.5 * margin, source.placement.ground_z_m),
+    )
+    return SiteModel(site, source.building)

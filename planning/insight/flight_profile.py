@@ -1,0 +1,143 @@
+"""How a sortie is flown: where the aircraft is, how high and how fast at any time, and when it takes photos."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.insight.ramps import Ramps, rest_to_rest_ramps
+from planning.plan import Plan, Sortie
+from planning.sortie_timing import sortie_flight_path
+from planning.timing import motion_limits, photo_stop_s, slowed_by_turns_m_s, stopping_times_s
+
+Array = NDArray[np.float64]
+
+RAMP_PARTS = np.array([0.25, 0.5, 0.75, 1.0])
+"""Samples of a ramp: straight lines between them stay within 4 % of the peak speed."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlightProfile:
+    """One sortie over time: a path of k vertices, at each of which the aircraft comes to rest, and p photos.
+
+    Time counts from the moment at which the aircraft hangs above home, ready to go; starting motors, take-off checks
+    and landing (`FlightRules.takeoff_landing_s`) come on top.
+
+    Parameters
+    ----------
+    vertices_enu_m
+        Shape (k, 3).
+    arrival_s, departure_s
+        At each vertex, shape (k,).
+    ramps
+        Motion of the k - 1 legs.
+    photo_s
+        Moments of the photos, shape (p,), and their viewpoints, `photo_ids`.
+    """
+
+    vertices_enu_m: Array
+    arrival_s: Array
+    departure_s: Array
+    ramps: Ramps
+    photo_s: Array
+    photo_ids: tuple[str, ...]
+
+    @property
+    def duration_s(self) -> float:
+        """Until the last hover is over."""
+        return float(self.departure_s[-1])
+
+    def at(self, t_s: Array) -> ProfileSamples:
+        """Where the aircraft is at times of shape (q,); before the start and after the end it rests."""
+        t = np.asarray(t_s, np.float64)
+        leg = np.clip(np.searchsorted(self.departure_s[:-1], t, side="right") - 1, 0, len(self.arrival_s) - 2)
+        flown_m, speed = self.ramps.at(leg, t - self.departure_s[leg])
+        legs = np.diff(self.vertices_enu_m, axis=0)
+        lengths = np.linalg.norm(legs, axis=1)
+        part = np.clip(flown_m / np.where(lengths > 0.0, lengths, 1.0)[leg], 0.0, 1.0)
+        positions = self.vertices_enu_m[leg] + part[:, None] * legs[leg]
+        before_m = np.cumsum(lengths) - lengths
+        return ProfileSamples(t, before_m[leg] + part * lengths[leg], positions, speed)
+
+    def samples(self) -> ProfileSamples:
+        """Enough for a chart: every change of motion, and points along the ramps; times rising."""
+        ramp = self.ramps.ramp_s[:, None] * RAMP_PARTS
+        start, end = self.departure_s[:-1, None], self.departure_s[:-1, None] + self.ramps.duration_s[:, None]
+        times = [self.arrival_s, self.departure_s, (start + ramp).ravel(), (end - ramp).ravel(), end.ravel()]
+        return self.at(np.unique(np.concatenate([*times, self.photo_s])))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProfileSamples:
+    """Samples of a flight, q of them.
+
+    Parameters
+    ----------
+    t_s, distance_m, speed_m_s
+        Time, way along the path and speed along it, shape (q,).
+    positions_enu_m
+        Shape (q, 3).
+    """
+
+    t_s: Array
+    distance_m: Array
+    positions_enu_m: Array
+    speed_m_s: Array
+
+    def heights_m(self, base_z_m: float) -> Array:
+        """Heights above a level, ENU z: the ground's, or home's for height above take-off."""
+        return self.positions_enu_m[:, 2] - base_z_m
+
+    def decimated(self, n_most: int) -> ProfileSamples:
+        """About `n_most` samples or fewer, with all extremes of speed and height of the parts they stand for."""
+        kept = keep_extremes((self.speed_m_s, self.positions_enu_m[:, 2]), n_most)
+        return ProfileSamples(self.t_s[kept], self.distance_m[kept], self.positions_enu_m[kept], self.speed_m_s[kept])
+
+
+def sortie_profile(plan: Plan, sortie: Sortie) -> FlightProfile | None:
+    """Profile of one of a plan's sorties; None where its path has no leg or misses one of its viewpoints.
+
+    Raises
+    ------
+    InfeasibleError
+        The aircraft cannot fly in the expected wind.
+    """
+    limits = motion_limits(plan.aircraft, plan.rules)
+    timed = sortie_flight_path(
+        sortie, {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}, plan.aircraft, plan.rules
+    )
+    if timed is None:
+        return None
+    flown, at_photos = timed
+    arrival = stopping_times_s(flown, limits)
+    lengths = np.linalg.norm(flown.deltas_enu_m, axis=1)
+    ramps = rest_to_rest_ramps(lengths, slowed_by_turns_m_s(flown, limits), limits.acceleration_m_s2, limits.jerk_m_s3)
+    departure = arrival + flown.hover_s
+    # Of a photo stop, turning comes first, then settling, the photo, and waiting for the camera.
+    photo_s = departure[at_photos] - photo_stop_s(plan.aircraft, plan.rules) + plan.rules.settle_s
+    return FlightProfile(flown.vertices_enu_m, arrival, departure, ramps, photo_s, sortie.viewpoint_ids)
+
+
+def keep_extremes(series: tuple[Array, ...], n_most: int) -> NDArray[np.int64]:
+    """Indices of samples to draw, rising: the ends, and the least and greatest of each series in each of equal parts.
+
+    Parameters
+    ----------
+    series
+        Arrays of shape (q,) over the same samples.
+    n_most
+        As many are kept, or all where there are no more; at least the extremes of one part.
+    """
+    q = len(series[0])
+    if q <= n_most:
+        return np.arange(q)
+    n_parts = max(1, (n_most - 2) // (2 * len(series)))
+    borders = np.linspace(0, q, n_parts + 1).astype(np.int64)
+    kept = [np.array([0, q - 1])]
+    for first, last in itertools.pairwise(borders):
+        for values in series:
+            kept.append(first + np.array([np.argmin(values[first:last]), np.argmax(values[first:last])]))
+    return np.unique(np.concatenate(kept))

@@ -1,0 +1,273 @@
+"""Why sections cannot be covered: the rules that forbid it, by how much, and what is in the way.
+
+That a section is unreachable is proven elsewhere (`planning.reachability`); why is found by samples. Places in the
+section's directions, at distances from half a metre to beyond the airspace, are held against every rule. Proven of a
+reason is its place: it breaks the named rules by the named amounts and no other rule, so that relaxing them by that
+much makes the section reachable. Sampled is that no other rule, and no smaller amount, would do.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.coverage.model import CoverageModel
+from planning.frames import Vec3
+from planning.insight import reason_kernel as kernel
+from planning.insight.things import Thing, Things, first_things_hit, nearest_things, things_of
+from planning.insight.unflyable import unflyable_sections
+from planning.jit import chunks, n_threads, run_parallel
+from planning.prepare import Prepared
+from planning.progress import QUIET, Monitor
+from planning.reach_kernel import UNDECIDED, UNREACHABLE
+from planning.reachability import reach_bodies, reach_limits
+from planning.site import SiteModel
+from planning.space import FreeSpace
+
+Array = NDArray[np.float64]
+
+SECTIONS_PER_CHUNK = 32
+BEYOND = 1.25
+"""Distances are tried up to this many times the distance to the far corner of the airspace."""
+
+
+class Rule(StrEnum):
+    """What can forbid all places from which a section would be covered; the first ten in the order of the kernel."""
+
+    GIMBAL_UP = "gimbal-up"
+    GIMBAL_DOWN = "gimbal-down"
+    FLOOR = "airspace-floor"
+    CEILING = "airspace-ceiling"
+    SIDES = "airspace-sides"
+    RANGE = "max-distance"
+    DISTANCE = "min-distance"
+    NO_FLY = "no-fly"
+    GROUND = "ground"
+    HIDDEN = "hidden"
+    UNFLYABLE = "unflyable"
+
+    @property
+    def unit(self) -> str:
+        """Of the amount by which it is broken; empty for rules that hold or do not."""
+        if self in (Rule.GROUND, Rule.HIDDEN, Rule.UNFLYABLE):
+            return ""
+        return "deg" if self in (Rule.GIMBAL_UP, Rule.GIMBAL_DOWN) else "m"
+
+
+RULES = tuple(Rule)
+
+
+@dataclass(frozen=True, slots=True)
+class BrokenRule:
+    """One rule and by how much a place breaks it.
+
+    Parameters
+    ----------
+    amount
+        In the unit of the rule; 0 where it has none.
+    thing
+        What is too close, entered or in the way; None for other rules.
+    inside
+        The place lies inside `thing`: no smaller minimum distance would do.
+    """
+
+    rule: Rule
+    amount: float
+    thing: Thing | None = None
+    inside: bool = False
+
+    def __str__(self) -> str:
+        """What is wrong with the place, in the pilot's words."""
+        amount, thing = f"{self.amount:.3g}", self.thing
+        if self.rule in (Rule.DISTANCE, Rule.NO_FLY):
+            return f"inside {thing}" if self.inside else f"{amount} m too close to {thing}"
+        return {
+            Rule.GIMBAL_UP: f"{amount} degrees above what the camera sees with the gimbal at its limit",
+            Rule.GIMBAL_DOWN: f"{amount} degrees below what the camera sees with the gimbal at its limit",
+            Rule.FLOOR: f"{amount} m below the floor of the airspace",
+            Rule.CEILING: f"{amount} m above the ceiling of the airspace",
+            Rule.SIDES: f"{amount} m beyond the sides of the airspace",
+            Rule.RANGE: f"{amount} m too far away for the largest distance or pixel size allowed",
+            Rule.GROUND: "below the ground",
+            Rule.HIDDEN: f"hidden by {thing}",
+            Rule.UNFLYABLE: "no way to it was found from home",
+        }[self.rule]
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """What would make a section reachable: its rules, relaxed together at this place."""
+
+    broken: tuple[BrokenRule, ...]
+    place_enu_m: Vec3
+
+    def __str__(self) -> str:
+        """The rules, joined."""
+        return " and ".join(str(rule) for rule in self.broken)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SectionReasons:
+    """Reasons of all sections that cannot be covered.
+
+    Parameters
+    ----------
+    shape
+        Panels and sections of the site, (m, s).
+    elements
+        Element (panel * s + section) of each of q reasons, rising, shape (q,). The reasons of one section are in
+        order of how little would have to give (metres and degrees count alike); what cannot give comes last.
+    masks
+        Rules broken, shape (q,): bit r for `RULES[r]`.
+    amounts, things
+        By how much, and the number of the thing, shape (q, len(RULES)); 0 and -1 where there is none.
+    places_enu_m
+        Shape (q, 3).
+    all_things
+        Names of the things.
+    min_distance_m, no_fly_distance_m
+        Kept from solids and no-fly volumes, with margin: what breaks the rule by more lies inside.
+    """
+
+    shape: tuple[int, int]
+    elements: NDArray[np.int64]
+    masks: NDArray[np.int64]
+    amounts: Array
+    things: NDArray[np.int64]
+    places_enu_m: Array
+    all_things: tuple[Thing, ...]
+    min_distance_m: float
+    no_fly_distance_m: float
+
+    def of(self, panel: int, section: int) -> tuple[Reason, ...]:
+        """Reasons of one section, the most helpful first; none where it can be covered."""
+        element = panel * self.shape[1] + section
+        first, last = np.searchsorted(self.elements, [element, element + 1])
+        return tuple(self._reason(row) for row in range(first, last))
+
+    def first_masks(self) -> NDArray[np.int64]:
+        """Rules of the first reason of each section, shape (m, s), bit r for `RULES[r]`; 0 for none."""
+        masks = np.zeros(self.shape[0] * self.shape[1], np.int64)
+        element, first = np.unique(self.elements, return_index=True)
+        masks[element] = self.masks[first]
+        return masks.reshape(self.shape)
+
+    def counts(self) -> dict[tuple[Rule, ...], int]:
+        """Number of sections by the rules of their first reason, the most frequent first."""
+        masks = self.first_masks()
+        counted = Counter(masks[masks > 0].tolist())
+        return {rules_of(mask): count for mask, count in counted.most_common()}
+
+    def _reason(self, row: int) -> Reason:
+        x, y, z = (float(value) for value in self.places_enu_m[row])
+        return Reason(tuple(self._broken(row, rule) for rule in rules_of(int(self.masks[row]))), (x, y, z))
+
+    def _broken(self, row: int, rule: Rule) -> BrokenRule:
+        number = RULES.index(rule)
+        amount, thing = float(self.amounts[row, number]), int(self.things[row, number])
+        kept = {Rule.DISTANCE: self.min_distance_m, Rule.NO_FLY: self.no_fly_distance_m}.get(rule, np.inf)
+        return BrokenRule(rule, amount, self.all_things[thing] if thing >= 0 else None, amount >= kept)
+
+
+def rules_of(mask: int) -> tuple[Rule, ...]:
+    """Rules whose bits are set."""
+    return tuple(rule for number, rule in enumerate(RULES) if mask >> number & 1)
+
+
+def section_reasons(
+    site_model: SiteModel,
+    prepared: Prepared,
+    panels: NDArray[np.int64] | None = None,
+    monitor: Monitor = QUIET,
+) -> SectionReasons:
+    """Why each section that is proven unreachable, or cannot be flown to, cannot be covered.
+
+    Sections that stay undecided get no reason.
+
+    Parameters
+    ----------
+    panels
+        Numbers of the panels asked about; all where None. One panel takes milliseconds, also with fine sections.
+    """
+    problem = prepared.problem
+    model, space = problem.model, problem.space
+    things = things_of(site_model, space)
+    shape = problem.reachability.verdicts.shape
+    verdicts = np.full(shape, UNDECIDED, np.int8)
+    asked = slice(None) if panels is None else panels
+    verdicts[asked] = problem.reachability.verdicts[asked]
+    unreachable = np.flatnonzero(verdicts == UNREACHABLE)
+    elements, masks, amounts, places = _explain(model, space, site_model.site.airspace.ground_z_m, unreachable, monitor)
+    cut_off, cut_off_places = unflyable_sections(problem, verdicts, monitor)
+    elements, places = np.concatenate([elements, cut_off]), np.concatenate([places, cut_off_places])
+    masks = np.concatenate([masks, np.full(len(cut_off), 1 << RULES.index(Rule.UNFLYABLE))])
+    amounts = np.pad(amounts, ((0, len(cut_off)), (0, len(RULES) - kernel.N_RULES)))
+    named = _name_things(model, space, things, elements // shape[1], masks, places)
+    limits = reach_limits(model, space)
+    immovable = (masks >> kernel.GROUND > 0) | (amounts[:, kernel.DISTANCE] >= limits.need_distance)
+    order = np.lexsort([masks, amounts.sum(axis=1), immovable, elements])
+    return SectionReasons(
+        (shape[0], shape[1]),
+        elements[order],
+        masks[order],
+        amounts[order],
+        named[order],
+        places[order],
+        things.all,
+        limits.need_distance,
+        limits.need_no_fly,
+    )
+
+
+def _explain(
+    model: CoverageModel, space: FreeSpace, ground_z_m: float, elements: NDArray[np.int64], monitor: Monitor
+) -> tuple[NDArray[np.int64], NDArray[np.int64], Array, Array]:
+    """Rows of reasons of unreachable elements: element, mask, amounts and place of each."""
+    frames, grid = model.frames, model.grid
+    panels = np.concatenate([frames.centroids, frames.normals, frames.tangents, frames.bitangents], axis=1)
+    targets = model.targets_enu_m
+    corners = np.maximum(np.abs(space.low_enu_m - frames.centroids), np.abs(space.high_enu_m - frames.centroids))
+    farthest = BEYOND * np.linalg.norm(corners, axis=1) + kernel.NEAREST_M
+    all_bounds = np.array([grid.bounds_rad(section) for section in range(grid.n_sections)])
+    n_angles = max(3, 1 + round(grid.step_deg / 10.0))
+    world = kernel.World(
+        reach_limits(model, space), ground_z_m, reach_bodies(space.solids, False), reach_bodies(space.no_fly, False)
+    )
+    k, n_rules = len(elements), kernel.N_RULES
+    n_rows, masks = np.zeros(k, np.int64), np.zeros((k, n_rules), np.int64)
+    amounts, places = np.zeros((k, n_rules, n_rules)), np.zeros((k, n_rules, 3))
+
+    def work(start: int, stop: int) -> None:
+        panel, section = np.divmod(elements[start:stop], grid.n_sections)
+        part = slice(start, stop)
+        outputs = n_rows[part], masks[part], amounts[part], places[part]
+        kernel.explain_sections(panels, targets, farthest, panel, all_bounds[section], world, n_angles, *outputs)
+
+    size = SECTIONS_PER_CHUNK
+    for first, last in chunks(k, 4 * n_threads() * size):
+        monitor.report("finding what stands in the way", first, k)
+        run_parallel(work, [(first + start, first + stop) for start, stop in chunks(last - first, size)])
+    filled = np.arange(n_rules) < n_rows[:, None]
+    return np.repeat(elements, n_rows), masks[filled], amounts[filled], places[filled]
+
+
+def _name_things(
+    model: CoverageModel,
+    space: FreeSpace,
+    things: Things,
+    panel: NDArray[np.int64],
+    masks: NDArray[np.int64],
+    places: Array,
+) -> NDArray[np.int64]:
+    """Number of the thing that each row's rules are about, shape (q, len(RULES)); -1 for none."""
+    named = np.full((len(masks), len(RULES)), -1, np.int64)
+    near, zone, hidden = (masks >> rule & 1 == 1 for rule in (kernel.DISTANCE, kernel.NO_FLY, kernel.HIDDEN))
+    named[near, kernel.DISTANCE] = nearest_things(space.solids, things.solid_owner, places[near])
+    named[zone, kernel.NO_FLY] = nearest_things(space.no_fly, things.no_fly_owner, places[zone])
+    targets = model.targets_enu_m[panel[hidden]]
+    named[hidden, kernel.HIDDEN] = first_things_hit(space.solids, things.solid_owner, targets, places[hidden])
+    return named

@@ -1,0 +1,22 @@
+"""Compile the kernels of this package once, on the smallest site."""
+
+from __future__ import annotations
+
+from planning.catalogue import DEFAULT_PROFILE, profile
+from planning.insight.clearance import route_clearance
+from planning.insight.reasons import section_reasons
+from planning.insight.things import first_things_hit, things_of
+from planning.plan import Constraints, Sortie
+from planning.prepare import prepare
+from planning.scenes import SCENES
+
+
+def compile_kernels() -> None:
+    """Run every kernel of this package on a site with unreachable sections."""
+    model = SCENES["single-panel"]()
+    prepared = prepare(model, profile(DEFAULT_PROFILE).camera, Constraints())
+    section_reasons(model, prepared)
+    space = prepared.problem.space
+    things = things_of(model, space)
+    route_clearance(Sortie((), ((0.0, -20.0, 5.0), (5.0, -20.0, 5.0)), 5.0, 5.0), space, things)
+    first_things_hit(space.solids, things.solid_owner, space.home_enu_m[None], space.column_top_enu_m[None])

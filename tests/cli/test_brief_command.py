@@ -1,0 +1,36 @@
+"""`brief` writes one page, and refuses what it cannot write."""
+
+
+def test_brief_is_one_html_page_with_its_pictures(reflight, pane, tmp_path):
+    out = tmp_path / "brief.html"
+    done = reflight("brief", pane / "plan.json", pane / "site.json", "-o", out)
+    assert done.status == 0
+    assert done.out.strip() == str(out)
+    page = out.read_text("utf-8")
+    assert page.startswith("<!DOCTYPE html>")
+    assert page.count("data:image/svg+xml") == 2
+    assert "Flight brief: single-panel" in page
+
+
+def test_json_says_what_was_written_and_letter_is_a_choice(reflight, pane, tmp_path):
+    out = tmp_path / "brief.htm"
+    arguments = ("--units", "imperial", "--paper", "a4", "--json")
+    done = reflight("brief", pane / "plan.json", pane / "site.json", "-o", out, *arguments)
+    assert done.json == {"file": str(out), "flyable": True, "findings": 0}
+    assert "size: A4" in out.read_text("utf-8")
+    assert " ft" in out.read_text("utf-8")
+
+
+def test_a_pdf_is_refused_with_the_two_ways_to_get_one(reflight, pane, tmp_path):
+    done = reflight("brief", pane / "plan.json", pane / "site.json", "-o", tmp_path / "brief.pdf")
+    assert "expected a name that ends in .html" in done.error
+    assert "browser" in done.error
+    assert not list(tmp_path.iterdir())
+
+
+def test_bad_plans_and_places_are_refused_and_nothing_is_written(reflight, pane, bad_file, tmp_path):
+    out = tmp_path / "brief.html"
+    assert str(bad_file) in reflight("brief", bad_file, pane / "site.json", "-o", out).error
+    assert not out.exists()
+    missing = tmp_path / "none" / "brief.html"
+    assert "there is no folder" in reflight("brief", pane / "plan.json", pane / "site.json", "-o", missing).error

@@ -1,0 +1,359 @@
+"""The Mission tab as a pilot uses it: check, jump, export, import, compare, brief."""
+
+import time
+from dataclasses import replace
+
+import pytest
+
+from groundstation.services.document import Document, Item, ItemKind, PlanEntry
+from groundstation.services.jobs import JobRunner
+from groundstation.services.session import Session
+from groundstation.services.units import UnitSystem
+from missions.formats import read_missions
+from missions.model import FileFormat
+from planning.findings import Severity
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from tests.missions.plans import example_plan
+from tests.planning.plan_cases import kiosk
+
+
+@pytest.fixture(scope="module")
+def planned():
+    model = kiosk()
+    return model, plan_flight(model, PlanRequest(n_views=10, time_budget_s=5.0)).plan
+
+
+@pytest.fixture
+def workspace(application):
+    from groundstation.gui.workspace import Workspace
+
+    runner = JobRunner()
+    workspace = Workspace(Session(), runner)
+    yield workspace
+    workspace.close()
+    runner.shutdown()
+
+
+@pytest.fixture
+def page(application, workspace):
+    from PySide6.QtWidgets import QHBoxLayout, QWidget
+
+    from groundstation.gui.mission.mission_page import MissionPage
+    from groundstation.gui.stage import Stage
+
+    window = QWidget()
+    stage = Stage(workspace, window)
+    page = MissionPage(workspace, stage)
+    layout = QHBoxLayout(window)
+    for widget in (page.left, stage, page.right, page.bottom):
+        layout.addWidget(widget)
+    window.resize(1280, 600)
+    window.show()
+    page.shown()
+    yield page
+    stage.close_views()
+    window.close()
+
+
+@pytest.fixture
+def idle(application, workspace):
+    """Wait until no job runs and a condition holds; without one, until none is about to start either."""
+
+    def wait(condition=None):
+        end, calm = time.monotonic() + 60.0, 0
+        while workspace.jobs() or (calm < 40 if condition is None else not condition()):
+            assert time.monotonic() < end
+            application.processEvents()
+            time.sleep(0.01)
+            calm = 0 if workspace.jobs() else calm + 1
+
+    return wait
+
+
+@pytest.fixture
+def said(workspace):
+    heard = []
+    workspace.messageShown.connect(heard.append)
+    return heard
+
+
+def opened(planned, **changes):
+    model, plan = planned
+    entry = PlanEntry("plan-1", "First plan", replace(plan, **changes))
+    return Document(site=model, plans=(entry,), current_plan_id="plan-1")
+
+
+def test_empty_page_says_what_to_do_first(page, workspace, planned):
+    assert "Open or import a site first" in page._summary.text()
+    assert not any(action.isEnabled() for action in page.actions())
+    workspace.session.open(Document(site=planned[0]), None)
+    assert "Plan a flight on the Plan tab" in page._summary.text()
+    assert [action.text() for action in page.actions() if action.isEnabled()] == ["Import mission files ..."]
+
+
+def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, workspace, planned, idle):
+    workspace.session.open(opened(planned), None)
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+    assert page.findings.state_text() == ""
+    model = page.waypoints.model()
+    row = model.row_of(Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[0]))
+    assert int(model.index(row, 11).data()) >= 1
+    assert all(action.isEnabled() for action in page.actions())
+
+
+def test_findings_are_old_as_soon_as_the_plan_changes_and_then_renewed(page, workspace, planned, idle):
+    workspace.session.open(opened(planned), None)
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+    far = replace(planned[1].constraints, min_distance_m=30.0)
+    workspace.change("Farther", opened(planned, constraints=far))
+    assert page.findings.verdict() == "Readiness not known"
+    assert "Older than the plan" in page.findings.state_text()
+    idle(lambda: page.findings.verdict() == "NOT ready to fly")
+    workspace.session.undo()
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+
+
+def test_hidden_tabs_do_not_check(page, workspace, planned, idle):
+    page.hidden()
+    workspace.session.open(opened(planned), None)
+    idle()
+    assert page.findings.verdict() == "Readiness not known"
+    page.shown()
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+
+
+def test_cancelling_the_check_leaves_the_page_usable(page, workspace, planned, idle, application):
+    workspace.session.open(opened(planned), None)
+    end = time.monotonic() + 20.0
+    while not workspace.jobs():
+        assert time.monotonic() < end
+        application.processEvents()
+    workspace.cancel(workspace.jobs()[0])
+    idle()
+    if page.findings.verdict() != "Ready to fly":
+        page.desk.check()
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+
+
+def test_places_of_findings_lead_to_their_things(page, workspace, planned, said):
+    workspace.session.open(opened(planned), None)
+    looked = []
+    workspace.lookAtRequested.connect(looked.append)
+    page.findings.placePicked.emit("sortie 1, leg 2")
+    page.findings.placePicked.emit(planned[1].viewpoints[3].id)
+    assert looked == [Item(ItemKind.LEG, "1/2"), Item(ItemKind.VIEWPOINT, planned[1].viewpoints[3].id)]
+    page.findings.placePicked.emit("template.kml")
+    assert "template.kml is not shown" in said[-1].text
+
+
+def test_selection_goes_through_table_and_chart_and_back(page, workspace, planned):
+    workspace.session.open(opened(planned), None)
+    heard = []
+    workspace.selectionChanged.connect(heard.append)
+    wanted = Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[4])
+    page.waypoints.view().selectRow(page.waypoints.model().row_of(wanted))
+    assert heard == [wanted]
+    other = Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[1])
+    workspace.select(other)
+    assert heard == [wanted, other]
+    assert page.waypoints.view().selectionModel().currentIndex().row() == page.waypoints.model().row_of(other)
+    assert all(mark.isVisible() for mark in page.profile._marks)
+
+
+def test_export_shows_findings_first_then_writes_and_remembers_the_folder(
+    page, workspace, planned, idle, said, tmp_path
+):
+    workspace.session.open(opened(planned), None)
+    dialog = page.export()
+    idle(lambda: dialog.prepared() is not None)
+    assert dialog.prepared().can_be_written
+    assert not list(tmp_path.iterdir())
+    dialog.write(tmp_path / "kiosk.kmz")
+    idle(lambda: (tmp_path / "kiosk.kmz").exists())
+    assert read_missions(tmp_path / "kiosk.kmz")[0].n_photos == 10
+    assert said[-1].severity is Severity.OK
+    again = page.export()
+    assert again.folder() == tmp_path
+    idle()
+    again.close()
+
+
+def test_export_says_why_files_cannot_be_made_and_offers_no_writing(page, workspace, planned, idle):
+    sortie = planned[1].sorties[0]
+    lost = next(view for view in planned[1].viewpoints if view.id == sortie.viewpoint_ids[3])
+    path = tuple(point for point in sortie.path_enu_m if point != lost.position_enu_m)
+    workspace.session.open(opened(planned, sorties=(replace(sortie, path_enu_m=path),)), None)
+    dialog = page.export()
+    idle(lambda: dialog.prepared() is not None)
+    assert f"Cannot be exported: sortie 1: viewpoint '{lost.id}' is not on the path" in dialog.state_text()
+    assert not dialog._write.isEnabled()
+    dialog.close()
+
+
+def test_only_the_last_wish_of_the_export_form_is_made(page, workspace, planned, idle):
+    workspace.session.open(opened(planned), None)
+    dialog = page.export()
+    for index in (1, 2, 3, 4):
+        dialog.form()._format.setCurrentIndex(index)
+        assert dialog.prepared() is None
+        assert not dialog._write.isEnabled()
+    idle(lambda: dialog.prepared() is not None)
+    assert dialog.prepared().encoded.contents[0].startswith(b"sortie,sequence")
+    dialog.close()
+
+
+def test_a_folder_that_cannot_be_written_is_told_in_the_dialog(page, workspace, planned, idle, tmp_path):
+    workspace.session.open(opened(planned), None)
+    dialog = page.export()
+    idle(lambda: dialog.prepared() is not None)
+    dialog.write(tmp_path / "none" / "kiosk.kmz")
+    idle(lambda: "Not written" in dialog.state_text())
+    assert "there is no folder" in dialog.state_text()
+    dialog.close()
+
+
+def test_every_choice_of_the_export_form_comes_back(application):
+    from groundstation.gui.mission.export_form import ExportForm
+    from missions.dji.write import LinkLoss
+    from missions.encode import ExportOptions
+    from missions.mavlink.autopilots import Autopilot
+    from missions.model import HeightReference
+
+    form = ExportForm(UnitSystem.METRIC)
+    heard = []
+    form.valueChanged.connect(lambda: heard.append(form.value()))
+    for value in (
+        (FileFormat.DJI_KMZ, ExportOptions(HeightReference.ELLIPSOID, None, LinkLoss.GO_HOME, 75.0)),
+        (FileFormat.MAVLINK_PLAN, ExportOptions(HeightReference.AMSL, Autopilot.PX4)),
+        (FileFormat.MAVLINK_WPL, ExportOptions(HeightReference.ABOVE_TAKEOFF, Autopilot.ARDUPILOT)),
+        (FileFormat.KML, ExportOptions()),
+        (FileFormat.CSV, ExportOptions()),
+    ):
+        form.setValue(*value)
+        assert form.value() == value
+    assert heard == []
+    form._format.setCurrentIndex(1)
+    assert heard[-1][0] is FileFormat.MAVLINK_PLAN
+
+
+def test_import_makes_a_plan_that_undo_takes_away(page, workspace, planned, idle, said, tmp_path):
+    from groundstation.services.mission_files import prepare_export, write_export
+
+    model, plan = planned
+    path = tmp_path / "flown.kmz"
+    write_export(prepare_export(plan, model, FileFormat.DJI_KMZ), path)
+    workspace.session.open(Document(site=model), None)
+    page.desk.import_files([path])
+    idle(lambda: workspace.document.current is not None)
+    entry = workspace.document.current
+    assert (entry.title, entry.plan.method, len(entry.plan.viewpoints)) == ("flown", "imported", 10)
+    assert any("flown imported, photos: 10" in message.text for message in said)
+    idle()
+    workspace.session.undo()
+    assert workspace.document.plans == ()
+
+
+def test_files_that_are_no_missions_are_refused_by_name(page, workspace, planned, idle, said, tmp_path):
+    bad = tmp_path / "holiday.kmz"
+    bad.write_bytes(b"PK not a zip")
+    workspace.session.open(opened(planned), None)
+    idle()
+    page.desk.import_files([bad])
+    page.desk.compare_files([bad])
+    idle()
+    errors = [message.text for message in said if message.severity is Severity.ERROR]
+    assert len(errors) == 2
+    assert all("holiday.kmz" in text for text in errors)
+    assert len(workspace.document.plans) == 1
+
+
+def test_compare_answers_and_leads_to_the_photos_that_differ(page, workspace, planned, idle, tmp_path):
+    from groundstation.services.mission_files import prepare_export, write_export
+
+    model, plan = planned
+    path = tmp_path / "kiosk.plan"
+    write_export(prepare_export(plan, model, FileFormat.MAVLINK_PLAN), path)
+    workspace.session.open(opened(planned), None)
+    page.desk.compare_files([path])
+    idle(lambda: "kiosk.plan is the plan: all 10 photos" in page.comparison.answer())
+    assert page.lists.currentWidget() is page.comparison
+    assert page.comparison.table().model().rowCount() == 0
+    first = plan.sorties[0].viewpoint_ids[0]
+    turned = tuple(replace(v, heading_deg=v.heading_deg - 3.0) if v.id == first else v for v in plan.viewpoints)
+    workspace.change("Turn", opened(planned, viewpoints=turned))
+    assert "Compare with file" in page.comparison.answer()
+    page.desk.compare_files([path])
+    idle(lambda: "NOT the plan: 9 photos the same, 1 changed" in page.comparison.answer())
+    rows = page.comparison.table().model()
+    assert [rows.index(0, c).data() for c in (0, 1, 5)] == ["changed", first, "3.0"]
+    heard = []
+    page.comparison.picked.connect(heard.append)
+    page.comparison.table().clicked.emit(rows.index(0, 3))
+    assert heard == [Item(ItemKind.VIEWPOINT, first)]
+
+
+def test_brief_is_shown_and_saved(page, workspace, planned, idle, tmp_path):
+    from groundstation.gui.mission.brief_dialog import BriefDialog
+
+    workspace.session.open(opened(planned), None)
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+    page.print_brief()
+    (dialog,) = page._stage.window().findChildren(BriefDialog)
+    idle(dialog.is_ready)
+    assert "Flight brief: kiosk" in dialog.page_text()
+    assert "First plan" in dialog.page_text()
+    assert dialog.save_pdf(tmp_path / "brief.pdf")
+    assert (tmp_path / "brief.pdf").read_bytes().startswith(b"%PDF")
+    assert not dialog.save_pdf(tmp_path / "none" / "brief.pdf")
+    dialog.close()
+
+
+def test_units_reach_every_part(page, workspace, planned, idle):
+    workspace.session.open(opened(planned), None)
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+    page.findings.show_severity(Severity.OK, True)
+    workspace.set_units(UnitSystem.IMPERIAL)
+    assert "[ft]" in page.waypoints.model().headerData(5, _horizontal())
+    assert page.sorties.model().headerData(3, _horizontal()) == "mi"
+    assert any(" ft" in text for text in page.findings.list_view().texts())
+    assert "[ft]" in page.profile.plots()[0].getAxis("left").labelText
+
+
+def _horizontal():
+    from PySide6.QtCore import Qt
+
+    return Qt.Orientation.Horizontal
+
+
+def test_chart_draws_each_sortie_and_picks_the_nearest_photo(application):
+    from PySide6.QtCore import QPointF
+
+    from groundstation.gui.mission.profile_chart import ProfileChart
+    from groundstation.services.profiles import height_limits, plan_profiles
+
+    plan = example_plan()
+    chart = ProfileChart()
+    chart.resize(900, 250)
+    chart.show()
+    application.processEvents()
+    chart.set_curves(plan_profiles(plan), height_limits(kiosk()))
+    application.processEvents()
+    heard = []
+    chart.picked.connect(heard.append)
+    for viewpoint_id in ("v0008", "v0002"):
+        chart.set_selection(Item(ItemKind.VIEWPOINT, viewpoint_id))
+        application.processEvents()
+        mark = chart._marks[0].value()
+        scene = chart.plots()[0].vb.mapViewToScene(QPointF(mark, 10.0))
+        chart._pointed(scene)
+        assert f"nearest photo {viewpoint_id}" in chart.hover_text()
+        chart._clicked(scene)
+        assert heard.pop() == Item(ItemKind.VIEWPOINT, viewpoint_id)
+    chart._over.setCurrentIndex(1)
+    application.processEvents()
+    end = chart.plots()[0].vb.viewRange()[0][1]
+    assert end == pytest.approx(plan.sorties[0].length_m, rel=0.02)
+    chart.set_curves((), None)
+    assert "plan a flight first" in chart.hover_text()
+    chart.close()

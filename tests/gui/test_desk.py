@@ -1,0 +1,234 @@
+"""Projects in the window: saved, opened, recovered; damaged ones, read-only folders and full disks are survived."""
+
+import os
+import shutil
+
+import pytest
+
+from groundstation.gui.questions import Answer
+from groundstation.services.document import PlanEntry
+from groundstation.services.jobs import JobState
+from groundstation.services.project import open_project
+from planning.errors import InputError
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.scenes import roof
+from tests.gui.driving import Answers, turn_until, turn_until_idle
+
+
+@pytest.fixture
+def answers():
+    return Answers()
+
+
+@pytest.fixture
+def make_desk(application, answers, tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
+    from groundstation.gui.desk import Desk
+
+    desks = []
+
+    def make():
+        desk = Desk(application, answers)
+        desk.show()
+        turn_until(application, lambda: desk.window.stage.scene() is not None)
+        desks.append(desk)
+        return desk
+
+    def end(desk):
+        answers.save = Answer.NO
+        desk.window.close()
+        desk.close()
+        desks.remove(desk)
+
+    make.end = end
+    yield make
+    for desk in list(desks):
+        end(desk)
+
+
+@pytest.fixture(scope="module")
+def entry():
+    return PlanEntry("plan-1", "First", plan_flight(roof(), PlanRequest(n_views=4, time_budget_s=2.0)).plan)
+
+
+def with_site(application, desk):
+    desk.window.tab("site").left.opener.open_bundled("roof")
+    turn_until_idle(application, desk)
+
+
+def test_a_project_is_saved_and_opened_again(application, make_desk, answers, entry, tmp_path):
+    desk = make_desk()
+    assert "Begin with a site" in desk.window.tab("site").left.start.findChild(type(desk.window.messages._text)).text()
+    with_site(application, desk)
+    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+    assert desk.window.isWindowModified()
+    answers.chosen = tmp_path / "my roof"
+    desk.save()
+    turn_until_idle(application, desk)
+    assert not desk.window.isWindowModified()
+    assert desk.window.windowTitle() == "my roof[*] - Reflight"
+    assert "Saved in" in desk.window.messages.texts()
+    desk.workspace.session.undo()
+    assert desk.window.isWindowModified()
+    answers.save = Answer.NO
+    desk.open_folder(tmp_path / "my roof")
+    turn_until_idle(application, desk)
+    assert [found.title for found in desk.workspace.document.plans] == ["First"]
+    assert desk.workspace.document.current.plan == entry.plan
+    assert desk.settings().recent_projects == (str(tmp_path / "my roof"),)
+
+
+def test_leaving_unsaved_work_asks_first(application, make_desk, answers, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    answers.save = Answer.CANCEL
+    desk.new_project()
+    assert desk.workspace.document.site is not None
+    assert not desk.window.close()
+    answers.save, answers.chosen = Answer.YES, tmp_path / "kept"
+    desk.new_project()
+    turn_until_idle(application, desk)
+    assert desk.workspace.document.site is None
+    assert open_project(tmp_path / "kept").document.site.site.name == "roof"
+
+
+def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_desk, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    bad = tmp_path / "bad"
+    bad.mkdir()
+    (bad / "project.json").write_text('{"format": "reflight-project/2", "plans": [')
+    desk.open_folder(bad)
+    turn_until_idle(application, desk)
+    assert "project.json" in desk.window.messages.texts()
+    assert "Error" in desk.window.messages.texts()
+    assert desk.workspace.document.site.site.name == "roof"
+    desk.open_recent(str(tmp_path / "gone"))
+    assert "not there any more" in desk.window.messages.texts()
+
+
+def test_a_full_disk_leaves_the_work_in_the_window(application, make_desk, entry, tmp_path, monkeypatch):
+    desk = make_desk()
+    with_site(application, desk)
+    desk.save_in(tmp_path / "project")
+    turn_until_idle(application, desk)
+    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+
+    def full(_path, _content):
+        raise InputError("plan-1.plan.json: cannot be written (No space left on device)")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("groundstation.services.project_store.write_atomically", full)
+        desk.save()
+        turn_until_idle(application, desk)
+    assert "No space left on device" in desk.window.messages.texts()
+    assert desk.window.isWindowModified()
+    assert open_project(tmp_path / "project").document.plans == ()
+    desk.save()
+    turn_until_idle(application, desk)
+    assert len(open_project(tmp_path / "project").document.plans) == 1
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_read_only_project_opens_and_says_so(application, make_desk, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    folder = tmp_path / "project"
+    desk.save_in(folder)
+    turn_until_idle(application, desk)
+    desk.new_project()
+    folder.chmod(0o555)
+    desk.open_folder(folder)
+    turn_until_idle(application, desk)
+    folder.chmod(0o755)
+    assert "cannot be written" in desk.window.messages.texts()
+    assert desk.workspace.document.site is not None
+
+
+def test_unsaved_work_is_offered_after_a_crash(application, make_desk, answers, entry, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    folder = tmp_path / "project"
+    desk.save_in(folder)
+    turn_until_idle(application, desk)
+    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+    desk.autosave_now()
+    turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
+    # What a crash leaves: the folder as it is now, and no process that has it open.
+    shutil.copytree(folder, tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
+    answers.take_over = Answer.YES
+    desk.open_folder(tmp_path / "crashed")
+    turn_until_idle(application, desk)
+    assert any("plan 'First' is new" in asked for asked in answers.asked)
+    assert [found.title for found in desk.workspace.document.plans] == ["First"]
+    assert desk.window.isWindowModified(), "it is still not saved"
+    desk.save()
+    turn_until_idle(application, desk)
+    assert not (tmp_path / "crashed" / ".autosave").exists()
+    assert len(open_project(tmp_path / "crashed").document.plans) == 1
+
+
+def test_work_without_a_project_survives_a_crash_too(application, make_desk, answers, tmp_path):
+    first = make_desk()
+    with_site(application, first)
+    first.autosave_now()
+    place = first._place.folder
+    turn_until(application, lambda: (place / ".autosave" / "autosave.json").exists())
+    shutil.copytree(place, place.with_name("crashed"), ignore=shutil.ignore_patterns(".lock*"))
+    make_desk.end(first)
+    assert not place.exists(), "an orderly end leaves nothing behind"
+    answers.take_over = Answer.YES
+    second = make_desk()
+    turn_until_idle(application, second)
+    assert second.workspace.document.site.site.name == "roof"
+
+
+def test_a_second_window_on_one_project_is_told(application, make_desk, tmp_path):
+    first = make_desk()
+    with_site(application, first)
+    first.save_in(tmp_path / "project")
+    turn_until_idle(application, first)
+    second = make_desk()
+    second.open_folder(tmp_path / "project")
+    turn_until_idle(application, second)
+    assert "open in another Reflight" in second.window.messages.texts()
+    assert second.workspace.document.site is not None
+
+
+def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, make_desk, answers, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    desk.save_in(tmp_path / "project")
+    turn_until_idle(application, desk)
+    desk.window.show_tab("plan")
+    desk.window.tab("plan").desk.set_request(PlanRequest(n_views=25, time_budget_s=60.0))
+    desk.window.tab("plan").desk.plan()
+    turn_until(application, lambda: any(job.state is JobState.RUNNING for job in desk.workspace.jobs()))
+    jobs = desk.workspace.jobs()
+    assert desk.window.close()
+    assert all(job.wait(5.0) for job in jobs)
+    assert open_project(tmp_path / "project").document.site.site.name == "roof"
+
+
+def test_settings_with_a_mistake_are_named_and_left_alone(application, make_desk, tmp_path):
+    config = tmp_path / "config"
+    config.mkdir()
+    (config / "settings.toml").write_text('theme = "drak"\n')
+    desk = make_desk()
+    turn_until_idle(application, desk)
+    assert "drak" in desk.window.messages.texts()
+    desk.choose(text_scale=1.15)
+    assert (config / "settings.toml").read_text() == 'theme = "drak"\n'
+    desk.choose(text_scale=1.0)
+
+
+def test_the_layout_is_remembered(application, make_desk):
+    first = make_desk()
+    first.window._around.setSizes([500, 700])
+    turn_until_idle(application, first)
+    width = first.window._around.sizes()[0]
+    make_desk.end(first)
+    second = make_desk()
+    turn_until_idle(application, second)
+    assert second.window._around.sizes()[0] == pytest.approx(width, abs=3)

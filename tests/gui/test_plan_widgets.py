@@ -1,0 +1,221 @@
+"""Widgets of the Plan tab edit one value each and show what they are given."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from groundstation.services.effects import EffectChoice
+from groundstation.services.units import UnitSystem
+from planning.effects import Decision
+from planning.insight.sections import SectionState
+from planning.plan import Constraints, FlightRules, Viewpoint
+from planning.progress import QualityPoint
+from planning.request import PlanRequest
+
+
+@pytest.fixture(scope="module")
+def form(application):
+    from groundstation.gui.plan.plan_form import PlanForm
+
+    return PlanForm()
+
+
+REQUESTS = st.builds(
+    PlanRequest,
+    method=st.sampled_from(["greedy", "pso", "noto", "orbit"]),
+    n_views=st.integers(1, 20_000),
+    profile_id=st.sampled_from(["m3e", "m30", "px4"]),
+    constraints=st.builds(
+        Constraints,
+        min_distance_m=st.floats(0.5, 50.0),
+        section_step_deg=st.sampled_from([30.0, 15.0, 10.0, 5.0]),
+        occlusion=st.sampled_from(["auto", "on", "off"]),
+        whole_panel=st.booleans(),
+        max_distance_m=st.none() | st.floats(60.0, 90.0),
+    ),
+    rules=st.builds(
+        FlightRules, wind_m_s=st.floats(0.0, 12.0), battery_reserve=st.floats(0.0, 0.5), settle_s=st.floats(0.0, 10.0)
+    ),
+    precision=st.sampled_from(["f32", "f64"]),
+    seed=st.integers(0, 2**31 - 1),
+    time_budget_s=st.floats(1.0, 3600.0),
+)
+
+
+@given(REQUESTS)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=40)
+def test_the_form_gives_a_request_back_as_it_was_set(form, request_):
+    heard = []
+    form.valueChanged.connect(heard.append)
+    form.setValue(request_)
+    assert form.value() == request_
+    assert not heard
+    form.valueChanged.disconnect(heard.append)
+
+
+def test_one_edit_changes_one_thing_and_is_announced_once(form):
+    request = PlanRequest(n_views=37, constraints=Constraints(min_distance_m=7.123456), seed=5)
+    form.setValue(request)
+    heard = []
+    form.valueChanged.connect(heard.append)
+    form._wind.box().setValue(4.0)
+    form.valueChanged.disconnect(heard.append)
+    assert heard == [replace(request, rules=FlightRules(wind_m_s=4.0))]
+
+
+def test_a_request_that_makes_no_sense_is_explained_and_not_announced(form):
+    form.setValue(PlanRequest(constraints=Constraints(min_distance_m=20.0, max_distance_m=40.0)))
+    heard = []
+    form.valueChanged.connect(heard.append)
+    form._distance.box().setValue(60.0)
+    form.valueChanged.disconnect(heard.append)
+    assert not heard
+    assert "max_distance_m" in form._wrong.text()
+    form.setValue(PlanRequest())
+    assert form._wrong.text() == ""
+
+
+def test_an_own_aircraft_is_taken_from_a_file_and_a_wrong_file_changes_nothing(form, tmp_path):
+    own = tmp_path / "own.toml"
+    own.write_text(
+        '[quad]\naircraft = { name = "My quad", endurance_s = 900, max_speed_m_s = 8 }\n'
+        'camera = { name = "Cam", sensor_width_mm = 13.2, sensor_height_mm = 8.8, focal_length_mm = 8.8, '
+        "image_width_px = 5472, image_height_px = 3648, gimbal_pitch_deg = [-90, 20] }\n"
+    )
+    form.setValue(PlanRequest())
+    form.use_profile_file(own)
+    form._edited()
+    assert form.value().profile_id == str(own)
+    (tmp_path / "bad.toml").write_text("[quad]\n")
+    form.use_profile_file(tmp_path / "bad.toml")
+    assert "bad.toml" in form._wrong.text()
+    assert form.value().profile_id == str(own)
+    form.setValue(PlanRequest())
+
+
+def decision(on, size):
+    return Decision("occlusion", on, "scene", "something stands there", size, 0.5, "%", 1.2)
+
+
+def test_effects_say_state_reason_size_and_cost_and_take_a_wish(application):
+    from groundstation.gui.plan.effects_panel import EffectsPanel
+
+    panel, heard = EffectsPanel(), []
+    panel.wishChanged.connect(lambda name, wish: heard.append((name, wish)))
+    panel.set_effects(
+        (EffectChoice(decision(True, 7.5), "auto"), EffectChoice(replace(decision(False, 0.0), effect="x"), None))
+    )
+    text = panel.card("occlusion").text()
+    for part in ("occlusion", "is on", "something stands there", "7.5 %", "tolerance 0.5", "1.2 s"):
+        assert part in text
+    assert not heard
+    panel.card("occlusion").wish.setCurrentIndex(2)
+    assert heard == [("occlusion", "off")]
+    assert panel.card("x").wish.isHidden()
+    panel.set_effects(())
+    assert panel.card("occlusion").isHidden()
+    panel.set_effects((EffectChoice(decision(True, 7.5), "on"),))
+    assert not panel.card("occlusion").isHidden()
+    assert panel.card("x").isHidden()
+
+
+class Clock:
+    now_s = 0.0
+
+    def __call__(self):
+        return self.now_s
+
+
+def test_the_chart_tells_quality_bound_and_time_left_while_a_plan_runs(application):
+    from groundstation.gui.plan.quality_chart import QualityChart
+
+    clock = Clock()
+    chart = QualityChart(clock)
+    chart.start(30.0)
+    chart.add_point(QualityPoint(0.5, 600.0))
+    chart.set_bound(800.0)
+    clock.now_s = 12.0
+    chart._draw()
+    assert "600 sections" in chart.text()
+    assert "75.0 %" in chart.text()
+    assert "at most 18 s left" in chart.text()
+    assert not chart.enough.isHidden()
+    chart.finish()
+    assert chart.enough.isHidden()
+    assert "left" not in chart.text()
+
+
+def shown(state, n=0):
+    from groundstation.gui.plan.hemisphere_view import ShownSection
+
+    return ShownSection(state, n, f"{state.name} {n}")
+
+
+@pytest.mark.parametrize("step_deg", [30.0, 15.0, 10.0, 90.0])
+def test_every_section_is_found_where_it_is_painted(application, step_deg):
+    from groundstation.gui.plan.hemisphere_view import HemisphereView
+    from planning.coverage.sections import SectionGrid
+    from planning.insight.hemisphere import section_shapes
+
+    view = HemisphereView()
+    view.resize(400, 360)
+    grid = SectionGrid(step_deg)
+    view.set_sections(step_deg, tuple(shown(SectionState.COVERED, 1) for _ in range(grid.n_sections)))
+    shapes = section_shapes(grid)
+    for number in range(grid.n_sections):
+        theta = (shapes.ring[number] + 0.5) * step_deg
+        phi = (shapes.sector[number] + 0.5) * step_deg
+        assert view.section_at(view.place_of(theta, phi)) == number
+    assert view.section_at(view.place_of(91.0, 10.0)) is None
+
+
+def test_states_differ_in_the_picture_and_the_first_sector_lies_to_the_right(application):
+    from groundstation.gui.plan.hemisphere_view import HemisphereView
+
+    view = HemisphereView()
+    view.resize(300, 300)
+    states = [SectionState.MISSED] * 4
+    view.set_sections(90.0, tuple(shown(state) for state in states))
+    plain = view.grab().toImage()
+    for state in SectionState:
+        view.set_sections(90.0, tuple(shown(s) for s in [state, *states[1:]]))
+        picture = view.grab().toImage()
+        differ = [picture.pixel(x, y) != plain.pixel(x, y) for x, y in ((200, 110), (210, 120), (205, 117), (190, 95))]
+        assert any(differ) == (state is not SectionState.MISSED)
+        assert picture.pixel(100, 110) == plain.pixel(100, 110), "only the sector to the upper right was changed"
+    with pytest.raises(ValueError, match="36 sections"):
+        view.set_sections(30.0, tuple(shown(state) for state in states))
+
+
+def test_a_viewpoint_is_edited_one_thing_at_a_time(application):
+    from groundstation.gui.plan.viewpoint_editor import ViewpointEditor
+
+    editor, heard = ViewpointEditor(), []
+    editor.valueChanged.connect(heard.append)
+    viewpoint = Viewpoint("v0001", (1.23456, -2.0, 3.00004), 12.3456, -10.123)
+    editor.setValue(viewpoint)
+    assert not heard
+    editor.set_units(UnitSystem.IMPERIAL)
+    editor._position[2].box().setValue(editor._position[2].box().value() + 10.0)
+    assert heard[-1].position_enu_m[:2] == viewpoint.position_enu_m[:2]
+    assert heard[-1].position_enu_m[2] == pytest.approx(3.00004 + 10 * 0.3048, abs=0.002)
+    assert (heard[-1].heading_deg, heard[-1].gimbal_pitch_deg) == (12.3456, -10.123)
+    editor._locked.setChecked(True)
+    assert heard[-1].locked
+    editor.setValue(None)
+    assert editor.value() is None
+    assert len(heard) == 2
+
+
+def test_the_chart_never_draws_a_falling_curve_from_rising_points(application):
+    from groundstation.gui.plan.quality_chart import QualityChart
+
+    chart = QualityChart(Clock())
+    chart.show_history(tuple(QualityPoint(t, v) for t, v in ((0.1, 5.0), (0.2, 9.0), (1.5, 12.0))), 20.0)
+    x, y = chart._line.getData()
+    assert all(a <= b for a, b in pairwise(np.asarray(x)))
+    assert all(a <= b for a, b in pairwise(np.asarray(y)))

@@ -1,0 +1,168 @@
+"""The German window: nothing is left in English, forgotten or out of date."""
+
+import ast
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from PySide6.QtCore import QTranslator
+from PySide6.QtWidgets import QMenu
+
+from groundstation.gui.languages import FOLDER
+from groundstation.services.settings import Language
+from tests.gui.driving import Answers, turn_until
+
+GUI = FOLDER.parent
+ROOT = GUI.parent.parent
+SOURCES = sorted(GUI.rglob("*.py"))
+GERMAN = FOLDER / "reflight_de.ts"
+
+SHOWS_TEXT = {
+    *("QAction", "QCheckBox", "QGroupBox", "QLabel", "QPushButton", "QRadioButton"),
+    *("addAction", "addItem", "addMenu", "addRow", "addTab", "setPlaceholderText", "setStatusTip", "setText"),
+    *("setTitle", "setToolTip", "setWindowTitle"),
+}
+"""Calls whose text stands in the window."""
+
+NAMES = {"ArduPilot", "PX4", "EPSG:25832", "[*] - Reflight"}
+"""Shown as they are in every language."""
+
+
+def messages(path):
+    """(context, source, comment) of all texts in a file of translations, with what stands for them."""
+    found = {}
+    for context in ElementTree.parse(path).getroot().iter("context"):
+        for message in context.iter("message"):
+            key = (context.findtext("name"), message.findtext("source"), message.findtext("comment") or "")
+            found[key] = message.find("translation")
+    return found
+
+
+@pytest.fixture(scope="module")
+def german():
+    return messages(GERMAN)
+
+
+def name_of(call):
+    return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+
+
+def calls(path):
+    return [node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Call)]
+
+
+def test_every_text_has_a_finished_translation(german):
+    open_ones = [key for key, translation in german.items() if translation.get("type") or not translation.text]
+    assert len(german) > 500
+    assert not open_ones
+
+
+def test_the_file_holds_the_texts_of_the_sources_and_no_others(german, tmp_path):
+    lupdate = shutil.which("pyside6-lupdate", path=Path(sys.executable).parent)
+    if lupdate is None:
+        pytest.skip("pyside6-lupdate is not installed beside the interpreter")
+    fresh = tmp_path / GERMAN.name
+    sources = [str(path.relative_to(ROOT)) for path in SOURCES]
+    run = subprocess.run(
+        [lupdate, *sources, "-locations", "none", "-target-language", "de_DE", "-ts", str(fresh)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if run.returncode:
+        pytest.skip(f"lupdate does not run here: {run.stderr.strip()}")
+    assert set(messages(fresh)) - set(german) == set(), "run `make translations` and translate what is new"
+    assert set(german) - set(messages(fresh)) == set(), "run `make translations`"
+
+
+def test_the_compiled_file_answers_what_the_translations_say(application, german):
+    translator = QTranslator()
+    assert translator.load(str(GERMAN.with_suffix(".qm")))
+    differing = {
+        key: translator.translate(*key)
+        for key, translation in german.items()
+        if translator.translate(*key) != translation.text
+    }
+    assert not differing, "run `make translations`"
+
+
+def test_placeholders_and_mnemonics_survive_translation(german):
+    for (context, source, _), translation in german.items():
+        for pattern in (r"\{[^}]*\}", r"&(?=\w)"):
+            there, here = re.findall(pattern, source), re.findall(pattern, translation.text)
+            assert sorted(set(there)) == sorted(set(here)), f"{context}: {source!r} is {translation.text!r}"
+            assert len(there) == len(here) or pattern.startswith(r"\{"), f"{context}: {source!r}"
+
+
+def test_ends_of_texts_survive_translation(german):
+    """Full stops, colons and ellipses say what a button does and whether a sentence goes on."""
+    for (context, source, _), translation in german.items():
+        ends = [re.search(r"( ?\.\.\.|[.:?;]|)$", text).group() for text in (source, translation.text)]
+        assert ends[0] == ends[1], f"{context}: {source!r} is {translation.text!r}"
+        assert re.findall(r"^\s*|\s*$", source) == re.findall(r"^\s*|\s*$", translation.text), f"{context}: {source!r}"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(GUI)))
+def test_texts_are_literals_that_qt_linguist_finds(path, german):
+    known = {source for _, source, _ in german}
+    for call in calls(path):
+        if name_of(call) == "tr":
+            text = call.args[0]
+            assert isinstance(text, ast.Constant), f"line {call.lineno}: a text to translate must be a literal"
+            assert text.value in known, f"line {call.lineno}: Qt Linguist does not find {text.value!r}"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(GUI)))
+def test_no_widget_gets_a_text_that_is_not_translated(path):
+    for call in calls(path):
+        if name_of(call) not in SHOWS_TEXT:
+            continue
+        for argument in call.args:
+            parts = argument.values if isinstance(argument, ast.JoinedStr) else [argument]
+            for part in parts:
+                shown = part.value if isinstance(part, ast.Constant) and isinstance(part.value, str) else ""
+                is_word = re.search(r"[^\W\d_]{2}", re.sub(r"<[^>]*>|&\w+;", "", shown))
+                assert shown in NAMES or not is_word, f"line {call.lineno}: {shown!r} goes through tr()"
+
+
+@pytest.fixture
+def desk(application, tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
+    from groundstation.gui.desk import Desk
+
+    desk = Desk(application, Answers())
+    desk.show()
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+
+    def speak(language):
+        desk.choose(language=language)
+        turn_until(application, lambda: desk.window.stage.scene() is not None)
+
+    speak(Language.GERMAN)
+    yield desk
+    speak(Language.ENGLISH)
+    desk.window.close()
+    desk.close()
+
+
+def test_the_window_speaks_german_once_it_is_chosen(desk):
+    titles = [action.text().replace("&", "") for action in desk.window.menuBar().actions()]
+    assert {"Projekt", "Bearbeiten", "Ansicht", "Hilfe"} <= set(titles)
+    assert [spec.shown_title() for spec in desk.window.specs()] == [
+        *("Standort", "Planung", "Mission", "Fliegen", "Fotos", "Rekonstruktion", "Modell")
+    ]
+
+
+def test_no_two_german_entries_of_a_menu_share_a_letter(desk):
+    bar = desk.window.menuBar()
+    for name in desk.window.tab_names():
+        desk.window.show_tab(name)
+        menus = [bar, *(action.menu() for action in bar.actions() if isinstance(action.menu(), QMenu))]
+        for menu in menus:
+            letters = [found for action in menu.actions() for found in re.findall(r"&(\w)", action.text().lower())]
+            assert len(letters) == len(set(letters)), [action.text() for action in menu.actions()]

@@ -1,0 +1,504 @@
+"""The 3-D view as a user has it: real widgets on a virtual screen, real mouse events, pictures looked at by number."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QCoreApplication, QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtTest import QTest
+
+from groundstation.gui.theme import DARK, FACADES, LIGHT, Theme, apply_theme
+from groundstation.services.document import Item, ItemKind
+from groundstation.services.units import UnitSystem
+from planning.coverage.sections import SectionGrid
+from planning.scenes import canyon, office, roof, tower
+from planning.site_import.importer import import_site
+from planning.site_import.options import ImportOptions
+from tests.benchmarks.view3d import large_plan
+
+SIZE = (900, 600)
+
+
+@pytest.fixture
+def view(application):
+    from groundstation.gui.view3d.scene_view import SceneView
+
+    view = SceneView()
+    view.resize(*SIZE)
+    view.show()
+    QTest.qWaitForWindowExposed(view)
+    QTest.qWait(50)
+    yield view
+    view.close_view()
+    view.deleteLater()
+    settle(application)
+
+
+@pytest.fixture
+def plan():
+    return large_plan(60)
+
+
+def settle(application):
+    for _ in range(4):
+        application.processEvents()
+
+
+def rest(application, view):
+    """As after 200 ms without a movement."""
+    view._navigator.rested.emit()
+    settle(application)
+
+
+def picture(application, view):
+    settle(application)
+    return view.canvas().picture().astype(int)
+
+
+def differs(a, b):
+    return int(np.count_nonzero(np.abs(a - b).max(axis=2) > 12))
+
+
+def pixel_of(view, point):
+    (x, y), _ = view._navigator.pinhole().project(np.array(point, float))
+    return QPoint(round(x), round(y))
+
+
+def hover(view, place):
+    """Sent to the widget itself: QTest drops a move to where it believes the pointer to be already."""
+    no_button, no_key = Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier
+    globally = QPointF(view.canvas().mapToGlobal(place))
+    move = QMouseEvent(QEvent.Type.MouseMove, QPointF(place), globally, no_button, no_button, no_key)
+    QCoreApplication.sendEvent(view.canvas(), move)
+    view._gestures._hover_now()
+
+
+def drag(view, start, end, button=Qt.MouseButton.LeftButton, modifier=Qt.KeyboardModifier.NoModifier):
+    canvas = view.canvas()
+    QTest.mousePress(canvas, button, modifier, start)
+    for share in (0.3, 0.6, 1.0):
+        step = start + QPoint(round(share * (end - start).x()), round(share * (end - start).y()))
+        QTest.mouseMove(canvas, step)
+    QTest.mouseRelease(canvas, button, modifier, end)
+
+
+def test_many_changes_are_painted_once_and_none_while_hidden(application, view, plan):
+    model = tower()
+    settle(application)
+    before = view.canvas().n_painted
+    view.set_site(model)
+    view.set_plan(plan)
+    view.set_selection([Item(ItemKind.PANEL, "A-0000")])
+    view.look_at_all()
+    assert view.canvas().n_painted == before
+    settle(application)
+    assert view.canvas().n_painted == before + 1
+    view.hide()
+    settle(application)
+    before = view.canvas().n_painted
+    view.set_plan(None)
+    view.turn_by_hand(5.0, 0.0)
+    settle(application)
+    assert view.canvas().n_painted == before
+
+
+def test_panels_have_the_colour_of_their_facade_where_the_projection_says(application, view):
+    from groundstation.gui.view3d.paint import flat, shaded
+
+    model = office()
+    view.set_site(model)
+    shown = picture(application, view)
+    site = view._site
+    wanted = shaded(flat(FACADES[0], 1), site.frames.normals[:1])[0, :3]
+    pixels, _ = view._navigator.pinhole().project(site.frames.centroids)
+    for x, y in pixels[::17]:
+        assert np.abs(shown[int(y), int(x)] - wanted).max() <= 3
+
+
+def test_values_colour_panels_and_missing_ones_are_grey(application, view):
+    from groundstation.gui.view3d.paint import NO_VALUE, ColourScale, rgba, shaded
+
+    view.set_site(office())
+    values = np.full(280, np.nan)
+    values[140:] = 1.0
+    scale = ColourScale("Share", "", 0.0, 1.0)
+    view.set_panel_values(scale, values)
+    shown = picture(application, view)
+    pixels, _ = view._navigator.pinhole().project(view._site.frames.centroids)
+    normal = view._site.frames.normals[:1]
+    for panel, colour in ((30, rgba(NO_VALUE)), (200, scale.colours(np.ones(1))[0])):
+        x, y = pixels[panel].astype(int)
+        assert np.abs(shown[y, x] - shaded(colour[None], normal)[0, :3]).max() <= 3
+    plain = picture(application, view)
+    view.set_panel_values(None)
+    assert differs(plain, picture(application, view)) > 1000
+    with pytest.raises(ValueError, match="each of 280 panels"):
+        view.set_panel_values(scale, values[:5])
+
+
+def test_hemispheres_are_painted_and_taken_away(application, view):
+    view.set_site(office())
+    plain = picture(application, view)
+    states = np.zeros((280, 36), np.int64)
+    states[:, ::2] = 2
+    view.paint_hemispheres(SectionGrid(30.0), states)
+    painted = picture(application, view)
+    assert differs(plain, painted) > 3000
+    view.set_selection([Item(ItemKind.PANEL, "A-0150")])
+    assert differs(painted, picture(application, view)) > 300, "the selected panel's large dome is not drawn"
+    view.set_selection(())
+    view.paint_hemispheres(None)
+    assert differs(plain, picture(application, view)) < 50
+    with pytest.raises(ValueError, match=r"expected shape \(280, 36\)"):
+        view.paint_hemispheres(SectionGrid(30.0), states[:, :3])
+
+
+def test_layers_are_hidden_and_shown(application, view, plan):
+    from groundstation.gui.view3d.layers import Layer
+
+    view.set_site(canyon())
+    view.set_plan(plan)
+    view.look_at_all()
+    full = picture(application, view)
+    for layer in (Layer.PANELS, Layer.BUILDING, Layer.OBSTACLES, Layer.VIEWPOINTS, Layer.ROUTES, Layer.HOME):
+        view.set_layer_visible(layer, False)
+        assert not view.is_layer_visible(layer)
+        assert differs(full, picture(application, view)) > 20, layer
+        view.set_layer_visible(layer, True)
+    assert differs(full, picture(application, view)) == 0
+
+
+def test_hovering_and_clicking_name_the_panel_under_the_pointer(application, view):
+    view.set_site(office())
+    rest(application, view)
+    view._pick_index()
+    hovered, picked = [], []
+    view.hovered.connect(hovered.append)
+    view.picked.connect(lambda item, modifiers: picked.append((item, modifiers)))
+    place = pixel_of(view, view._site.frames.centroids[123])
+    hover(view, place)
+    assert hovered == [Item(ItemKind.PANEL, "A-0123")]
+    assert view._overlay._tip.text == "Panel A-0123"
+    QTest.mouseClick(view.canvas(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.ShiftModifier, place)
+    assert picked == [(Item(ItemKind.PANEL, "A-0123"), Qt.KeyboardModifier.ShiftModifier)]
+    QTest.mouseClick(view.canvas(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, QPoint(3, 3))
+    assert picked[-1][0] is None
+    application.sendEvent(view.canvas(), QEvent(QEvent.Type.Leave))
+    assert hovered[-1] is None
+
+
+def test_selection_and_hover_are_marked_in_the_picture(application, view, plan):
+    view.set_site(office())
+    view.set_plan(plan)
+    plain = picture(application, view)
+    for item in (
+        Item(ItemKind.PANEL, "A-0123"),
+        Item(ItemKind.FACADE, "A"),
+        Item(ItemKind.BUILDING),
+        Item(ItemKind.HOME),
+        Item(ItemKind.AIRSPACE),
+        Item(ItemKind.SORTIE, "1"),
+        Item(ItemKind.LEG, "1/3"),
+        Item(ItemKind.VIEWPOINT, "v0010"),
+    ):
+        view.set_selection([item])
+        view.look_at(item)
+        marked = picture(application, view)
+        view.set_selection(())
+        assert differs(marked, picture(application, view)) > 15, item
+        view.look_at_all()
+    view.set_hover(Item(ItemKind.PANEL, "A-0123"))
+    assert differs(plain, picture(application, view)) > 5
+
+
+def test_items_that_are_not_there_are_no_trouble(application, view):
+    view.set_site(roof())
+    before = view.orbit()
+    for item in (Item(ItemKind.PANEL, "nothing"), Item(ItemKind.LEG, "7/x"), Item(ItemKind.VIEWPOINT, "v9")):
+        view.set_selection([item])
+        view.look_at(item)
+    assert view.orbit() == before
+    view.set_site(None)
+    view.set_selection([Item(ItemKind.HOME)])
+    view.look_at_all()
+    assert view.pick_at(10.0, 10.0) is None
+    settle(application)
+
+
+def test_dragging_turns_shifts_and_zooms_and_others_can_follow(application, view):
+    view.set_site(office())
+    heard = []
+    view.orbitChanged.connect(heard.append)
+    start, before = QPoint(300, 300), view.orbit()
+    drag(view, start, QPoint(400, 300))
+    turned = view.orbit()
+    assert turned.heading_deg == pytest.approx(before.heading_deg + 35.0, abs=1.0)
+    assert turned.focus_enu_m == before.focus_enu_m
+    drag(view, start, QPoint(360, 340), Qt.MouseButton.RightButton)
+    assert view.orbit().focus_enu_m != turned.focus_enu_m
+    assert view.orbit().heading_deg == turned.heading_deg
+    anchor = view._site.frames.centroids[140]
+    place = pixel_of(view, anchor)
+    wheel = QWheelEvent(
+        QPointF(place),
+        QPointF(view.canvas().mapToGlobal(place)),
+        QPoint(),
+        QPoint(0, 240),
+        Qt.MouseButton.NoButton,
+        Qt.KeyboardModifier.NoModifier,
+        Qt.ScrollPhase.NoScrollPhase,
+        False,
+    )
+    distance = view.orbit().distance_m
+    application.sendEvent(view.canvas(), wheel)
+    assert view.orbit().distance_m == pytest.approx(distance / 1.15**2)
+    assert (pixel_of(view, anchor) - place).manhattanLength() <= 2
+    assert heard[-1] == view.orbit()
+    n_heard = len(heard)
+    view.set_orbit(before)
+    assert (view.orbit(), len(heard)) == (before, n_heard)
+
+
+def test_two_fingers_shift_and_zoom(application, view):
+    view.set_site(office())
+    before = view.orbit()
+    device = QTest.createTouchDevice()
+    canvas = view.canvas()
+    QTest.touchEvent(canvas, device).press(0, QPoint(300, 300), canvas).press(1, QPoint(500, 300), canvas).commit()
+    QTest.touchEvent(canvas, device).move(0, QPoint(250, 300), canvas).move(1, QPoint(550, 300), canvas).commit()
+    QTest.touchEvent(canvas, device).release(0, QPoint(250, 300), canvas).release(1, QPoint(550, 300), canvas).commit()
+    assert view.orbit().distance_m == pytest.approx(before.distance_m * 200.0 / 300.0, rel=0.02)
+    QTest.touchEvent(canvas, device).press(0, QPoint(300, 300), canvas).commit()
+    QTest.touchEvent(canvas, device).move(0, QPoint(340, 300), canvas).commit()
+    QTest.touchEvent(canvas, device).release(0, QPoint(340, 300), canvas).commit()
+    assert view.orbit().heading_deg != before.heading_deg
+
+
+def test_keys_turn_zoom_and_show_everything(application, view):
+    view.set_site(office())
+    view.canvas().setFocus()
+    start = view.orbit()
+    QTest.keyClick(view.canvas(), Qt.Key.Key_Right)
+    QTest.keyClick(view.canvas(), Qt.Key.Key_Up)
+    assert view.orbit().heading_deg != start.heading_deg
+    assert view.orbit().pitch_deg < start.pitch_deg
+    QTest.keyClick(view.canvas(), Qt.Key.Key_Plus)
+    assert view.orbit().distance_m < start.distance_m
+    QTest.keyClick(view.canvas(), Qt.Key.Key_F)
+    assert view.orbit() == start
+
+
+def test_keys_that_mean_something_to_vtk_mean_nothing_here(application, view):
+    view.set_site(office())
+    before = picture(application, view)
+    for key in "wqesrpc3":
+        QTest.keyClick(view.canvas(), key)
+    assert differs(before, picture(application, view)) == 0
+    assert view.isVisible()
+
+
+def test_domes_follow_the_view_once_it_is_at_rest(application, view):
+    view.set_site(tower())
+    view.paint_hemispheres(SectionGrid(30.0), np.tile(np.arange(36) % 5, (3640, 1)))
+    view.look_at(Item(ItemKind.PANEL, "C-0400"))
+    on_the_way = picture(application, view)
+    rest(application, view)
+    assert differs(on_the_way, picture(application, view)) > 1000
+
+
+def test_standard_views_look_from_where_they_say(application, view):
+    from groundstation.gui.view3d.scene_view import StandardView
+
+    view.set_site(office())
+    view.look_from(StandardView.TOP)
+    assert view.orbit().pitch_deg == -90.0
+    view.look_from(StandardView.FRONT)
+    assert view.orbit().heading_deg == pytest.approx(0.0, abs=1e-6), "the facade looks south, so the view looks north"
+    view.look_from(StandardView.HOME)
+    assert view.orbit().eye_enu_m[1] < -45.0
+
+
+def test_an_item_is_looked_at_from_before_what_stands_in_the_way(application, view):
+    view.set_site(canyon())
+    item = Item(ItemKind.PANEL, "A-0005")
+    view.look_at(item)
+    (x, y), _ = view._navigator.pinhole().project(view._site.frames.centroids[5])
+    assert view.pick_at(x, y).item == item
+
+
+def test_a_rectangle_is_drawn_with_three_clicks(application, view):
+    from groundstation.gui.view3d.drawing_tools import PickedRectangle, RectangleTool
+
+    view.set_site(office())
+    rest(application, view)
+    moved, finished, ended = [], [], []
+    view.toolMoved.connect(moved.append)
+    view.toolFinished.connect(finished.append)
+    view.toolEnded.connect(lambda: ended.append(True))
+    plain = picture(application, view)
+    view.start_tool(RectangleTool(4, 5))
+    canvas = view.canvas()
+    for point in ((-12.0, -0.05, 4.0), (12.0, -0.05, 4.0)):
+        QTest.mouseClick(canvas, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, pixel_of(view, point))
+    hover(view, pixel_of(view, (-12.0, -0.05, 30.0)))
+    view._tools._tell_moved()
+    assert isinstance(moved[-1], PickedRectangle)
+    assert differs(plain, picture(application, view)) > 500, "the grid is not shown"
+    assert "Click the upper edge" in view._overlay._hint
+    place = pixel_of(view, (-12.0, -0.05, 30.0))
+    QTest.mouseClick(canvas, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, place)
+    (done,) = finished
+    assert done.lower_left_enu_m == pytest.approx((-12.0, -0.05, 4.0), abs=0.3)
+    assert done.upper_left_enu_m == pytest.approx((-12.0, -0.05, 30.0), abs=0.4)
+    assert (ended, view.tool()) == ([True], None)
+    assert differs(plain, picture(application, view)) == 0
+
+
+def test_escape_puts_a_tool_away_and_a_drag_turns_the_view_meanwhile(application, view):
+    from groundstation.gui.view3d.drawing_tools import PolygonTool
+
+    view.set_site(office())
+    rest(application, view)
+    finished, ended, picked = [], [], []
+    view.toolFinished.connect(finished.append)
+    view.toolEnded.connect(lambda: ended.append(True))
+    view.picked.connect(lambda item, _modifiers: picked.append(item))
+    view.start_tool(PolygonTool())
+    canvas = view.canvas()
+    QTest.mouseClick(canvas, Qt.MouseButton.LeftButton, pos=pixel_of(view, (10.0, -40.0, 0.0)))
+    before = view.orbit()
+    drag(view, QPoint(300, 300), QPoint(350, 300))
+    assert view.orbit() != before
+    QTest.keyClick(canvas, Qt.Key.Key_Escape)
+    assert (view.tool(), finished, ended, picked) == (None, [], [True], [])
+
+
+def test_a_double_click_ends_a_polygon(application, view):
+    from groundstation.gui.view3d.drawing_tools import PolygonTool
+
+    view.set_site(office())
+    rest(application, view)
+    finished = []
+    view.toolFinished.connect(finished.append)
+    view.start_tool(PolygonTool())
+    corners = ((-20.0, -50.0), (20.0, -50.0), (20.0, -25.0))
+    for corner in corners:
+        QTest.mouseClick(view.canvas(), Qt.MouseButton.LeftButton, pos=pixel_of(view, (*corner, 0.0)))
+    QTest.mouseDClick(view.canvas(), Qt.MouseButton.LeftButton, pos=pixel_of(view, (20.0, -25.0, 0.0)))
+    (done,) = finished
+    assert np.array(done.corners_enu_m) == pytest.approx(np.array(corners), abs=0.4)
+
+
+def test_a_viewpoint_is_dragged_and_the_drag_taken_back_with_escape(application, view, plan):
+    from groundstation.gui.view3d.viewpoint_tool import ViewpointTool
+
+    view.set_site(office())
+    view.set_plan(plan)
+    view.look_at_all()
+    rest(application, view)
+    at = plan.viewpoints[5].position_enu_m
+    finished, moved = [], []
+    view.toolFinished.connect(finished.append)
+    view.toolMoved.connect(moved.append)
+    view.start_tool(ViewpointTool("v0005", at, 0.3, 0.0))
+    start = pixel_of(view, at)
+    before = view.orbit()
+    drag(view, start, start + QPoint(40, -10))
+    (done,) = finished
+    assert view.orbit() == before
+    assert (pixel_of(view, done.position_enu_m) - start - QPoint(40, -10)).manhattanLength() <= 2
+    QTest.keyClick(view.canvas(), Qt.Key.Key_PageUp, Qt.KeyboardModifier.ShiftModifier)
+    way = np.array(finished[1].position_enu_m) - np.array(finished[0].position_enu_m)
+    assert np.linalg.norm(way) == pytest.approx(0.1, abs=1e-3)
+    place = pixel_of(view, finished[1].position_enu_m)
+    QTest.mousePress(view.canvas(), Qt.MouseButton.LeftButton, pos=place)
+    QTest.mouseMove(view.canvas(), place + QPoint(60, 0))
+    QTest.keyClick(view.canvas(), Qt.Key.Key_Escape)
+    assert moved[-1] == finished[1]
+    QTest.mouseRelease(view.canvas(), Qt.MouseButton.LeftButton, pos=place + QPoint(60, 0))
+    assert len(finished) == 2
+    QTest.keyClick(view.canvas(), Qt.Key.Key_Escape)
+    assert view.tool() is None
+
+
+def test_texts_are_readable_and_the_ground_changes_with_the_theme(application, view):
+    try:
+        seen = {}
+        for theme, look in ((Theme.LIGHT, LIGHT), (Theme.DARK, DARK)):
+            apply_theme(application, theme)
+            view.set_site(canyon())
+            settle(application)
+            background = view.canvas().picture()[5, 5]
+            wanted = [int(look.scene[i : i + 2], 16) for i in (1, 3, 5)]
+            assert np.abs(background.astype(int) - wanted).max() <= 2
+            seen[theme] = view.screenshot().astype(int)
+        assert differs(seen[Theme.LIGHT], seen[Theme.DARK]) > 0.3 * SIZE[0] * SIZE[1]
+    finally:
+        apply_theme(application, Theme.LIGHT)
+        application.setStyleSheet("")
+
+
+def test_the_scale_follows_the_units(application, view):
+    view.set_site(office())
+    metric = view.screenshot().astype(int)
+    view.set_units(UnitSystem.IMPERIAL)
+    imperial = view.screenshot().astype(int)
+    corner = (slice(-60, None), slice(0, 250))
+    assert differs(metric[corner], imperial[corner]) > 20
+    assert differs(metric[:-80], imperial[:-80]) == 0
+
+
+def test_a_moved_site_keeps_the_camera_and_its_values_where_wanted(application, view):
+    from groundstation.gui.view3d.paint import ColourScale
+
+    model = office()
+    view.set_site(model)
+    view.set_panel_values(ColourScale("x", "", 0.0, 1.0), np.linspace(0.0, 1.0, 280))
+    view.turn_by_hand(20.0, 3.0)
+    orbit = view.orbit()
+    view.set_site(replace(model, site=replace(model.site, home_enu_m=(5.0, -40.0, 0.0))), keep_camera=True)
+    assert view.orbit() == orbit
+    assert view._panel_values is not None
+    view.set_site(roof())
+    assert view._panel_values is None
+    settle(application)
+
+
+def test_what_comes_after_the_view_was_closed_draws_nothing_and_raises_nothing(application, plan):
+    from groundstation.gui.view3d.scene_view import SceneView
+
+    view = SceneView()
+    view.show()
+    view.set_site(office())
+    settle(application)
+    view.close_view()
+    view.set_site(canyon())
+    view.set_plan(plan)
+    view.paint_hemispheres(SectionGrid(30.0), np.zeros((200, 36), np.int64))
+    view.look_at(Item(ItemKind.HOME))
+    view.turn_by_hand(5.0, 0.0)
+    apply_theme(application, Theme.LIGHT)
+    application.setStyleSheet("")
+    assert view.pick_at(10.0, 10.0) is None
+    view.close_view()
+    view.deleteLater()
+    settle(application)
+
+
+def test_a_real_building_is_drawn_and_every_panel_in_sight_can_be_picked(application, view, shared_data):
+    path = shared_data / "buildings" / "ingolstadt_lod3" / "4018270.xml"
+    model = import_site(path, ImportOptions()).model
+    view.set_site(model)
+    view._pick_index()
+    shown = picture(application, view)
+    assert (shown.std(axis=(0, 1)) > 5).all()
+    view.look_at(Item(ItemKind.FACADE, model.site.facades[0].id))
+    found = set()
+    pixels, _ = view._navigator.pinhole().project(view._site.frames.centroids)
+    for x, y in pixels[np.isfinite(pixels).all(axis=1)]:
+        hit = view.pick_at(float(x), float(y))
+        if hit is not None and hit.item.kind is ItemKind.PANEL:
+            found.add(hit.item.id)
+    own = {panel.id for panel in model.site.facades[0].panels}
+    assert len(found & own) >= 0.5 * len(own)

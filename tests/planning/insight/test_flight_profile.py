@@ -1,0 +1,107 @@
+"""Profiles of sorties: they fit the path, the plan's durations and the moments of the photos."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planning.errors import InfeasibleError
+from planning.insight.flight_profile import keep_extremes, sortie_profile
+from planning.plan import FlightRules, Sortie
+from tests.planning.insight.cases import plan
+
+PLAN = plan("kiosk")
+
+
+def profile_of(number=0, **changes):
+    changed = replace(PLAN, **changes)
+    return sortie_profile(changed, changed.sorties[number])
+
+
+@pytest.mark.parametrize("in_flight", [False, True])
+@pytest.mark.parametrize("jerk", [None, 1.0])
+def test_the_flight_passes_every_vertex_at_rest_and_takes_as_long_as_planned(in_flight, jerk):
+    rules = FlightRules(turn_in_flight=in_flight)
+    aircraft = replace(PLAN.aircraft, max_jerk_m_s3=jerk)
+    found = profile_of(rules=rules, aircraft=aircraft)
+    for times in (found.arrival_s, found.departure_s):
+        at = found.at(times)
+        np.testing.assert_allclose(at.positions_enu_m, found.vertices_enu_m, atol=1e-6)
+        np.testing.assert_allclose(at.speed_m_s, 0.0, atol=1e-6)
+    np.testing.assert_allclose(found.arrival_s[1:] - found.departure_s[:-1], found.ramps.duration_s, atol=1e-9)
+    if not in_flight and jerk is None:
+        assert found.duration_s + rules.takeoff_landing_s == pytest.approx(PLAN.sorties[0].duration_s, abs=0.01)
+    assert found.at(found.departure_s[-1:]).distance_m[0] == pytest.approx(PLAN.sorties[0].length_m, abs=0.01)
+
+
+def test_photos_are_taken_at_rest_at_their_viewpoints_after_settling():
+    found = profile_of()
+    by_id = {viewpoint.id: viewpoint for viewpoint in PLAN.viewpoints}
+    at = found.at(found.photo_s)
+    assert found.photo_ids == PLAN.sorties[0].viewpoint_ids
+    for position, viewpoint_id in zip(at.positions_enu_m, found.photo_ids, strict=True):
+        assert position == pytest.approx(by_id[viewpoint_id].position_enu_m, abs=1e-4)
+    np.testing.assert_allclose(at.speed_m_s, 0.0, atol=1e-9)
+    stop = np.searchsorted(found.departure_s, found.photo_s)
+    waited = found.photo_s - found.arrival_s[stop]
+    assert (waited >= PLAN.rules.settle_s - 1e-9).all()
+    np.testing.assert_allclose(found.departure_s[stop] - found.photo_s, PLAN.rules.photo_s)
+
+
+def test_samples_rise_in_time_and_hold_the_top_speed_of_every_leg():
+    found = profile_of()
+    samples = found.samples()
+    assert (np.diff(samples.t_s) > 0.0).all()
+    assert (np.diff(samples.distance_m) >= -1e-9).all()
+    for leg in range(len(found.ramps.peak_m_s)):
+        within = (samples.t_s >= found.departure_s[leg]) & (samples.t_s <= found.arrival_s[leg + 1])
+        assert samples.speed_m_s[within].max() == pytest.approx(found.ramps.peak_m_s[leg])
+    fine = found.at(np.linspace(0.0, found.duration_s, 20_000))
+    drawn = np.interp(fine.t_s, samples.t_s, samples.speed_m_s)
+    assert np.abs(drawn - fine.speed_m_s).max() <= 0.04 * samples.speed_m_s.max() + 1e-6
+
+
+def test_heights_are_measured_from_the_level_asked_for():
+    found = profile_of()
+    at = found.at(found.arrival_s)
+    np.testing.assert_allclose(at.heights_m(2.5), found.vertices_enu_m[:, 2] - 2.5, atol=1e-6)
+
+
+def test_times_before_and_after_the_flight_are_at_home():
+    found = profile_of()
+    at = found.at(np.array([-5.0, found.duration_s + 5.0]))
+    np.testing.assert_allclose(at.positions_enu_m, found.vertices_enu_m[[0, -1]], atol=1e-6)
+    np.testing.assert_allclose(at.speed_m_s, 0.0, atol=1e-6)
+
+
+def test_paths_without_legs_or_without_their_viewpoints_have_no_profile():
+    sortie = PLAN.sorties[0]
+    assert profile_of(sorties=(Sortie((), (), 0.0, 0.0),), viewpoints=()) is None
+    assert profile_of(sorties=(replace(sortie, path_enu_m=sortie.path_enu_m[:2]),)) is None
+
+
+def test_a_storm_is_refused_in_words():
+    with pytest.raises(InfeasibleError, match="wait for less wind"):
+        profile_of(rules=FlightRules(wind_m_s=30.0))
+
+
+@given(st.lists(st.tuples(st.floats(-9, 9), st.floats(-9, 9)), min_size=1, max_size=400), st.integers(1, 120))
+def test_decimation_keeps_ends_and_extremes_and_no_more_than_asked_for(values, n_most):
+    first, second = np.array(values).T
+    kept = keep_extremes((first, second), n_most)
+    assert (np.diff(kept) > 0).all()
+    assert (kept[0], kept[-1]) == (0, len(first) - 1)
+    for series in (first, second):
+        assert series[kept].min() == series.min()
+        assert series[kept].max() == series.max()
+    assert len(kept) <= max(n_most, 6)
+
+
+def test_a_decimated_profile_is_a_shorter_one():
+    samples = profile_of().samples()
+    short = samples.decimated(40)
+    assert len(short.t_s) <= 40 < len(samples.t_s)
+    assert short.speed_m_s.max() == samples.speed_m_s.max()
+    assert set(short.t_s) <= set(samples.t_s)

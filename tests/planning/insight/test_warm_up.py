@@ -1,0 +1,37 @@
+"""After the warm-up of this package, analysing plans compiles none of its kernels again."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+
+ANALYSES = """
+from planning.insight import clearance, reason_kernel, things
+from planning.insight.clearance import route_clearance
+from planning.insight.reasons import section_reasons
+from planning.insight.things import things_of
+from planning.insight.warm_up import compile_kernels
+from planning.space import unchecked_space
+from tests.planning.insight.cases import plan, prepared, scene
+
+kernels = [reason_kernel.explain_sections, clearance._nearest_parts, things._nearest_triangles, things._first_hits]
+compile_kernels()
+warm = [len(kernel.signatures) for kernel in kernels]
+for name in ("kiosk", "canyon"):
+    section_reasons(scene(name), prepared(name))
+    space = unchecked_space(scene(name), 5.0)
+    for sortie in plan(name).sorties:
+        route_clearance(sortie, space, things_of(scene(name), space))
+print(warm == [1] * 4 == [len(kernel.signatures) for kernel in kernels])
+"""
+
+
+@pytest.mark.slow
+def test_analyses_of_other_sites_use_what_the_warm_up_compiled():
+    done = subprocess.run(
+        [sys.executable, "-c", ANALYSES], cwd=REPOSITORY, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert (done.returncode, done.stdout.strip()) == (0, "True"), done.stderr
