@@ -57,7 +57,7 @@ class Desk(QObject):
         self._settings, self._settings_problem = _read_settings()
         self._translations = Translations(application)
         self._garbage = GarbageCollector(self)
-        self._runner = JobRunner()
+        self._runner = JobRunner(in_background=True)
         self._writer = ThreadPoolExecutor(1, thread_name_prefix="autosave")
         self._lock: ProjectLock | None = None
         self._place: ProjectLock | None = None

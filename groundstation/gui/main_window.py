@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.job_bar import JobBar
+from groundstation.gui.loading import BackgroundImport
 from groundstation.gui.message_area import MessageArea
 from groundstation.gui.scrolling import scrolled
 from groundstation.gui.stage import Stage
@@ -31,6 +32,9 @@ from groundstation.gui.workspace import Workspace
 SIDE_WIDTH_PX, DETAIL_WIDTH_PX = 300, 330
 BOTTOM_HEIGHT_PX = 190
 """First sizes of what stands around the shared view, at 1280 x 720."""
+
+
+SCENE_MODULE = "groundstation.gui.view3d.scene_view"
 
 
 class MainWindow(QMainWindow):
@@ -182,9 +186,19 @@ class MainWindow(QMainWindow):
         super().showEvent(event)
         if not self._was_shown:
             self._was_shown = True
-            if self._shown is None:
-                self._tab_chosen(max(0, self._bar.currentIndex()))
-            QTimer.singleShot(0, self.stage, self.stage.prepare_scene)
+            modules = [spec.implementation for spec in self._specs if spec.implementation]
+            first = self._specs[max(0, self._bar.currentIndex())].implementation
+            modules.sort(key=lambda module: module != first)
+            self._loading = BackgroundImport([*modules[:1], SCENE_MODULE, *modules[1:]], self)
+            self._loading.imported.connect(self._imported)
+            QTimer.singleShot(0, self._loading, self._loading.start)
+
+    def _imported(self, module: str) -> None:
+        """Show the first tab, then the 3-D view, as they can be had."""
+        if self._shown is None:
+            self._tab_chosen(max(0, self._bar.currentIndex()))
+        if module == SCENE_MODULE:
+            self.stage.make_scene()
 
     def retire(self) -> None:
         """Make room for another window on the same workspace: jobs go on, nobody is asked."""

@@ -6,14 +6,12 @@ with `with_scene` and is called once it is there.
 
 from __future__ import annotations
 
-import importlib
-import threading
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.workspace import Workspace
@@ -27,9 +25,6 @@ if TYPE_CHECKING:
     from groundstation.gui.camera_preview.preview import CameraPreview
     from groundstation.gui.map_view import MapView
     from groundstation.gui.view3d.scene_view import SceneView
-
-LOOK_MS = 10
-"""How often it is looked whether the import has ended."""
 
 
 class StagePage(StrEnum):
@@ -165,27 +160,10 @@ class Stage(QWidget):
             self._pages.addWidget(self._camera)
         return self._camera
 
-    def prepare_scene(self) -> None:
-        """Import what the 3-D view needs on another thread, then make it; called once the window has been painted."""
-        imported = threading.Event()
-
-        def load() -> None:
-            importlib.import_module("groundstation.gui.view3d.scene_view")
-            imported.set()
-
-        threading.Thread(target=load, name="load-3d", daemon=True).start()
-        timer = QTimer(self)
-
-        def look() -> None:
-            if imported.is_set():
-                timer.stop()
-                timer.deleteLater()
-                self._make_scene()
-
-        timer.timeout.connect(look)
-        timer.start(LOOK_MS)
-
-    def _make_scene(self) -> None:
+    def make_scene(self) -> None:
+        """Make the 3-D view; its module is best imported before, on another thread."""
+        if self._scene is not None:
+            return
         from groundstation.gui.view3d.scene_view import SceneView
 
         scene = self._scene = SceneView(self)

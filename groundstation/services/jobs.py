@@ -13,6 +13,8 @@ Exactly one of succeeded, failed and cancelled ends every job.
 from __future__ import annotations
 
 import itertools
+import os
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -164,15 +166,31 @@ class Job(Generic[Result]):
         return self._result  # type: ignore[return-value]  # set whenever there is no error
 
 
+NICENESS = 10
+"""Of background jobs: half of the way to the least urgent. A thread that was idle then runs before them at once."""
+
+
+def _go_behind() -> None:
+    """Make this thread, and those it starts, less urgent; only Linux has a priority for each thread."""
+    if sys.platform == "linux":
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
+
+
 class JobRunner:
     """Runs jobs one after the other on a worker thread and publishes their events to all listeners.
 
     Listeners are called on the worker's thread (or the caller's, for the first and for queued jobs that are
     cancelled); the window hands events over to its own thread.
+
+    Parameters
+    ----------
+    in_background
+        Let everything else on the machine go first, as a window must answer while jobs use all processors.
     """
 
-    def __init__(self, n_workers: int = 1, clock: Clock = time.perf_counter) -> None:
-        self._pool = ThreadPoolExecutor(n_workers, thread_name_prefix="job")
+    def __init__(self, n_workers: int = 1, clock: Clock = time.perf_counter, *, in_background: bool = False) -> None:
+        begin = _go_behind if in_background else None
+        self._pool = ThreadPoolExecutor(n_workers, thread_name_prefix="job", initializer=begin)
         self._clock = clock
         self._ids = itertools.count(1)
         self._lock = threading.Lock()

@@ -18,7 +18,9 @@ from tests.benchmarks import (
     speed_profiles,
     tradeoffs,
     tsplib_tours,
+    view3d,
     view_counts,
+    window,
 )
 from tests.benchmarks.harness import Benchmark
 
@@ -39,4 +41,6 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     speed_profiles.BENCHMARK,
     site_imports.BENCHMARK,
     mission_files.BENCHMARK,
+    window.BENCHMARK,
+    view3d.BENCHMARK,
 )

@@ -2,6 +2,8 @@
 
 import os
 import shutil
+import subprocess
+from contextlib import contextmanager
 
 import pytest
 
@@ -14,6 +16,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import roof
 from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.services.project_cases import small_disk
 
 
 @pytest.fixture
@@ -130,20 +133,43 @@ def test_a_full_disk_leaves_the_work_in_the_window(application, make_desk, entry
     assert len(open_project(tmp_path / "project").document.plans) == 1
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
-def test_a_read_only_project_opens_and_says_so(application, make_desk, tmp_path):
+@contextmanager
+def not_writable(folder):
+    """A folder that nobody can write to: by its mode, or for root, who may write all the same, by its file system."""
+    if os.geteuid() != 0:
+        folder.chmod(0o555)
+        yield
+        folder.chmod(0o755)
+        return
+    with small_disk(folder.parent / "disk", 4096) as disk:
+        if disk is None:
+            pytest.skip("no file system can be mounted here")
+        shutil.copytree(folder, disk / "project")
+        subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
+        folder.rename(folder.with_name("elsewhere"))
+        folder.symlink_to(disk / "project")
+        yield
+
+
+def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_desk, answers, entry, tmp_path):
     desk = make_desk()
     with_site(application, desk)
     folder = tmp_path / "project"
     desk.save_in(folder)
     turn_until_idle(application, desk)
     desk.new_project()
-    folder.chmod(0o555)
-    desk.open_folder(folder)
-    turn_until_idle(application, desk)
-    folder.chmod(0o755)
-    assert "cannot be written" in desk.window.messages.texts()
-    assert desk.workspace.document.site is not None
+    with not_writable(folder):
+        desk.open_folder(folder)
+        turn_until_idle(application, desk)
+        assert "cannot be locked for editing" in desk.window.messages.texts()
+        assert desk.workspace.document.site.site.name == "roof"
+        desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+        desk.autosave_now()
+        answers.chosen = tmp_path / "copy"
+        desk.save()
+        turn_until_idle(application, desk)
+        assert not desk.window.isWindowModified()
+    assert len(open_project(tmp_path / "copy").document.plans) == 1
 
 
 def test_unsaved_work_is_offered_after_a_crash(application, make_desk, answers, entry, tmp_path):

@@ -67,6 +67,8 @@ class TabSpec:
         English, marked with `QT_TRANSLATE_NOOP(CONTEXT, ...)`.
     make
         Called when the tab is first shown.
+    implementation
+        Module that `make` imports, where that takes long: it is imported on another thread before it is needed.
     """
 
     order: int
@@ -75,6 +77,7 @@ class TabSpec:
     tip: str
     place: Place
     make: Callable[[Workspace, Stage], Tab]
+    implementation: str = ""
 
     def shown_title(self) -> str:
         """Title in the user's language."""

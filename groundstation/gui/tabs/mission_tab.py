@@ -26,4 +26,5 @@ TAB = TabSpec(
     tip=QT_TRANSLATE_NOOP("Tabs", "Waypoints, checks, mission files and the flight brief"),
     place=Place.AROUND_VIEW,
     make=make,
+    implementation="groundstation.gui.mission.mission_page",
 )

@@ -26,4 +26,5 @@ TAB = TabSpec(
     tip=QT_TRANSLATE_NOOP("Tabs", "Choose viewpoints and routes"),
     place=Place.AROUND_VIEW,
     make=make,
+    implementation="groundstation.gui.plan.plan_page",
 )

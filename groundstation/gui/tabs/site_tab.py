@@ -26,4 +26,5 @@ TAB = TabSpec(
     tip=QT_TRANSLATE_NOOP("Tabs", "The building, its glass, and where you may fly"),
     place=Place.AROUND_VIEW,
     make=make,
+    implementation="groundstation.gui.site.site_panels",
 )

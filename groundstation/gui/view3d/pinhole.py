@@ -53,8 +53,8 @@ class Pinhole:
         v = np.asarray(points_enu_m, np.float64) - self.eye_enu_m
         depth = v @ self.forward
         scale = np.where(depth > NEAREST_DEPTH_M, 1.0 / np.maximum(depth, NEAREST_DEPTH_M), np.nan)
-            x = 0.5 * self.width_px * (1.0 + (v @ self.right) * scale / self.half_width)
-            y = 0.5 * self.height_px * (1.0 - (v @ self.up) * scale / self.half_height)
+        x = 0.5 * self.width_px * (1.0 + (v @ self.right) * scale / self.half_width)
+        y = 0.5 * self.height_px * (1.0 - (v @ self.up) * scale / self.half_height)
         return np.stack([x, y], axis=-1), depth
 
     def ray(self, x_px: float, y_px: float) -> Array:

@@ -1,0 +1,54 @@
+"""Imports what takes long on another thread, so that the window is painted and answers meanwhile."""
+
+from __future__ import annotations
+
+import importlib
+import threading
+from collections.abc import Sequence
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+LOOK_MS = 10
+"""How often it is looked what has been imported. The thread tells nobody itself: its listener may be gone by then."""
+
+
+class BackgroundImport(QObject):
+    """Imports modules one after the other.
+
+    Signals
+    -------
+    imported(str)
+        Name of a module, in the order asked for, in the window's thread. Also for one that failed: whoever imports it
+        again gets the error.
+    """
+
+    imported = Signal(str)
+
+    def __init__(self, modules: Sequence[str], parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._modules = tuple(modules)
+        self._done: list[str] = []
+        self._told = 0
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._look)
+
+    def start(self) -> None:
+        """Begin."""
+        modules, done = self._modules, self._done
+
+        def work() -> None:
+            for module in modules:
+                try:
+                    importlib.import_module(module)
+                finally:
+                    done.append(module)
+
+        threading.Thread(target=work, name="import", daemon=True).start()
+        self._timer.start(LOOK_MS)
+
+    def _look(self) -> None:
+        while self._told < len(self._done):
+            self._told += 1
+            self.imported.emit(self._done[self._told - 1])
+        if self._told == len(self._modules):
+            self._timer.stop()

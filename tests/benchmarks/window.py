@@ -1,0 +1,92 @@
+"""The window: how soon it opens, whether it answers while a plan runs, and how fast an edit by hand is shown."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
+from tests.benchmarks.window_run import N_EDITS, N_VIEWS
+
+OPEN_TARGET_S, GAP_TARGET_MS, EDIT_TARGET_MS = 2.0, 50.0, 100.0
+
+N_STARTS = 5
+
+SCREEN_VARIABLES = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
+"""Left out, so that every measurement has a virtual screen of its own."""
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """Each measurement in a fresh process on a virtual screen of its own."""
+    if shutil.which("Xvfb") is None:
+        raise Skipped("Xvfb is not installed")
+    n_starts = 1 if context.is_quick else N_STARTS
+    starts = {what: [_run(what) for _ in range(n_starts)] for what in ("startup", "startup-eager")}
+    painted, eager = (float(np.median([one["painted_s"] for one in runs])) for runs in starts.values())
+    yield Row(
+        "empty",
+        "first picture, from the start of the process",
+        painted,
+        "s",
+        painted / eager,
+        "importing the 3-D view first",
+        f"under {OPEN_TARGET_S:g} s",
+        painted < OPEN_TARGET_S,
+        n_starts,
+    )
+    ready = float(np.median([one["ready_s"] for one in starts["startup"]]))
+    yield Row("empty", "3-D view ready", ready, "s", seeds=n_starts)
+    found = _run("planning")
+    idle, busy = np.array(found["idle_ms"]), np.array(found["planning_ms"])
+    often = np.percentile(busy, 99)
+    what = f"{N_VIEWS} views: longest gap while a plan runs (99 %: {often:.1f} ms; idle: {idle.max():.1f} ms)"
+    yield Row(
+        "office",
+        what,
+        float(busy.max()),
+        "ms",
+        float(busy.max() / idle.max()),
+        "the idle window",
+        f"under {GAP_TARGET_MS:g} ms",
+        bool(busy.max() < GAP_TARGET_MS),
+    )
+    shown, pure = np.array(found["shown_ms"]), np.array(found["pure_ms"])
+    middle, high = np.percentile(shown, [50, 95])
+    yield Row(
+        "office",
+        f"{N_VIEWS} views: an edit until all of it is shown, median of {N_EDITS} (95 %: {high:.0f} ms)",
+        float(middle),
+        "ms",
+        float(middle / np.median(pure)),
+        "the edit without the window",
+        f"95 % under {EDIT_TARGET_MS:g} ms",
+        bool(high < EDIT_TARGET_MS),
+    )
+
+
+def _run(what: str) -> dict[str, Any]:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "measured.json"
+        command = [sys.executable, "-m", "tests.benchmarks.window_run", what, str(path)]
+        screenless = {name: value for name, value in os.environ.items() if name not in SCREEN_VARIABLES}
+        subprocess.run(command, check=True, env=screenless)
+        return dict(json.loads(path.read_text("utf-8")))
+
+
+BENCHMARK = Benchmark(
+    "window",
+    "The window",
+    "Time to the first picture; the longest time in which the window's thread did not answer, by a timer of 2 ms, "
+    "while a plan ran and while nothing did; and the time from an edit by hand to everything shown: coverage, route, "
+    "checks, tables and the 3-D view in software OpenGL.",
+    measure,
+)

@@ -1,0 +1,152 @@
+"""One measurement of the real window in a process of its own: `python -m tests.benchmarks.window_run WHAT FILE`.
+
+Writes what was measured to FILE as JSON. Without a screen it starts a virtual one and a second process, whose time does
+not hold the start of the screen.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from groundstation.gui.virtual_screen import has_screen, start_virtual_screen
+
+N_VIEWS, N_EDITS = 560, 40
+BUDGET_S, IDLE_S = 20.0, 4.0
+TICK_MS = 2
+
+
+def _turn_until(application: Any, condition: Callable[[], bool], timeout_s: float = 200.0) -> None:
+    end_s = time.perf_counter() + timeout_s
+    while not condition():
+        application.processEvents()
+        if time.perf_counter() > end_s:
+            raise TimeoutError("the window did not get where it should")
+        time.sleep(0.0005)
+
+
+def _turn_until_idle(application: Any, desk: Any) -> None:
+    for _ in range(2):
+        _turn_until(application, lambda: not desk.workspace.jobs())
+        _turn_for(application, 0.5)
+    _turn_until(application, lambda: not desk.workspace.jobs())
+
+
+def _turn_for(application: Any, duration_s: float) -> None:
+    end_s = time.perf_counter() + duration_s
+    _turn_until(application, lambda: time.perf_counter() > end_s)
+
+
+def startup(*, eager: bool) -> dict[str, float]:
+    """Seconds from the start of the process to the first picture, and to the 3-D view; `eager` imports that first."""
+    started_s = psutil.Process().create_time()
+    from PySide6.QtWidgets import QApplication
+
+    application = QApplication(["reflight"])
+    if eager:
+        importlib.import_module("groundstation.gui.view3d.scene_view")
+    from groundstation.gui.desk import Desk
+
+    desk = Desk(application)
+    desk.show()
+    application.processEvents()
+    painted_s = time.time() - started_s
+    _turn_until(application, lambda: desk.window.stage.scene() is not None)
+    application.processEvents()
+    ready_s = time.time() - started_s
+    desk.window.close()
+    desk.close()
+    return {"painted_s": painted_s, "ready_s": ready_s}
+
+
+class _Gaps:
+    """Times between the ticks of a timer in the window's thread."""
+
+    def __init__(self) -> None:
+        from PySide6.QtCore import Qt, QTimer
+
+        self.gaps_ms: list[float] = []
+        self._last_s = time.perf_counter()
+        self._timer = QTimer()
+        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.timeout.connect(self._tick)
+        self._timer.start(TICK_MS)
+
+    def restart(self) -> None:
+        """Forget what was before."""
+        self.gaps_ms, self._last_s = [], time.perf_counter()
+
+    def _tick(self) -> None:
+        now_s = time.perf_counter()
+        self.gaps_ms.append(1e3 * (now_s - self._last_s))
+        self._last_s = now_s
+
+
+def planning() -> dict[str, Any]:
+    """Gaps of the window's thread while it idles and while a plan of the office runs; then times of edits by hand."""
+    from PySide6.QtWidgets import QApplication
+
+    from groundstation.gui.desk import Desk
+    from groundstation.services.document import Item, ItemKind
+    from planning import revision as edits
+    from planning.request import PlanRequest
+
+    application = QApplication(["reflight"])
+    desk = Desk(application)
+    desk.show()
+    desk.window.setGeometry(0, 0, 1280, 720)
+    _turn_until(application, lambda: desk.window.stage.scene() is not None)
+    desk.window.tab("site").left.opener.open_bundled("office")
+    desk.window.show_tab("plan")
+    page = desk.window.tab("plan")
+    page.desk.set_request(PlanRequest(n_views=N_VIEWS, time_budget_s=BUDGET_S))
+    _turn_until_idle(application, desk)
+    gaps = _Gaps()
+    _turn_for(application, IDLE_S)
+    idle_ms = gaps.gaps_ms
+    gaps.restart()
+    page.desk.plan()
+    _turn_until(application, lambda: not page.desk.is_planning)
+    planning_ms = gaps.gaps_ms[:-1]  # the last one shows the result
+    _turn_until_idle(application, desk)
+    plan = desk.workspace.document.current.plan
+    shown_ms, pure_ms = [], []
+    for number in range(N_EDITS):
+        viewpoint = plan.viewpoints[(37 * number) % len(plan.viewpoints)]
+        x, y, z = viewpoint.position_enu_m
+        desk.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+        application.processEvents()
+        before = page.desk.in_hand.revision
+        moved = replace(viewpoint, position_enu_m=(x + 0.3, y - 0.3, z + 0.2))
+        began_s = time.perf_counter()
+        edits.move(before, moved.id, moved.position_enu_m, moved.heading_deg, moved.gimbal_pitch_deg)
+        pure_ms.append(1e3 * (time.perf_counter() - began_s))
+        began_s = time.perf_counter()
+        page.desk.set_viewpoint(moved)
+        application.processEvents()
+        shown_ms.append(1e3 * (time.perf_counter() - began_s))
+    return {"idle_ms": idle_ms, "planning_ms": planning_ms, "shown_ms": shown_ms, "pure_ms": pure_ms}
+
+
+if __name__ == "__main__":
+    if not has_screen():
+        start_virtual_screen()
+        sys.exit(subprocess.run([sys.executable, "-m", "tests.benchmarks.window_run", *sys.argv[1:]]).returncode)
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["REFLIGHT_CONFIG_DIR"] = folder
+        what = sys.argv[1]
+        measured = planning() if what == "planning" else startup(eager=what == "startup-eager")
+        Path(sys.argv[2]).write_text(json.dumps(measured), "utf-8")
+        sys.stdout.flush()
+        os._exit(0)  # nothing of the window is worth saving
