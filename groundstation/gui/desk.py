@@ -7,8 +7,7 @@ in the workspace, the window only shows it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +22,12 @@ from groundstation.gui.menus import Menus
 from groundstation.gui.questions import Answer, Questions
 from groundstation.gui.theme import apply_theme
 from groundstation.gui.workspace import Workspace
-from groundstation.services.autosave import Autosave, give_up_place, unsaved_place
 from groundstation.services.document import Document
-from groundstation.services.jobs import JobContext, JobRunner
-from groundstation.services.project import OpenedProject, create_project, open_project, save_project
+from groundstation.services.jobs import JobRunner
+from groundstation.services.keeper import Keeper, TakenProject
+from groundstation.services.project import create_project, save_project
 from groundstation.services.project_file import is_project
-from groundstation.services.project_lock import ProjectLock, lock_project
+from groundstation.services.project_lock import ProjectLock
 from groundstation.services.recovery import Recovery, discard_recovery, find_recovery, find_unsaved, recover
 from groundstation.services.session import Session
 from groundstation.services.settings import Settings, read_settings, settings_path, write_settings
@@ -58,10 +57,7 @@ class Desk(QObject):
         self._translations = Translations(application)
         self._garbage = GarbageCollector(self)
         self._runner = JobRunner(in_background=True)
-        self._writer = ThreadPoolExecutor(1, thread_name_prefix="autosave")
-        self._lock: ProjectLock | None = None
-        self._place: ProjectLock | None = None
-        self._autosave: Autosave | None = None
+        self.keeper = Keeper(self.autosaveFailed.emit)
         self.workspace = Workspace(Session(_first_document(self._settings)), self._runner, self)
         self.workspace.set_units(self._settings.units)
         self._dress()
@@ -104,11 +100,22 @@ class Desk(QObject):
         if self.workspace.session.folder is None:
             self._offer_unsaved(find_unsaved())
 
+    def _change_language(self) -> None:
+        if self.workspace.jobs():
+            # Their results belong to widgets of this window.
+            text = self.tr("Something is running: the language changes when Reflight is started next.")
+            self.workspace.say(Severity.NOTE, text)
+            return
+        self._translations.use(self._settings.language)
+        self._rebuild_window()
+
     def _rebuild_window(self) -> None:
         old, shown = self.window, self.window.shown_tab()
         layout, geometry = old.layout_text(), old.geometry()
         old.retire()
         self.window = self._make_window()
+        for message in old.messages.messages():
+            self.window.messages.add(message)
         self.window.setGeometry(geometry)
         self.window.show_tab(shown)
         self.window.set_layout_text(layout)
@@ -142,8 +149,7 @@ class Desk(QObject):
             self._dress()
         self.workspace.set_units(self._settings.units)
         if before.language != self._settings.language:
-            self._translations.use(self._settings.language)
-            self._rebuild_window()
+            self._change_language()
         if before.autosave_s != self._settings.autosave_s:
             self._start_timer()
         self._keep_settings()
@@ -198,15 +204,12 @@ class Desk(QObject):
 
     def open_folder(self, folder: Path) -> None:
         """Open a project, after asking about what is not saved."""
-        held = self._lock if self._lock is not None and self._lock.folder.samefile(folder) else None
 
-        def work(_context: object) -> _Taken:
-            return _take_project(folder, held)
+        def open_it() -> None:
+            take = self.keeper.taking(folder)
+            self.workspace.start(self.tr("Open project"), lambda _context: take(), self._opened)
 
-        self._leave(lambda: self._start_opening(work))
-
-    def _start_opening(self, work: Callable[[JobContext], Any]) -> None:
-        self.workspace.start(self.tr("Open project"), work, self._opened)
+        self._leave(open_it)
 
     def open_path(self, path: Path) -> None:
         """Open a project folder, its project.json, or a site file."""
@@ -220,7 +223,7 @@ class Desk(QObject):
     def save(self, then: Callable[[], None] | None = None) -> None:
         """Save where the project is kept, or ask where."""
         folder = self.workspace.session.folder
-        if folder is None or self._lock is None:
+        if folder is None or not self.keeper.may_save:
             self.save_as(then)
         else:
             self._save_in(folder, then)
@@ -246,10 +249,10 @@ class Desk(QObject):
 
         def done(written: Document) -> None:
             if is_new:
-                self._hold(folder)
+                self._or_warn(lambda: self.keeper.take_saved(folder))
             self.workspace.session.saved(document, written, folder)
-            if self._autosave is not None and self.workspace.session.is_saved:
-                self._autosave.discard()
+            if self.workspace.session.is_saved:
+                self.keeper.drop_copy()
             self._remember(folder)
             self._show_title()
             self.workspace.say(Severity.OK, self.tr("Saved in {0}").format(folder))
@@ -258,12 +261,12 @@ class Desk(QObject):
 
         self.workspace.start(self.tr("Save"), work, done)
 
-    def _opened(self, taken: _Taken) -> None:
-        project, lock = taken.project, taken.lock
+    def _opened(self, taken: TakenProject) -> None:
+        project = taken.project
         if taken.problem:
             self.workspace.say(Severity.WARNING, taken.problem)
         site_source = project.folder / project.record.site if project.record.site else None
-        self._put_on_desk(replace(project.document, site_source=site_source), project.folder, lock)
+        self._put_on_desk(replace(project.document, site_source=site_source), project.folder, taken.lock)
         for note in project.notes:
             self.workspace.say(note.severity, note.message)
         self._remember(project.folder)
@@ -273,42 +276,24 @@ class Desk(QObject):
             Severity.OK,
             self.tr("{0}: {1} panels, {2} plans").format(project.name, n_panels, len(project.document.plans)),
         )
-        if lock is not None:
-            found = find_recovery(project.folder)
-            if found is not None:
-                self._offer(found)
+        found = find_recovery(project.folder) if taken.lock is not None else None
+        if found is not None:
+            self._offer(found)
 
-    def _put_on_desk(
-        self, document: Document, folder: Path | None, lock: ProjectLock | None = None, *, saved: bool = True
-    ) -> None:
-        if lock is None or lock is not self._lock:
-            self._release()
-        self._lock = lock
-        if lock is not None and self._autosave is None:
-            self._autosave = Autosave(lock.folder, self._writer, self.autosaveFailed.emit)
-        self.workspace.session.open(document, folder, saved=saved)
+    def _put_on_desk(self, document: Document, folder: Path | None, lock: ProjectLock | None = None) -> None:
+        self.keeper.hold(lock)
+        self.workspace.session.open(document, folder)
         self._show_title()
         self.opened.emit()
 
-    def _hold(self, folder: Path) -> None:
-        """Take a folder for this window that the document has just been saved in."""
-        self._release()
+    def _or_warn(self, action: Callable[[], None]) -> bool:
+        """Do something whose failure the user is told of; True where it was done."""
         try:
-            self._lock = lock_project(folder)
-            self._autosave = Autosave(folder, self._writer, self.autosaveFailed.emit)
+            action()
         except GroundStationError as error:
             self.workspace.say(Severity.WARNING, str(error))
-
-    def _release(self) -> None:
-        if self._autosave is not None:
-            self._autosave.discard()
-            self._autosave = None
-        if self._place is not None:
-            give_up_place(self._place)
-            self._place = None
-        if self._lock is not None:
-            self._lock.release()
-            self._lock = None
+            return False
+        return True
 
     def _remember(self, folder: Path) -> None:
         self._settings = self._settings.with_recent(folder)
@@ -318,20 +303,8 @@ class Desk(QObject):
 
     def autosave_now(self) -> None:
         """Have a copy written of what is not saved."""
-        session = self.workspace.session
-        if session.is_saved:
-            return
-        if self._autosave is None:
-            if session.folder is not None:
-                return  # read-only, or open in another window: the user was told
-            try:
-                self._place = unsaved_place()
-            except InputError as error:
-                self._timer.stop()
-                self.workspace.say(Severity.WARNING, str(error))
-                return
-            self._autosave = Autosave(self._place.folder, self._writer, self.autosaveFailed.emit)
-        self._autosave.keep(session.document)
+        if not self._or_warn(lambda: self.keeper.copy(self.workspace.session)):
+            self._timer.stop()
 
     def _start_timer(self) -> None:
         self._timer.stop()
@@ -360,27 +333,16 @@ class Desk(QObject):
 
     def _take_over(self, found: Recovery) -> None:
         """Go on with unsaved work; its copy stays until it is saved."""
-        project = recover(found)
-        document = replace(project.document, site_source=None)
-        if self.workspace.session.folder is not None:
-            self.workspace.session.open(document, self.workspace.session.folder, saved=False)
-            self.opened.emit()
-        else:
-            try:
-                self._place = lock_project(found.folder)
-            except GroundStationError as error:
-                self.workspace.say(Severity.WARNING, str(error))
-                return
-            self._autosave = Autosave(found.folder, self._writer, self.autosaveFailed.emit)
-            self.workspace.session.open(document, None, saved=False)
-            self.opened.emit()
+        document = replace(recover(found).document, site_source=None)
+        folder = self.workspace.session.folder
+        if folder is None and not self._or_warn(lambda: self.keeper.adopt(found.folder)):
+            return
+        self.workspace.session.open(document, folder, saved=False)
         self._show_title()
+        self.opened.emit()
 
     def _discard(self, found: Recovery) -> None:
-        try:
-            discard_recovery(found)
-        except InputError as error:
-            self.workspace.say(Severity.WARNING, str(error))
+        self._or_warn(lambda: discard_recovery(found))
 
     # The end
 
@@ -393,6 +355,7 @@ class Desk(QObject):
         if answer is Answer.YES:
             self.save(go_on)
         elif answer is Answer.NO:
+            self.keeper.drop_copy()
             go_on()
 
     def _window_closing(self, event: QCloseEvent) -> None:
@@ -416,35 +379,9 @@ class Desk(QObject):
         self.window.deleteLater()
         QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
         self._translations.remove()
-        self._release()
-        self._writer.shutdown(wait=True)
+        self.keeper.close()
         self._runner.shutdown()
         self._garbage.close()
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Taken:
-    """A project that was read, and the lock on it or why there is none."""
-
-    project: OpenedProject
-    lock: ProjectLock | None
-    problem: str
-
-
-def _take_project(folder: Path, held: ProjectLock | None) -> _Taken:
-    """Lock a project, then read it; it can be looked at without the lock."""
-    lock, problem = held, ""
-    if lock is None:
-        try:
-            lock = lock_project(folder)
-        except GroundStationError as error:
-            problem = str(error)
-    try:
-        return _Taken(open_project(folder), lock, problem)
-    except BaseException:
-        if lock is not None and lock is not held:
-            lock.release()
-        raise
 
 
 def _read_settings() -> tuple[Settings, str]:

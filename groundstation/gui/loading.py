@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import threading
 from collections.abc import Sequence
@@ -38,10 +39,10 @@ class BackgroundImport(QObject):
 
         def work() -> None:
             for module in modules:
-                try:
+                # Whoever imports it again, in the window's thread, gets the error and can tell it.
+                with contextlib.suppress(Exception):
                     importlib.import_module(module)
-                finally:
-                    done.append(module)
+                done.append(module)
 
         threading.Thread(target=work, name="import", daemon=True).start()
         self._timer.start(LOOK_MS)

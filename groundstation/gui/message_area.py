@@ -78,6 +78,11 @@ class MessageArea(QWidget):
             self._list.takeItem(0)
         self._list.scrollToBottom()
 
+    def messages(self) -> tuple[Message, ...]:
+        """All messages, the oldest first."""
+        rows = (self._list.item(row) for row in range(self._list.count()))
+        return tuple(row.data(Qt.ItemDataRole.UserRole) for row in rows)
+
     def texts(self) -> str:
         """All messages, one in a line."""
         return "\n".join(self._list.item(row).text() for row in range(self._list.count()))

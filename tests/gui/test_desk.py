@@ -199,7 +199,7 @@ def test_work_without_a_project_survives_a_crash_too(application, make_desk, ans
     first = make_desk()
     with_site(application, first)
     first.autosave_now()
-    place = first._place.folder
+    place = first.keeper.place()
     turn_until(application, lambda: (place / ".autosave" / "autosave.json").exists())
     shutil.copytree(place, place.with_name("crashed"), ignore=shutil.ignore_patterns(".lock*"))
     make_desk.end(first)
@@ -258,3 +258,20 @@ def test_the_layout_is_remembered(application, make_desk):
     second = make_desk()
     turn_until_idle(application, second)
     assert second.window._around.sizes()[0] == pytest.approx(width, abs=3)
+
+
+def test_work_that_was_thrown_away_is_not_offered_again(application, make_desk, answers, entry, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    folder = tmp_path / "project"
+    desk.save_in(folder)
+    turn_until_idle(application, desk)
+    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+    desk.autosave_now()
+    turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
+    answers.save, answers.take_over = Answer.NO, Answer.YES
+    desk.open_folder(folder)
+    turn_until_idle(application, desk)
+    assert answers.asked[-1] == "save"
+    assert desk.workspace.document.plans == ()
+    assert not desk.window.isWindowModified()

@@ -142,11 +142,14 @@ def test_theme_units_and_language_change_at_once_and_are_kept(application, desk)
     desk.window.show_tab("plan")
     desk.choose(units=UnitSystem.IMPERIAL)
     assert desk.window.tab("plan").form._distance.box().text() == "32.8 ft"
+    turn_until_idle(application, desk)
     desk.choose(language=Language.GERMAN)
     turn_until(application, lambda: desk.window.stage.scene() is not None)
     assert desk.window.shown_tab() == "plan"
     titles = [spec.shown_title() for spec in desk.window.specs()]
     assert "Planung" in titles
+    assert "roof" in desk.window.messages.texts(), "what was said before is still there"
+    turn_until_idle(application, desk)
     desk.choose(language=Language.ENGLISH, theme=Theme.LIGHT, units=UnitSystem.METRIC)
     turn_until(application, lambda: desk.window.stage.scene() is not None)
     kept = read_settings(settings_path())
@@ -186,3 +189,18 @@ def test_the_window_answers_within_50_ms_while_a_plan_runs(application, desk):
         if longest_ms[-1] < 50.0:
             return
     pytest.fail(f"longest gaps of {len(longest_ms)} plans: {longest_ms} ms")
+
+
+def test_the_language_waits_while_something_runs(application, desk):
+    opened(application, desk, "roof")
+    desk.window.show_tab("plan")
+    page, window = desk.window.tab("plan"), desk.window
+    page.desk.set_request(PlanRequest(n_views=6, time_budget_s=4.0))
+    page.desk.plan()
+    desk.choose(language=Language.GERMAN)
+    assert desk.window is window
+    assert "started next" in desk.window.messages.texts()
+    turn_until_idle(application, desk)
+    assert len(desk.workspace.document.plans) == 1
+    desk.choose(language=Language.ENGLISH)
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
