@@ -151,6 +151,8 @@ class Workspace(QObject):
         for job in reversed(jobs):
             self.cancel(job)
         self.bridge.close()
+        # News that Qt has queued already would reach widgets that are going.
+        self._waiting.clear()
         return all(job.wait(timeout_s) for job in jobs)
 
     def _document_changed(self, before: Document, after: Document) -> None:
