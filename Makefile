@@ -1,4 +1,4 @@
-# make setup | demo | test | test-all | check | benchmark | translations: each does all the set-up it needs.
+# make setup | demo | test | test-all | check | benchmark | translations | pictures: each does all the set-up it needs.
 PYTHON ?= python3
 VENV := .venv
 ifeq ($(OS),Windows_NT)
@@ -8,7 +8,7 @@ PY := $(VENV)/bin/python
 endif
 TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 
-.PHONY: setup demo test test-all check benchmark format translations clean
+.PHONY: setup demo test test-all check benchmark format translations pictures clean
 
 setup: $(VENV)/.ready
 
@@ -42,6 +42,13 @@ test-all: check
 benchmark: setup
 	$(PY) -m tests.benchmarks
 
+# Every tab and state of the window, and from them those that the documents show.
+pictures: setup
+	$(PY) app.py --screenshots pictures
+	cp pictures/1280x720/plan-panel.png docs/window.png
+	cp pictures/1280x720/site.png docs/window-site.png
+	cp pictures/1280x720/mission-2.png docs/window-mission.png
+
 format: setup
 	$(PY) -m ruff format .
 	$(PY) -m ruff check --fix .
@@ -52,4 +59,4 @@ translations: setup
 	$(VENV)/bin/pyside6-lrelease $(TEXTS)
 
 clean:
-	rm -rf $(VENV) demo-out benchmark-out
+	rm -rf $(VENV) demo-out benchmark-out pictures

@@ -35,6 +35,7 @@ class Colours:
     text: str
     muted: str
     line: str
+    handle: str
     accent: str
     accent_text: str
     error: str
@@ -55,6 +56,7 @@ LIGHT = Colours(
     text="#15202b",
     muted="#52606d",
     line="#c5ccd3",
+    handle="#d7dde2",
     accent="#005a9c",
     accent_text="#ffffff",
     error="#b3261e",
@@ -70,6 +72,7 @@ DARK = Colours(
     text="#e8edf1",
     muted="#a4b0ba",
     line="#3c4751",
+    handle="#2b343c",
     accent="#66b2e8",
     accent_text="#0b1014",
     error="#ff9d94",
@@ -85,6 +88,7 @@ SUNLIGHT = Colours(
     text="#000000",
     muted="#222222",
     line="#000000",
+    handle="#b4bbc1",
     accent="#003f7a",
     accent_text="#ffffff",
     error="#8c0f08",
@@ -183,7 +187,7 @@ def _style_sheet(found: Colours) -> str:
     QProgressBar {{ border: 1px solid {found.line}; border-radius: 4px; text-align: center; min-height: 20px; }}
     QProgressBar::chunk {{ background: {found.accent}; }}
     QScrollBar:vertical {{ width: 16px; }} QScrollBar:horizontal {{ height: 16px; }}
-    QSplitter::handle {{ background: {found.line}; }}
+    QSplitter::handle {{ background: {found.handle}; }}
     QGroupBox {{ font-weight: bold; border: none; margin-top: 1.4em; }}
     QGroupBox::title {{ subcontrol-origin: margin; left: 0px; }}
     QToolTip {{ color: {found.text}; background: {found.base}; border: 1px solid {found.line}; }}
