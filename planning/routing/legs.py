@@ -32,6 +32,8 @@ MIN_SPACING_M = 0.5
 """Smallest distance between waypoints that DJI's firmware accepts (Payload SDK, waypoint errors)."""
 
 PAIRS_PER_STEP = 200_000
+ROWS_PER_STEP = 8
+"""Shortest ways are searched from so many stops at a time: SciPy holds the interpreter's lock for 1 to 2 ms each."""
 TIGHTEN_ROUNDS = 12
 
 
@@ -138,7 +140,7 @@ def build_leg_table(roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, mon
     cost = np.minimum(cost, cost.T)
     np.fill_diagonal(cost, 0.0)
     needs_way = np.flatnonzero(~np.isfinite(cost).all(axis=1))
-    for start, end in chunks(len(needs_way), 64):
+    for start, end in chunks(len(needs_way), ROWS_PER_STEP):
         monitor.report("finding ways around", start, len(needs_way))
         rows = needs_way[start:end]
         around = dijkstra(graph, directed=False, indices=rows)[:, :n]
