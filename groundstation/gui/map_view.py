@@ -185,9 +185,7 @@ class MapView(MapCanvas):
             return self.tr("This site lies beyond the end of web maps (85.05 degrees); use the 3-D view.")
         source = self._tiles.source()
         if source is None:
-            return self.tr(
-                'No map is loaded. "Map file" opens one (MBTiles with PNG, JPEG or WebP); no network is used.'
-            )
+            return self.tr('No map is loaded. "Map file" opens one (MBTiles); no network is used.')
         if self._site is not None and not _covers(source.info.bounds_deg, self._viewport):
             return self.tr('The map "{0}" does not cover this place.').format(source.info.name)
         return ""
@@ -209,7 +207,7 @@ class MapView(MapCanvas):
         if source is not None:
             levels = source.info.min_zoom, source.info.max_zoom
             self._tiles.want(paint_tiles(painter, viewport, levels, self._tiles.picture, self._tiles.knows))
-        elif self._site is not None:
+        if self._site is not None and (source is None or not _covers(source.info.bounds_deg, viewport)):
             paint_grid(painter, viewport, self._site.home, self._units, found.line)
         self._paint_layer(painter)
         self._paint_marks(painter)

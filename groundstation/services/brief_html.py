@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 
 from groundstation.services.brief_pictures import map_svg, profile_svg
-from groundstation.services.finding_texts import measured_text
+from groundstation.services.finding_texts import duration_text, measured_text
 from groundstation.services.flight_brief import FlightBrief
 from groundstation.services.map_shapes import plan_shapes, site_shapes
 from groundstation.services.profiles import height_limits, plan_profiles
@@ -117,7 +117,9 @@ _TABLE = '<table width="100%" border="1" cellspacing="0" cellpadding="2" style="
 
 def _verdict(brief: FlightBrief, say: Say) -> str:
     if brief.is_flyable:
-        return f"<p><b>{escape(say('All pre-flight rules are kept: ready to fly.'))}</b></p>"
+        kept, warned = "All pre-flight rules are kept: ready to fly.", "Ready to fly, but read the warnings."
+        has_warnings = any(found.severity is Severity.WARNING for found in brief.findings)
+        return f"<p><b>{escape(say(warned if has_warnings else kept))}</b></p>"
     return f'<p><b><span style="color: #b3261e">{escape(say("NOT ready to fly: see the findings."))}</span></b></p>'
 
 
@@ -129,7 +131,7 @@ def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple
     yield say("Photos"), str(brief.n_photos)
     yield say("Batteries needed"), str(brief.n_batteries)
     total_s = sum(sortie.duration_s for sortie in brief.sorties)
-    yield say("Flight time, all sorties"), say("{0} min").format(minutes_text(total_s))
+    yield say("Flight time, all sorties"), duration_text(total_s)
     yield say("Coverage of what can be covered"), f"{100.0 * brief.covered_share:.1f} %"
     yield say("Greatest height above ground"), length.text(brief.max_above_ground_m)
     near = [s.smallest_clearance_m for s in brief.sorties if s.smallest_clearance_m is not None]

@@ -8,7 +8,6 @@ from planning.effects import Decision, Wish, decide
 from planning.errors import InfeasibleError
 from planning.plan import Plan
 from planning.prepare import decide_occlusion
-from planning.progress import QUIET, Monitor
 from planning.request import PlanRequest
 from planning.site import SiteModel
 from planning.sortie_timing import sortie_flight_path
@@ -31,21 +30,39 @@ class EffectChoice:
     wish: Wish | None
 
 
-def planning_effects(
-    site_model: SiteModel, request: PlanRequest, plan: Plan | None = None, monitor: Monitor = QUIET
-) -> tuple[EffectChoice, ...]:
-    """All effects of planning: those that shape the plan, and with a plan those that its check looks at."""
-    monitor.report("looking at the scene", 0, 2)
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneEffects:
+    """Effects that shape the next plan, and the site and request they were decided for."""
+
+    site_model: SiteModel
+    request: PlanRequest
+    choices: tuple[EffectChoice, ...]
+
+    def hold_for(self, site_model: SiteModel, request: PlanRequest) -> bool:
+        """Whether they would be the same for another site or request."""
+        mine, others = self.request.constraints, request.constraints
+        return (
+            self.site_model is site_model
+            and mine.min_distance_m == others.min_distance_m
+            and mine.occlusion == others.occlusion
+            and self.request.seed == request.seed
+        )
+
+
+def scene_effects(site_model: SiteModel, request: PlanRequest) -> SceneEffects:
+    """What the scene calls for, measured on it; what was wished overrules the decision, not the measurement."""
     constraints = request.constraints
     wishes: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
     wish = wishes[constraints.occlusion]
     space = unchecked_space(site_model, constraints.min_distance_m)
-    found = [EffectChoice(decide_occlusion(site_model, space, wish, request.seed), wish)]
-    monitor.report("looking at the scene", 1, 2)
-    if plan is not None:
-        corners = corner_speed(plan)
-        found += [] if corners is None else [EffectChoice(corners, None)]
-    return tuple(found)
+    occlusion = EffectChoice(decide_occlusion(site_model, space, wish, request.seed), wish)
+    return SceneEffects(site_model, request, (occlusion,))
+
+
+def plan_effects(plan: Plan) -> tuple[EffectChoice, ...]:
+    """Effects that the check of a plan looks at; the user cannot overrule them."""
+    corners = corner_speed(plan)
+    return () if corners is None else (EffectChoice(corners, None),)
 
 
 def corner_speed(plan: Plan) -> Decision | None:

@@ -11,6 +11,8 @@ from planning.findings import Finding, Severity
 SEVERITIES = (Severity.ERROR, Severity.WARNING, Severity.NOTE, Severity.OK)
 """The gravest first."""
 
+HOUR_S = 3600
+
 LONG_S = 120.0
 """Durations from here on are read as minutes and seconds."""
 
@@ -26,6 +28,11 @@ def counts_by_severity(findings: Iterable[Finding]) -> Mapping[Severity, int]:
     return {severity: counts[severity] for severity in SEVERITIES}
 
 
+def duration_text(duration_s: float) -> str:
+    """A duration with its unit: `12:05 min`, `1:02:05 h` from an hour on."""
+    return f"{minutes_text(duration_s)} {'min' if round(duration_s) < HOUR_S else 'h'}"
+
+
 def measured_text(value: float, unit: str, system: UnitSystem) -> str:
     """A value of a finding with its unit, as the user reads it.
 
@@ -39,7 +46,7 @@ def measured_text(value: float, unit: str, system: UnitSystem) -> str:
         case "mm":
             return sampling_unit(system).text(value / 1e3)
         case "s":
-            return f"{value:.1f} s" if abs(value) < LONG_S else f"{minutes_text(value)} min"
+            return f"{value:.1f} s" if abs(value) < LONG_S else duration_text(value)
         case "deg":
             return f"{value:.1f}°"
         case _:

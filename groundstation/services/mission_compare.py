@@ -107,11 +107,15 @@ class MissionComparison:
         return sum(photo.is_out_of_order for photo in self.photos)
 
     @property
+    def has_the_photos(self) -> bool:
+        """Whether the file takes all photos of the plan and none else, in whatever order."""
+        return bool(self.photos) and all(photo.difference is Difference.SAME for photo in self.photos)
+
+    @property
     def is_the_plan(self) -> bool:
         """Whether the file flies the plan: all photos, none else, in order, along the same path."""
-        all_same = bool(self.photos) and all(photo.difference is Difference.SAME for photo in self.photos)
         deviates = self.path_deviation_m is not None and self.path_deviation_m > SAME_M
-        return all_same and self.n_out_of_order == 0 and not deviates
+        return self.has_the_photos and self.n_out_of_order == 0 and not deviates
 
 
 def compare_with_plan(

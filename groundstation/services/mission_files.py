@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
+from groundstation.services.project_file import check_not_index
 from missions.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot, encode
 from missions.formats import read_missions, sortie_path, write_files
 from missions.model import FileFormat, ReadMission
@@ -98,7 +100,22 @@ def write_export(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
     """
     if prepared.encoded is None:
         raise ValueError(f"nothing to write: {prepared.refusal}")
+    check_not_index(path)
     return write_files(prepared.encoded, path)
+
+
+def in_order_of_sorties(paths: Sequence[Path]) -> tuple[Path, ...]:
+    """Mission files by name, those of one export as its sorties: `roof.plan`, `roof-2.plan`, `roof-10.plan`.
+
+    File dialogs give them in another order (`roof-10.plan` first), and the order is that of the flight.
+    """
+
+    def key(path: Path) -> tuple[Path, str, int]:
+        name, dash, number = path.stem.rpartition("-")
+        is_further = bool(dash) and number.isascii() and number.isdigit()
+        return (path.parent, name, int(number)) if is_further else (path.parent, path.stem, 1)
+
+    return tuple(sorted(paths, key=key))
 
 
 def readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
@@ -127,12 +144,18 @@ def within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions)
     longest = max((len(sortie.viewpoint_ids) for sortie in plan.sorties), default=0)
     if longest <= limit:
         return plan, ()
-    anew = share_out_anew(plan, site_model, limit)
+    anew = _shared_out(plan, site_model, limit)
     text = (
         f"{autopilot} keeps the items of about {limit} photos, but a sortie of this plan has {longest}; the same views "
         f"were shared out among {len(anew.sorties)} sorties for these files"
     )
     return anew, (Finding(Severity.WARNING, "item-limit", text, "", float(longest), float(limit), "photos"),)
+
+
+@lru_cache(maxsize=2)
+def _shared_out(plan: Plan, site_model: SiteModel, max_views: int) -> Plan:
+    """Sharing out takes seconds and ends by the clock: kept, so that all files of one plan fly the same sorties."""
+    return share_out_anew(plan, site_model, max_views)
 
 
 def read_mission_files(paths: Sequence[Path]) -> tuple[ReadMission, ...]:

@@ -14,7 +14,7 @@ from groundstation.services.mission_files import (
     readiness,
     within_item_limit,
 )
-from groundstation.services.project_file import SITE_FOLDER
+from groundstation.services.project_file import SITE_FOLDER, check_not_index
 from missions.encode import DEFAULT_OPTIONS, ExportOptions, encode
 from missions.formats import sortie_path, write_files
 from missions.model import FileFormat
@@ -87,6 +87,7 @@ def export_plan(
     plan = read_plan(plan_path)
     site_path = _site_beside(plan, plan_path) if site_path is None else site_path
     sources = [path for path in (plan_path, site_path) if path is not None]
+    check_not_index(out)
     check_output(out, sources)
     site_model = find_site(plan, plan_path, site_path)
     findings = list(_name_findings(out, file_format))
@@ -128,6 +129,7 @@ def import_missions(
     InputError, MissionError
         A file cannot be read, is given twice, or belongs to another place; or the plan cannot be written.
     """
+    check_not_index(out)
     check_output(out, [*paths, site_path])
     plan, findings = missions_as_plan(paths, read_site(site_path), profile_id, constraints, monitor)
     write_plan(out, plan)

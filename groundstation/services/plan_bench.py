@@ -8,14 +8,15 @@ takes milliseconds. A `Bench` is a value that lives in the window's thread; `tak
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planning.catalogue import profile
-from planning.coverage.sections import NOT_SEEN
+from planning.coverage.sections import NOT_SEEN, PanelFrames
 from planning.insight.reasons import SectionReasons, section_reasons
-from planning.insight.sampling import panel_sampling
+from planning.insight.sampling import PanelSampling, panel_sampling
 from planning.insight.sections import PlanInsight, section_states
 from planning.plan import Camera, Constraints, Plan, viewpoint_arrays
 from planning.prepare import Prepared, is_same_place, prepare
@@ -56,7 +57,7 @@ class PlanInHand:
 
     def with_revision(self, revision: Revision) -> PlanInHand:
         """After an edit."""
-        return replace(self, revision=revision, insight=insight_of(revision, self.insight.reasons))
+        return replace(self, revision=revision, insight=insight_of(revision, self.insight.reasons, self))
 
 
 class Bench:
@@ -128,8 +129,8 @@ def take_in_hand(
     return PlanInHand(Groundwork(groundwork.prepared, reasons), revision, insight_of(revision, reasons))
 
 
-def insight_of(revision: Revision, reasons: SectionReasons) -> PlanInsight:
-    """What a plan in hand covers, from what is measured on it already."""
+def insight_of(revision: Revision, reasons: SectionReasons, before: PlanInHand | None = None) -> PlanInsight:
+    """What a plan in hand covers, from what is measured on it already; `before` is the same plan before an edit."""
     prepared, plan = revision.prepared, revision.plan
     model = prepared.problem.model
     n_sections = model.grid.n_sections
@@ -138,7 +139,6 @@ def insight_of(revision: Revision, reasons: SectionReasons) -> PlanInsight:
         panel, section = np.divmod(revision.elements_of_pose(viewpoint), n_sections)
         sections[number, panel] = section
     counts = revision.counts.astype(np.int32)
-    positions = viewpoint_arrays(plan.viewpoints).positions_enu_m
     return PlanInsight(
         tuple(viewpoint.id for viewpoint in plan.viewpoints),
         tuple(panel.id for panel in prepared.site_model.site.panels),
@@ -149,9 +149,29 @@ def insight_of(revision: Revision, reasons: SectionReasons) -> PlanInsight:
         sections,
         counts,
         section_states(counts, prepared.problem.reachability.verdicts),
-        panel_sampling(model.frames, model.camera, positions, sections),
+        _sampling(revision, sections, before),
         reasons,
     )
+
+
+def _sampling(revision: Revision, sections: NDArray[np.int16], before: PlanInHand | None) -> PanelSampling:
+    """Pixel sizes of all panels; after an edit only those are computed that a view sees or saw which it changed."""
+    model, viewpoints = revision.prepared.problem.model, revision.plan.viewpoints
+    frames, positions = model.frames, viewpoint_arrays(viewpoints).positions_enu_m
+    if before is None:
+        return panel_sampling(frames, model.camera, positions, sections)
+    old, new = set(before.plan.viewpoints), set(viewpoints)
+    is_new = np.array([view not in old for view in viewpoints], bool)
+    is_old = np.array([view not in new for view in before.plan.viewpoints], bool)
+    touched = (sections[is_new] != NOT_SEEN).any(axis=0) | (before.insight.sections[is_old] != NOT_SEEN).any(axis=0)
+    some = PanelFrames(*(getattr(frames, part.name)[touched] for part in fields(frames)))
+    part = panel_sampling(some, model.camera, positions, sections[:, touched])
+    kept = before.insight.sampling
+    merged = {}
+    for name in (field.name for field in fields(PanelSampling)):
+        merged[name] = getattr(kept, name).copy()
+        merged[name][touched] = getattr(part, name)
+    return PanelSampling(**merged)
 
 
 def _fits(prepared: Prepared, plan: Plan, site_model: SiteModel) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,16 @@ from numpy.typing import NDArray
 
 from groundstation.services.document import Document
 from planning.findings import Finding, Severity
+from planning.frames import camera_axes
+from planning.plan import Viewpoint
 from planning.revision import Revision
+from planning.site import Airspace, Site, SiteModel
+
+BESIDE_M = 2.0
+"""A new viewpoint stands this far beside the one it is added to: two aircraft lengths, clearly another place."""
+
+KEEPING_METHODS = frozenset({"greedy"})
+"""Methods of planning that can keep viewpoints; `planning.planner` refuses to keep any with the others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,3 +89,29 @@ def with_edited_plan(document: Document, revision: Revision) -> Document:
     if entry is None:
         raise ValueError("document: expected a current plan, there is none")
     return document.with_plan(replace(entry, plan=revision.plan, bound_for_views=None))
+
+
+def beside(viewpoint: Viewpoint, airspace: Airspace) -> Viewpoint:
+    """A viewpoint that looks as another one does, `BESIDE_M` to its right or, where the airspace ends, to its left.
+
+    Where both lie outside, as they do for a viewpoint that is outside itself, it stands to the right.
+    """
+    _, right, _ = camera_axes(math.radians(viewpoint.heading_deg), 0.0)
+    here = np.array(viewpoint.position_enu_m)
+    places = [here + BESIDE_M * right, here - BESIDE_M * right]
+    low, high = np.array(airspace.min_enu_m), np.array(airspace.max_enu_m)
+    place = next((place for place in places if ((low <= place) & (place <= high)).all()), places[0])
+    x, y, z = (float(value) for value in place)
+    return replace(viewpoint, position_enu_m=(x, y, z), locked=False)
+
+
+def above_home(site: Site) -> Viewpoint:
+    """A viewpoint to begin with: straight above home, just inside the airspace, looking north."""
+    x, y, z = site.home_enu_m
+    floor_m, ceiling_m = site.airspace.min_enu_m[2], site.airspace.max_enu_m[2]
+    return Viewpoint("new", (x, y, min(max(z, floor_m) + BESIDE_M, ceiling_m)), 0.0, 0.0)
+
+
+def has_same_panels(site: SiteModel, other: SiteModel | None) -> bool:
+    """Whether a plan for one site says something about another: it was edited meanwhile, but not replaced."""
+    return other is not None and (other is site or other.site.panels == site.site.panels)

@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from groundstation.services.project_file import check_not_index
 from planning.catalogue import profile
 from planning.checks import check_plan
 from planning.errors import InputError
@@ -43,6 +44,7 @@ def plan_site(
         As `planning.planner.plan_flight`, or the plan cannot be written where it should go; nothing is written then.
     """
     if out is not None:
+        check_not_index(out)
         check_output(out, [site_path])
     planned = plan_document_site(read_site(site_path), request, stop=stop, trace=trace, monitor=monitor)
     if out is not None:

@@ -133,6 +133,17 @@ def is_project(path: Path) -> bool:
     return (path / PROJECT_FILE).is_file() or (path.name == PROJECT_FILE and path.is_file())
 
 
+def check_not_index(path: Path) -> None:
+    """Refuse to write something else over the project.json of a project.
+
+    Raises
+    ------
+    InputError
+    """
+    if path.name == PROJECT_FILE and path.is_file():
+        raise InputError(f"{path}: would replace what holds a project together; name another file")
+
+
 def project_name(path: Path) -> str:
     """Name of a project for a list: what its project.json says, or that of the folder.
 

@@ -1,5 +1,7 @@
 """`brief` writes one page, and refuses what it cannot write."""
 
+import json
+
 
 def test_brief_is_one_html_page_with_its_pictures(reflight, pane, tmp_path):
     out = tmp_path / "brief.html"
@@ -34,3 +36,12 @@ def test_bad_plans_and_places_are_refused_and_nothing_is_written(reflight, pane,
     assert not out.exists()
     missing = tmp_path / "none" / "brief.html"
     assert "there is no folder" in reflight("brief", pane / "plan.json", pane / "site.json", "-o", missing).error
+
+
+def test_a_plan_that_may_not_fly_is_told(reflight, pane, tmp_path):
+    plan = json.loads((pane / "plan.json").read_text())
+    plan["aircraft"]["endurance_s"] = 10.0
+    (tmp_path / "far.json").write_text(json.dumps(plan))
+    done = reflight("brief", tmp_path / "far.json", pane / "site.json", "-o", tmp_path / "brief.html")
+    assert done.status == 0
+    assert "NOT ready to fly" in done.err

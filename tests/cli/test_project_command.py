@@ -9,6 +9,7 @@ from groundstation.services.autosave import Autosave
 from groundstation.services.project import open_project
 from groundstation.services.project_lock import lock_project
 from planning.request import PlanRequest
+from planning.scenes import write_scene
 from tests.services.test_autosave import AtOnce, edited
 from tests.services.test_project import files_of
 
@@ -148,3 +149,24 @@ def test_a_request_is_kept_with_its_plan(project):
     entry = open_project(project).document.current
     assert entry.request is None
     assert open_project(project).document.request == PlanRequest()
+
+
+def test_no_command_writes_over_what_holds_a_project_together(reflight, tmp_path):
+    site = write_scene("single-panel", tmp_path)
+    assert reflight("project", "new", tmp_path / "p", "--site", site).status == 0
+    index = tmp_path / "p" / "project.json"
+    before = index.read_bytes()
+    plan = tmp_path / "a.plan.json"
+    assert reflight("plan", site, "-o", plan, "--views", 2, "--time-budget", 2).status == 0
+    csv = tmp_path / "a.csv"
+    assert reflight("export", plan, "--site", site, "--format", "csv", "-o", csv).status == 0
+    for arguments in (
+        ("plan", site, "--views", 2),
+        ("import", csv, "--site", site),
+        ("site", "import", csv),
+        ("export", plan, "--format", "csv", "--site", site),
+    ):
+        done = reflight(*arguments, "-o", index)
+        assert done.status == 1
+        assert "holds a project together" in done.err
+        assert index.read_bytes() == before

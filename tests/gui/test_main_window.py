@@ -52,6 +52,8 @@ def test_window_opens_a_site_plans_it_and_shows_both(application, desk):
     assert "roof: panels 32" in desk.window.messages.texts()
     assert "Views: 12, sorties: 1" in desk.window.messages.texts()
     assert page.verdict().startswith("Ready to fly")
+    page.right.setCurrentWidget(page.effects)
+    turn_until_idle(application, desk)
     assert page.effects.card("occlusion").text().splitlines()[1] == "is off"
     scene.look_at_all()
     shown = scene.screenshot()
@@ -108,7 +110,7 @@ def test_editing_by_hand_shows_at_once_and_can_be_undone(application, desk):
     locked = desk.workspace.document.current.viewpoint(viewpoint.id)
     assert locked.locked
     page.viewpoint.delete_viewpoint()
-    assert "locked" in desk.window.messages.texts()
+    assert "switch off “Keep when planning again”" in desk.window.messages.texts()
     page.viewpoint.add_viewpoint()
     assert len(desk.workspace.document.current.plan.viewpoints) == 9
     again = planned(application, desk, PlanRequest(n_views=6, time_budget_s=4.0))

@@ -74,9 +74,9 @@ def test_a_request_that_makes_no_sense_is_explained_and_not_announced(form):
     form._distance.box().setValue(60.0)
     form.valueChanged.disconnect(heard.append)
     assert not heard
-    assert "max_distance_m" in form._wrong.text()
+    assert "within 40.0 m, but the safety distance is 60.0 m" in form.problem()
     form.setValue(PlanRequest())
-    assert form._wrong.text() == ""
+    assert form.problem() == ""
 
 
 def test_an_own_aircraft_is_taken_from_a_file_and_a_wrong_file_changes_nothing(form, tmp_path):
@@ -87,13 +87,15 @@ def test_an_own_aircraft_is_taken_from_a_file_and_a_wrong_file_changes_nothing(f
         "image_width_px = 5472, image_height_px = 3648, gimbal_pitch_deg = [-90, 20] }\n"
     )
     form.setValue(PlanRequest())
-    form.use_profile_file(own)
-    form._edited()
+    form.aircraft.use_file(own)
     assert form.value().profile_id == str(own)
     (tmp_path / "bad.toml").write_text("[quad]\n")
-    form.use_profile_file(tmp_path / "bad.toml")
+    form.aircraft.use_file(tmp_path / "bad.toml")
     assert "bad.toml" in form._wrong.text()
     assert form.value().profile_id == str(own)
+    own.unlink()
+    form.setValue(PlanRequest(profile_id=str(tmp_path / "gone.toml")))
+    assert "gone.toml" in form._wrong.text(), "a project can name a file that is not there any more"
     form.setValue(PlanRequest())
 
 

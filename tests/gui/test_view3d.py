@@ -1,5 +1,6 @@
 """The 3-D view as a user has it: real widgets on a virtual screen, real mouse events, pictures looked at by number."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,9 +10,14 @@ from PySide6.QtGui import QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 
 from groundstation.gui.theme import DARK, FACADES, LIGHT, Theme, apply_theme
+from groundstation.gui.view3d.layers import Drawable, Layer
+from groundstation.gui.view3d.orbit import Orbit
+from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.services.document import Item, ItemKind
 from groundstation.services.units import UnitSystem
 from planning.coverage.sections import SectionGrid
+from planning.frames import camera_axes, wrap_heading_deg
+from planning.plan import Viewpoint
 from planning.scenes import canyon, office, roof, tower
 from planning.site_import.importer import import_site
 from planning.site_import.options import ImportOptions
@@ -325,6 +331,83 @@ def test_an_item_is_looked_at_from_before_what_stands_in_the_way(application, vi
     view.look_at(item)
     (x, y), _ = view._navigator.pinhole().project(view._site.frames.centroids[5])
     assert view.pick_at(x, y).item == item
+
+
+def inside(view, points_enu_m):
+    pixels, depths = view._navigator.pinhole().project(np.asarray(points_enu_m))
+    return bool((depths > 0.0).all() and (pixels >= 0.0).all() and (pixels <= [view.width(), view.height()]).all())
+
+
+@pytest.mark.parametrize(("heading_deg", "pitch_deg"), [(0.0, 0.0), (25.0, 10.0), (-40.0, -20.0)])
+def test_a_viewpoint_is_looked_at_together_with_what_it_photographs(application, view, plan, heading_deg, pitch_deg):
+    view.set_site(office())
+    panel = view._site.frames.centroids[view._site.panel_index["A-0123"]]
+    forward, _, _ = camera_axes(math.radians(heading_deg), math.radians(pitch_deg))
+    eye = panel - 18.0 * forward
+    aimed = Viewpoint("v0010", tuple(eye.tolist()), heading_deg, pitch_deg)
+    view.set_plan(replace(plan, viewpoints=(*plan.viewpoints[:10], aimed, *plan.viewpoints[11:])))
+    view.look_at(Item(ItemKind.VIEWPOINT, "v0010"))
+    assert inside(view, [eye, panel])
+    assert view.orbit().distance_m < 120.0, "and not from so far that neither can be made out"
+
+
+def test_a_leg_is_looked_at_together_with_the_panel_it_passes(application, view, plan):
+    view.set_site(office())
+    view.set_plan(plan)
+    ends = np.array(plan.sorties[0].path_enu_m[4:6])
+    nearest = np.linalg.norm(view._site.frames.centroids - ends.mean(axis=0), axis=1).argmin()
+    view.look_at(Item(ItemKind.LEG, "1/5"))
+    assert inside(view, ends)
+    assert inside(view, view._site.frames.centroids[[nearest]])
+
+
+def test_the_view_turns_only_to_see_the_front_of_what_is_looked_at(application, view, plan):
+    view.set_site(office())
+    view.set_plan(plan)
+    viewpoint = plan.viewpoints[10]
+    item = Item(ItemKind.VIEWPOINT, viewpoint.id)
+    for aside_deg, stays in ((40.0, True), (-40.0, True), (170.0, False)):
+        before = Orbit(heading_deg=wrap_heading_deg(viewpoint.heading_deg + aside_deg), pitch_deg=-15.0)
+        view.set_orbit(before)
+        view.look_at(item)
+        assert (view.orbit().heading_deg == before.heading_deg) == stays, aside_deg
+
+
+def test_a_viewpoint_that_looks_up_is_not_looked_at_from_below(application, view, plan):
+    view.set_site(office())
+    up = replace(plan.viewpoints[10], gimbal_pitch_deg=30.0)
+    view.set_plan(replace(plan, viewpoints=(*plan.viewpoints[:10], up, *plan.viewpoints[11:])))
+    view.set_orbit(Orbit(heading_deg=wrap_heading_deg(up.heading_deg + 180.0)))
+    view.look_at(Item(ItemKind.VIEWPOINT, up.id))
+    assert view.orbit().pitch_deg < 0.0
+
+
+def test_a_plan_without_a_site_can_be_looked_at(application, view, plan):
+    view.set_plan(plan)
+    for item in (Item(ItemKind.VIEWPOINT, "v0010"), Item(ItemKind.LEG, "1/5")):
+        view.look_at(item)
+        settle(application)
+    assert inside(view, plan.sorties[0].path_enu_m[4:6])
+
+
+def test_dots_behind_a_wall_are_hidden_by_it_also_once_lines_are_shifted(application, view, plan):
+    view.set_site(office())
+    scale = ColourScale("Clearance", "m", 10.0, 30.0)
+    view.set_plan(plan)
+    view.set_route_values(scale, [np.full(len(sortie.path_enu_m), 20.0) for sortie in plan.sorties])
+    # From within the scene: the nearest depth drawn is then small, and a step of the depth buffer a long way.
+    view.set_orbit(Orbit((0.0, 0.0, 10.0), 45.0, 0.0, -5.0))
+    for layer in (Layer.ROUTES, Layer.LABELS, Layer.VIEWPOINTS):
+        view.set_layer_visible(layer, False)
+    plain = picture(application, view)
+    model = view._site.model
+    low, high = model.building.vertices_enu_m.min(axis=0), model.building.vertices_enu_m.max(axis=0)
+    behind = np.array([[0.5 * (low[0] + high[0]), high[1] + 2.0, 0.5 * (low[2] + high[2])]])
+    view.canvas().draw("dots", [Drawable(behind, np.array([[0]]), flat("#ff00ff", 1), width_px=12.0)])
+    assert differs(plain, picture(application, view)) == 0
+    view.set_layer_visible(Layer.BUILDING, False)
+    view.set_layer_visible(Layer.PANELS, False)
+    assert differs(plain, picture(application, view)) > 50
 
 
 def test_a_rectangle_is_drawn_with_three_clicks(application, view):

@@ -210,8 +210,9 @@ def straight_down(view_point):
     return Orbit(view_point, 50.0, 0.0, -90.0).pinhole(1000, 1000)
 
 
-def test_height_looking_straight_down_is_finite():
-    view = straight_down((0.0, 0.0, 0.0))
+@pytest.mark.parametrize("focus", [(0.0, 0.0, 0.0), (40.0, -30.0, 0.0)])
+def test_a_box_drawn_from_straight_above_gets_the_height_that_the_pointer_moves_up(focus):
+    view = straight_down(focus)
     tool = BoxTool()
 
     def pointer(x, y):
@@ -221,7 +222,12 @@ def test_height_looking_straight_down_is_finite():
     tool.click(pointer(400.0, 400.0))
     tool.click(pointer(500.0, 500.0))
     tool.move(pointer(500.0, 500.0))
-    assert tool.value is None or np.isfinite(tool.value.max_enu_m).all()
+    assert tool.value is None
+    tool.move(pointer(500.0, 520.0))
+    assert tool.value is None, "there is nothing below the ground"
+    tool.move(pointer(520.0, 300.0))
+    metres_per_px = (tool.value.max_enu_m[0] - tool.value.min_enu_m[0]) / 100.0
+    assert tool.value.max_enu_m[2] == pytest.approx(200.0 * metres_per_px)
 
 
 POSITION = (5.0, -20.0, 15.0)

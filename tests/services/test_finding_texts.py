@@ -2,7 +2,7 @@
 
 import pytest
 
-from groundstation.services.finding_texts import by_severity, counts_by_severity, measured_text
+from groundstation.services.finding_texts import by_severity, counts_by_severity, duration_text, measured_text
 from groundstation.services.units import UnitSystem
 from planning.findings import Finding, Severity
 
@@ -34,3 +34,11 @@ def test_the_gravest_comes_first_and_the_rest_keeps_its_order():
     assert [finding.code for finding in by_severity(findings)] == ["rule-2", "rule-4", "rule-1", "rule-3", "rule-0"]
     assert list(counts_by_severity(findings).values()) == [2, 1, 1, 1]
     assert list(counts_by_severity(()).values()) == [0, 0, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("duration_s", "text"),
+    [(725.0, "12:05 min"), (3599.4, "59:59 min"), (3599.6, "1:00:00 h"), (4037.0, "1:07:17 h")],
+)
+def test_durations_of_an_hour_are_not_called_minutes(duration_s, text):
+    assert duration_text(duration_s) == text

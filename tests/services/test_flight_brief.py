@@ -108,6 +108,13 @@ def test_findings_that_are_not_ok_are_all_told_the_gravest_first(plan):
     assert "kept" not in text.split("Findings")[1].split("Before take-off")[0]
 
 
+def test_a_flight_with_warnings_is_not_said_to_keep_every_rule(plan):
+    warning = Finding(Severity.WARNING, "altitude", "above what the law allows")
+    for findings, verdict in (((warning,), "but read the warnings"), ((), "All pre-flight rules are kept")):
+        text = page_text(brief_html(flight_brief(MODEL, plan, findings, "today"), METRIC, {}))
+        assert verdict in text
+
+
 def test_page_names_every_height_reference_and_uses_the_users_units(brief):
     # The sentences of findings are metric; what they measured stands beside them in the user's units.
     bare = replace(brief, findings=())

@@ -105,6 +105,7 @@ def test_another_order_is_told_although_every_photo_is_there(read):
     found = compared(read(make_plan([([views[0], views[3], views[1], views[2], *views[4:]], {})])), plan)
     assert found.count(Difference.SAME) == 6
     assert [photo.viewpoint_id for photo in found.photos if photo.is_out_of_order] == ["v0003"]
+    assert found.has_the_photos
     assert not found.is_the_plan
 
 

@@ -1,10 +1,14 @@
 """Exports and imports of plans in memory: what is said first, what is written, what is refused."""
 
+from pathlib import Path
+
 import pytest
 
+from groundstation.services import mission_files
 from groundstation.services.mission_files import (
     SUFFIXES,
     export_paths,
+    in_order_of_sorties,
     missions_as_plan,
     prepare_export,
     write_export,
@@ -89,3 +93,28 @@ def test_preflight_counts_the_panels_of_every_photo(planned):
     for view in plan.viewpoints:
         seen = seen_by_contract(model, plan.camera, (view,), 30.0, plan.constraints.occlusion == "on")
         assert found.panels_covered[view.id] == len({panel for panel, _ in seen})
+
+
+def test_files_of_one_export_come_in_the_order_of_its_sorties_however_they_are_named():
+    names = ["roof-10.plan", "roof-2.plan", "roof.plan", "roof-1x.plan", "attic-2.plan", "attic.plan"]
+    assert [path.name for path in in_order_of_sorties([Path(name) for name in names])] == [
+        "attic.plan",
+        "attic-2.plan",
+        "roof.plan",
+        "roof-2.plan",
+        "roof-10.plan",
+        "roof-1x.plan",
+    ]
+
+
+def test_two_exports_of_one_plan_share_it_out_alike(planned, monkeypatch):
+    plan, model = planned
+    monkeypatch.setattr("missions.mavlink.items.photos_that_fit", lambda _autopilot: 5)
+    n_shared = []
+    real = mission_files.share_out_anew
+    monkeypatch.setattr(mission_files, "share_out_anew", lambda *a: n_shared.append(1) or real(*a))
+    first = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)
+    amsl = ExportOptions(height_reference=HeightReference.AMSL)
+    second = prepare_export(plan, model, FileFormat.MAVLINK_PLAN, amsl)
+    assert first.n_files == second.n_files > 1
+    assert len(n_shared) == 1

@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from groundstation.services.document import Document
 from groundstation.services.missions import SUFFIXES, export_plan, find_site, import_missions
 from groundstation.services.planning import plan_site
+from groundstation.services.project import create_project
 from missions.encode import ExportOptions
 from missions.formats import read_missions
 from missions.mavlink.autopilots import Autopilot
@@ -14,7 +16,7 @@ from planning.errors import InputError
 from planning.plan_file import read_plan
 from planning.request import PlanRequest
 from planning.scenes import SCENES, write_scene
-from planning.site_file import write_site
+from planning.site_file import read_site, write_site
 
 
 @pytest.fixture(scope="module")
@@ -81,3 +83,13 @@ def test_nothing_is_written_when_a_mission_is_refused(folder, tmp_path):
     with pytest.raises(InputError, match="named twice"):
         import_missions([file, tmp_path / "." / "m.kmz"], folder / "roof.site.json", tmp_path / "back.json")
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_mission_never_takes_the_place_of_the_index_of_a_project(folder, tmp_path):
+    create_project(tmp_path / "roof", Document(read_site(folder / "roof.site.json")))
+    index = tmp_path / "roof" / "project.json"
+    before = index.read_bytes()
+    for file_format in FileFormat:
+        with pytest.raises(InputError, match="holds a project together"):
+            export_plan(folder / "roof.plan.json", file_format, index)
+    assert index.read_bytes() == before

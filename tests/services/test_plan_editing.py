@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from groundstation.services.document import Document, PlanEntry
-from groundstation.services.plan_editing import coverage_change, edit_effect, with_edited_plan
+from groundstation.services.plan_editing import (
+    BESIDE_M,
+    above_home,
+    beside,
+    coverage_change,
+    edit_effect,
+    has_same_panels,
+    with_edited_plan,
+)
+from planning.plan import Viewpoint
 from planning.revision import delete, lock, move
+from planning.scenes import canyon, roof
 from tests.planning.revision.cases import planned
 
 
@@ -57,3 +69,33 @@ def test_the_document_takes_the_plan_over_without_the_bound_of_the_planner_s_cho
     assert after.plans[1] is document.plans[1]
     with pytest.raises(ValueError, match="expected a current plan"):
         with_edited_plan(Document(), edited)
+
+
+@pytest.mark.parametrize("heading_deg", [0.0, 90.0, -136.5, 180.0])
+def test_a_new_viewpoint_stands_beside_the_other_and_inside_the_airspace(heading_deg: float) -> None:
+    site = roof().site
+    low, high = (np.array(corner) for corner in (site.airspace.min_enu_m, site.airspace.max_enu_m))
+    for corner in (low, high, 0.5 * (low + high)):
+        old = Viewpoint("v", tuple(corner.tolist()), heading_deg, 5.0, locked=True)
+        new = beside(old, site.airspace)
+        place = np.array(new.position_enu_m)
+        assert np.linalg.norm(place - corner) == pytest.approx(BESIDE_M)
+        assert place[2] == corner[2]
+        assert (new.heading_deg, new.gimbal_pitch_deg, new.locked) == (heading_deg, 5.0, False)
+        inside = [(low <= p).all() and (p <= high).all() for p in (place, 2.0 * corner - place)]
+        assert inside[0] or not inside[1], "there was room on the other side"
+
+
+def test_the_first_viewpoint_stands_above_home_inside_the_airspace() -> None:
+    site = roof().site
+    x, y, z = above_home(site).position_enu_m
+    assert (x, y) == site.home_enu_m[:2]
+    assert site.airspace.min_enu_m[2] <= z <= site.airspace.max_enu_m[2]
+
+
+def test_a_plan_fits_a_site_that_was_edited_and_not_one_that_was_replaced() -> None:
+    site = roof()
+    moved = replace(site, site=replace(site.site, home_enu_m=(1.0, -30.0, 0.0)))
+    assert has_same_panels(site, moved)
+    assert not has_same_panels(site, canyon())
+    assert not has_same_panels(site, None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -65,4 +66,6 @@ def run(options: argparse.Namespace) -> int:
         print_json({"file": str(options.out), "flyable": is_flyable, "findings": n_findings})
     else:
         print(options.out)
+        if not is_flyable:
+            print("the plan is NOT ready to fly: the brief lists why", file=sys.stderr)
     return 0

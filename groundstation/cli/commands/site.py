@@ -109,10 +109,12 @@ def _triple(text: str) -> tuple[Number3, Number3, Number3]:
 def run(options: argparse.Namespace) -> int:
     """Import a site; returns the exit status."""
     from groundstation.cli.console import counted, named_like, print_json, print_next, run_job
+    from groundstation.services.project_file import check_not_index
     from planning.json_file import check_output
     from planning.site_import.importer import import_site
     from planning.site_import.output import write_imported_site
 
+    check_not_index(options.out)
     check_output(options.out, [options.file])
     started = time.perf_counter()
     import_options = _import_options(options)

@@ -67,6 +67,8 @@ class ComparisonView(QWidget):
 
     def set_comparison(self, comparison: MissionComparison | None, names: str = "") -> None:
         """Show a comparison with the files of these names; None for none."""
+        if comparison is self._comparison:
+            return
         self._comparison, self._names = comparison, names
         self._fill()
 
@@ -142,20 +144,24 @@ class ComparisonView(QWidget):
                     self._names, len(found.photos)
                 )
         else:
-            role = "error"
-            text = self.tr(
-                "{0} is NOT the plan: {1} photos the same, {2} changed, {3} missing, {4} not planned, {5} out of order"
-            ).format(
-                self._names,
-                *(found.count(difference) for difference in Difference),
-                found.n_out_of_order,
-            )
+            role, text = self._objection(found)
             if found.path_deviation_m is not None:
                 away = length_unit(self._units).text(found.path_deviation_m)
                 text = self.tr("{0}; the paths are up to {1} apart.").format(text, away)
         self._answer.setProperty("role", role)
         self._answer.style().polish(self._answer)
         self._answer.setText(text)
+
+    def _objection(self, found: MissionComparison) -> tuple[str, str]:
+        """How the files differ from the plan, and the role of that text."""
+        if found.has_the_photos:
+            text = self.tr("{0} takes all {1} photos of the plan, but flies otherwise: {2} out of order")
+            return "warning", text.format(self._names, len(found.photos), found.n_out_of_order)
+        text = self.tr(
+            "{0} is NOT the plan: {1} photos the same, {2} changed, {3} missing, {4} not planned, {5} out of order"
+        )
+        counts = (found.count(difference) for difference in Difference)
+        return "error", text.format(self._names, *counts, found.n_out_of_order)
 
     def _row_picked(self, index: QModelIndex) -> None:
         viewpoint_id = index.siblingAtColumn(0).data(ID_ROLE)

@@ -147,7 +147,7 @@ class ExportDialog(QDialog):
         if prepared.encoded is None:
             self._say("error", self.tr("Cannot be exported: {0}").format(prepared.refusal))
         elif not prepared.can_be_written:
-            self._say("error", self.tr("An aircraft would refuse these files; see the errors."))
+            self._say("error", self.tr("Not to be written like this: see the errors."))
         elif any(found.severity is Severity.WARNING for found in prepared.findings):
             self._say(
                 "warning", self.tr("Ready to be written, files: {0}. Read the warnings.").format(prepared.n_files)

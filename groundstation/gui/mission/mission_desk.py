@@ -89,7 +89,7 @@ class MissionDesk(QObject):
                     name, len(plan.viewpoints), len(plan.sorties)
                 ),
             )
-            self._say_findings(findings)
+            self._say_findings(name, findings)
 
         self._workspace.start(self.tr("Import mission"), work, done)
 
@@ -106,14 +106,15 @@ class MissionDesk(QObject):
 
         def done(comparison: MissionComparison) -> None:
             self.compared.emit(comparison, names)
-            self._say_findings(comparison.findings)
+            self._say_findings(names, comparison.findings)
 
         self._workspace.start(self.tr("Compare"), work, done)
 
-    def _say_findings(self, findings: Sequence[Finding]) -> None:
-        told = [found for found in findings if found.severity is not Severity.OK]
-        for found in told[:MAX_SAID]:
+    def _say_findings(self, names: str, findings: Sequence[Finding]) -> None:
+        """Say what there is to say of the files of these names; what holds of several sorties once."""
+        told = {found.message: found for found in reversed(findings) if found.severity is not Severity.OK}
+        for found in list(reversed(told.values()))[:MAX_SAID]:
             item = item_of_place(found.place, self._workspace.document)
-            self._workspace.say(found.severity, found.message, item)
+            self._workspace.say(found.severity, self.tr("{0}: {1}").format(names, found.message), item)
         if len(told) > MAX_SAID:
             self._workspace.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(told) - MAX_SAID))

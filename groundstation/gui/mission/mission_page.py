@@ -6,29 +6,28 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtGui import QAction, QKeySequence
-from PySide6.QtWidgets import QFileDialog, QLabel, QPushButton, QStackedWidget, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.map_view import MapView
-from groundstation.gui.mission.comparison_view import ComparisonView
 from groundstation.gui.mission.export_dialog import ExportDialog
 from groundstation.gui.mission.findings_view import FindingsView
 from groundstation.gui.mission.mission_desk import MissionDesk
-from groundstation.gui.mission.profile_chart import ProfileChart
+from groundstation.gui.mission.mission_lists import MissionLists
 from groundstation.gui.mission.sortie_table import SortieTable
-from groundstation.gui.mission.waypoint_table import WaypointTable
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item
-from groundstation.services.mission_compare import MissionComparison
+from groundstation.services.finding_texts import duration_text
+from groundstation.services.mission_files import in_order_of_sorties
 from groundstation.services.places import item_of_place
 from groundstation.services.preflight import Preflight
-from groundstation.services.profiles import height_limits, plan_profiles
-from groundstation.services.units import UnitSystem, minutes_text
-from groundstation.services.waypoints import waypoint_rows
+from groundstation.services.units import UnitSystem
 from planning.findings import Severity
 
 REST_MS = 300
 """Without changes for so long, a plan is checked."""
+
+NO_BREAK_SPACE = "\u00a0"
 
 READABLE = "*.kmz *.plan *.waypoints *.txt *.kml *.csv"
 
@@ -44,19 +43,17 @@ class MissionPage(QObject):
         self._preflight: Preflight | None = None
         self._folder: Path | None = None
         self.desk = MissionDesk(workspace, self)
-        self.findings, self.waypoints = FindingsView(), WaypointTable()
-        self.profile, self.comparison, self.sorties = ProfileChart(), ComparisonView(), SortieTable()
+        self.findings, self.lists, self.sorties = FindingsView(), MissionLists(), SortieTable()
         self._title, self._summary = QLabel(), QLabel()
         self._make_actions()
         self.left = self._make_left()
         self.right: QWidget | None = self.findings
-        self.lists = self._make_lists()
         self.bottom: QWidget | None = self.lists
         self._check_soon = QTimer(self, interval=REST_MS, singleShot=True)
         self._check_soon.timeout.connect(self.desk.check)
         self._connect()
         self._show_units(workspace.units)
-        self._show_document()
+        self._say_summary()
 
     # A tab
 
@@ -125,7 +122,7 @@ class MissionPage(QObject):
         )
         if names:
             self._folder = Path(names[0]).parent
-        return tuple(Path(name) for name in names)
+        return in_order_of_sorties([Path(name) for name in names])
 
     def _export_folder(self) -> Path:
         """Where files went last; else the project's folder for missions."""
@@ -185,31 +182,15 @@ class MissionPage(QObject):
             layout.addWidget(button)
         return left
 
-    def _make_lists(self) -> QTabWidget:
-        """Waypoints, profile and comparison; what each lets choose stands beside the tabs, where it takes no height."""
-        lists, bars = QTabWidget(), QStackedWidget()
-        for view, title in (
-            (self.waypoints, self.tr("Waypoints")),
-            (self.profile, self.tr("Profile")),
-            (self.comparison, self.tr("Comparison")),
-        ):
-            lists.addTab(view, title)
-            bars.addWidget(view.bar)
-        lists.setCornerWidget(bars)
-        lists.currentChanged.connect(bars.setCurrentIndex)
-        return lists
-
     def _connect(self) -> None:
         workspace = self._workspace
         self.findings.checkRequested.connect(self.desk.check)
         self.findings.placePicked.connect(self._go_to)
-        self.waypoints.picked.connect(workspace.select)
-        self.waypoints.activated.connect(workspace.jump_to)
-        self.profile.picked.connect(workspace.jump_to)
-        self.comparison.picked.connect(workspace.jump_to)
+        self.lists.picked.connect(workspace.select)
+        self.lists.activated.connect(workspace.jump_to)
         self.sorties.picked.connect(workspace.jump_to)
         self.desk.checked.connect(self._take_preflight)
-        self.desk.compared.connect(self._show_comparison)
+        self.desk.compared.connect(self.lists.show_comparison)
         workspace.documentChanged.connect(self._document_changed)
         workspace.selectionChanged.connect(self._show_selection)
         workspace.unitsChanged.connect(self._show_units)
@@ -229,11 +210,7 @@ class MissionPage(QObject):
         self._drawn = document
         if is_new:
             self.sorties.set_plan(plan)
-            self.waypoints.set_rows(() if plan is None else waypoint_rows(plan, site_model.site.origin))
-            self.profile.set_curves(
-                () if plan is None else plan_profiles(plan), None if site_model is None else height_limits(site_model)
-            )
-            self.comparison.set_comparison(None)
+            self.lists.set_plan(plan, site_model)
             self._say_summary()
         self._show_freshness()
         if self._is_shown and plan is not None and not self._is_fresh():
@@ -243,7 +220,9 @@ class MissionPage(QObject):
         return self._preflight is not None and self._preflight.is_of(self.desk.plan, self._workspace.document.site)
 
     def _show_freshness(self) -> None:
-        """Say whether the findings are of the plan as it is, and what can be done with it."""
+        """Say whether the findings are of the plan as it is, and what can be done with it; hidden tabs wait."""
+        if not self._is_shown:
+            return
         plan, is_checking = self.desk.plan, self.desk.is_checking
         if plan is None:
             self._preflight = None
@@ -263,7 +242,7 @@ class MissionPage(QObject):
         self._preflight = found
         if self._is_fresh():
             self.findings.set_findings(found.findings)
-            self.waypoints.set_panels_covered(found.panels_covered)
+            self.lists.set_panels_covered(found.panels_covered)
         elif self._is_shown:
             self._check_soon.start()
         self._show_freshness()
@@ -279,14 +258,13 @@ class MissionPage(QObject):
         else:
             self._title.setText(document.current.title)
             self._summary.setText(
-                self.tr("{0}, photos: {1}, batteries: {2}, {3} min").format(
-                    plan.aircraft.name, len(plan.viewpoints), len(plan.sorties), minutes_text(plan.duration_s)
+                self.tr("{0}, photos: {1}, batteries: {2}, {3}").format(
+                    plan.aircraft.name,
+                    len(plan.viewpoints),
+                    len(plan.sorties),
+                    duration_text(plan.duration_s).replace(" ", NO_BREAK_SPACE),
                 )
             )
-
-    def _show_comparison(self, comparison: MissionComparison, names: str) -> None:
-        self.comparison.set_comparison(comparison, names)
-        self.lists.setCurrentWidget(self.comparison)
 
     def _go_to(self, place: str) -> None:
         item = item_of_place(place, self._workspace.document)
@@ -297,9 +275,8 @@ class MissionPage(QObject):
 
     def _show_selection(self, item: Item | None) -> None:
         if self._is_shown:
-            self.waypoints.set_selection(item)
-            self.profile.set_selection(item)
+            self.lists.set_selection(item)
 
     def _show_units(self, units: UnitSystem) -> None:
-        for widget in (self.findings, self.waypoints, self.profile, self.comparison, self.sorties):
+        for widget in (self.findings, self.lists, self.sorties):
             widget.set_units(units)

@@ -151,7 +151,8 @@ class ProfileChart(QWidget):
                 symbolPen=found.base,
                 symbolBrush=sortie_colour(curve.sortie),
             )
-            self._speed.plot(x, curve.speed_m_s * speed.factor, pen=pen)
+            # Stop and go at hundreds of photos: thick lines would run into one another.
+            self._speed.plot(x, curve.speed_m_s * speed.factor, pen=pg.mkPen(sortie_colour(curve.sortie), width=1))
             # Room for the names of the lines; a ceiling far above would flatten what is flown.
             lowest = min(0.0, 0.0 if self._limits is None else self._limits.ground_m)
             room = 0.25 * max(float(curve.height_m.max()) - lowest, 5.0)

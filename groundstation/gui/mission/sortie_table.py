@@ -33,7 +33,9 @@ class SortieTable(QTableView):
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.verticalHeader().hide()
-        self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        # Large type leaves no room for columns of equal width.
+        self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.horizontalHeader().setStretchLastSection(True)
         self.setAccessibleName(self.tr("Sorties"))
         self.clicked.connect(self._row_picked)
 
@@ -55,11 +57,11 @@ class SortieTable(QTableView):
             self.tr("Photos"),
             self.tr("Time"),
             unit.symbol,
-            self.tr("Battery"),
+            self.tr("Used"),
         ]
         self._rows.setHorizontalHeaderLabels(titles)
-        self.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
         self._rows.horizontalHeaderItem(3).setToolTip(self.tr("Length of the flight"))
+        self._rows.horizontalHeaderItem(4).setToolTip(self.tr("Part of the battery's endurance that the sortie takes"))
         plan = self._plan
         for number, sortie in enumerate(() if plan is None else plan.sorties, 1):
             texts = [
@@ -73,7 +75,6 @@ class SortieTable(QTableView):
             for cell in cells:
                 cell.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
             cells[0].setForeground(sortie_colour(number))
-            cells[-1].setToolTip(self.tr("Part of the endurance that the sortie takes"))
             self._rows.appendRow(cells)
 
     def _row_picked(self, index: QModelIndex) -> None:

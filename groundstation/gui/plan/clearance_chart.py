@@ -93,7 +93,7 @@ class ClearanceChart(QWidget):
     def _dress(self) -> None:
         found, unit = colours(), length_unit(self._units)
         self._plot.setBackground(found.base)
-        left, bottom = self.tr("clearance in {0}"), self.tr("distance flown in {0}")
+        left, bottom = self.tr("in {0}"), self.tr("distance flown in {0}")
         for side, text in (("left", left), ("bottom", bottom)):
             axis = self._plot.getAxis(side)
             axis.setLabel(text.format(unit.symbol), color=found.text)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from groundstation.services.effects import EffectChoice
@@ -17,9 +18,12 @@ class EffectsPanel(QWidget):
     -------
     wishChanged(str, str)
         Name of the effect, and auto, on or off.
+    lookedAt()
+        It came into sight.
     """
 
     wishChanged = Signal(str, str)  # noqa: N815  (Qt's own way of naming)
+    lookedAt = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -44,6 +48,11 @@ class EffectsPanel(QWidget):
             self._cards[name].set_choice(choice)
             self._cards[name].setVisible(True)
         self._empty.setVisible(not choices)
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Somebody looks."""
+        super().showEvent(event)
+        self.lookedAt.emit()
 
     def card(self, name: str) -> _EffectCard:
         """The card of one effect."""

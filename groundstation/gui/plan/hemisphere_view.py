@@ -22,11 +22,8 @@ from planning.insight.sections import SectionState
 MARGIN_PX = 26
 """Around the disc, for the angles at its rim."""
 
-MARK_PX = 2.5
-"""Radius of the mark of a view: dozens of them must leave the numbers readable."""
-
-TEXT_STEP_DEG = 15.0
-"""Finer sections are too small for a number."""
+MARK_PX, SMALL_MARK_PX, MANY_MARKS = 2.5, 1.6, 40
+"""Radius of the mark of a view, and where there are many: the sections' numbers must stay readable."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +116,9 @@ class HemisphereView(QWidget):
             return
         for number, section in enumerate(self._sections):
             self._paint_section(painter, number, section)
+        self._paint_marks(painter)
+        for number, section in enumerate(self._sections):
+            self._paint_number(painter, number, section)
         painter.setPen(QColor(found.muted))
         _, radius = self._disc()
         for phi in range(0, 360, 90):
@@ -126,12 +126,18 @@ class HemisphereView(QWidget):
             painter.drawText(QRectF(place.x() - 20, place.y() - 10, 40, 20), Qt.AlignmentFlag.AlignCenter, f"{phi}°")
         if self._picked is not None:
             painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.setPen(QPen(QColor(found.text), 3))
-            painter.drawPolygon(self._outline(self._picked))
-        painter.setPen(QPen(QColor(found.base), 1))
+            # Dark on light on whatever colour the section has.
+            for colour, width_px in ((found.base, 5), (found.text, 2)):
+                painter.setPen(QPen(QColor(colour), width_px))
+                painter.drawPolygon(self._outline(self._picked))
+
+    def _paint_marks(self, painter: QPainter) -> None:
+        found = colours()
+        size_px = MARK_PX if len(self._marks) <= MANY_MARKS else SMALL_MARK_PX
+        painter.setPen(QPen(QColor(found.base), 1 if size_px == MARK_PX else 0.5))
         painter.setBrush(QColor(found.text))
         for theta_deg, phi_deg in self._marks:
-            painter.drawEllipse(self.place_of(theta_deg, phi_deg), MARK_PX, MARK_PX)
+            painter.drawEllipse(self.place_of(theta_deg, phi_deg), size_px, size_px)
 
     def _paint_section(self, painter: QPainter, number: int, section: ShownSection) -> None:
         found = colours()
@@ -144,12 +150,18 @@ class HemisphereView(QWidget):
         painter.setPen(QPen(QColor(found.base), 1))
         painter.setBrush(QBrush(QColor(colour), pattern))
         painter.drawPolygon(self._outline(number))
-        if section.n_views and self._step_deg >= TEXT_STEP_DEG:
-            ring, sector = int(self._shapes.ring[number]), int(self._shapes.sector[number])
-            place = self.place_of((ring + 0.55) * self._step_deg, (sector + 0.5) * self._step_deg)
-            painter.setPen(QColor("#ffffff"))
-            box = QRectF(place.x() - 14, place.y() - 10, 28, 20)
-            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, str(section.n_views))
+
+    def _paint_number(self, painter: QPainter, number: int, section: ShownSection) -> None:
+        """How many views see a section, where the number has room in it."""
+        theta_deg = (int(self._shapes.ring[number]) + 0.55) * self._step_deg
+        text, (_, radius) = str(section.n_views), self._disc()
+        width_px = math.radians(self._step_deg) * radius * theta_deg / 90.0
+        if not section.n_views or width_px < painter.fontMetrics().horizontalAdvance(text):
+            return
+        place = self.place_of(theta_deg, (int(self._shapes.sector[number]) + 0.5) * self._step_deg)
+        box = QRectF(place.x() - 14, place.y() - 10, 28, 20)
+        painter.setPen(QColor("#ffffff"))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Pick a section."""

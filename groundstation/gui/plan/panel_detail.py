@@ -27,7 +27,7 @@ class PanelDetail(QWidget):
         super().__init__(parent)
         self._insight: PlanInsight | None = None
         self._plan: Plan | None = None
-        self._panel: int | None = None
+        self._panel_id: str | None = None
         self._section: int | None = None
         self._units = UnitSystem.METRIC
         self._title, self._words, self._section_words = QLabel(), QLabel(), QLabel()
@@ -55,16 +55,15 @@ class PanelDetail(QWidget):
 
     def set_plan(self, insight: PlanInsight | None, plan: Plan | None) -> None:
         """Show the panel as another plan sees it."""
+        if insight is not None and self._insight is not None and insight.grid != self._insight.grid:
+            self._section = None
         self._insight, self._plan = insight, plan
         self._show()
 
     def set_panel(self, panel_id: str | None) -> None:
-        """Show another panel; None keeps the last one."""
-        if panel_id is None or self._insight is None or panel_id not in self._insight.panel_ids:
-            return
-        panel = self._insight.panel_ids.index(panel_id)
-        if panel != self._panel:
-            self._panel, self._section = panel, None
+        """Show another panel, also once a plan that sees it is given; None for none."""
+        if panel_id != self._panel_id:
+            self._panel_id, self._section = panel_id, None
             self._show()
 
     def set_units(self, units: UnitSystem) -> None:
@@ -74,9 +73,15 @@ class PanelDetail(QWidget):
 
     def panel_id(self) -> str | None:
         """The panel that is shown."""
-        if self._insight is None or self._panel is None or self._panel >= len(self._insight.panel_ids):
+        return None if self._panel is None else self._panel_id
+
+    @property
+    def _panel(self) -> int | None:
+        """Number of the panel in the insight."""
+        insight = self._insight
+        if insight is None or self._panel_id is None or self._panel_id not in insight.panel_ids:
             return None
-        return self._insight.panel_ids[self._panel]
+        return insight.panel_ids.index(self._panel_id)
 
     def pick_section(self, section: int | None) -> None:
         """Say who sees a section, or why nobody can."""
@@ -93,15 +98,16 @@ class PanelDetail(QWidget):
         return self._hemisphere
 
     def _show(self) -> None:
-        insight, panel_id = self._insight, self.panel_id()
-        if insight is None or panel_id is None or self._panel is None:
-            self._title.setText(self.tr("No panel selected"))
-            self._words.clear()
+        insight, panel = self._insight, self._panel
+        if insight is None or panel is None:
+            is_waiting = insight is None and self._panel_id is not None
+            title = self.tr("Panel {0}").format(self._panel_id) if is_waiting else self.tr("No panel selected")
+            self._title.setText(title)
+            self._words.setText(self.tr("What a plan covers of it stands here.") if is_waiting else "")
             self._hemisphere.set_sections(30.0, ())
             self._show_section()
             return
-        panel = self._panel
-        self._title.setText(self.tr("Panel {0}").format(panel_id))
+        self._title.setText(self.tr("Panel {0}").format(self._panel_id))
         finest_m = float(insight.sampling.best_m[panel])
         covered, possible = int(insight.covered_per_panel[panel]), int(insight.possible_per_panel[panel])
         words = self.tr("{0} of {1} sections covered, {2} possible").format(covered, insight.grid.n_sections, possible)
@@ -148,7 +154,7 @@ class PanelDetail(QWidget):
     def _state_text(self, state: SectionState, n_views: int) -> str:
         match state:
             case SectionState.COVERED:
-                return self.tr("covered by {0} views").format(n_views)
+                return self.tr("covered; views that see it: {0}").format(n_views)
             case SectionState.MISSED:
                 return self.tr("could be covered, but no view of this plan does")
             case SectionState.UNREACHABLE:
@@ -160,7 +166,8 @@ class PanelDetail(QWidget):
         insight, panel, section = self._insight, self._panel, self._section
         self._views.clear()
         if insight is None or panel is None or section is None:
-            self._section_words.setText("" if insight is None else self.tr("Click a section to see its views."))
+            has_panel = insight is not None and panel is not None
+            self._section_words.setText(self.tr("Click a section to see its views.") if has_panel else "")
             return
         state = insight.state(panel, section)
         words = self._state_text(state, int(insight.counts[panel, section]))

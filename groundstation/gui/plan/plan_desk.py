@@ -1,4 +1,4 @@
-"""What happens on the Plan tab: planning as a job, plans taken in hand, edits by hand, effects. It shows nothing."""
+"""What happens on the Plan tab: planning as a job, plans taken in hand, edits by hand. It shows nothing."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind, PlanEntry
-from groundstation.services.effects import planning_effects
-from groundstation.services.jobs import Job, JobContext
+from groundstation.services.jobs import Job, JobContext, JobState
 from groundstation.services.plan_bench import Bench, Groundwork, PlanInHand, take_in_hand
-from groundstation.services.plan_editing import with_edited_plan
+from groundstation.services.plan_editing import KEEPING_METHODS, has_same_panels, with_edited_plan
 from groundstation.services.planning import plan_document_site
 from planning import revision as edits
 from planning.errors import GroundStationError
@@ -23,9 +22,7 @@ from planning.plan_file import read_plan
 from planning.planner import Planned
 from planning.request import PlanRequest
 from planning.revision import Revision
-
-EFFECTS_AFTER_MS = 300
-"""Wishes change several times in a row while somebody types; the scene is looked at when that is over."""
+from planning.site import SiteModel
 
 
 class PlanDesk(QObject):
@@ -37,7 +34,6 @@ class PlanDesk(QObject):
         With the time budget in seconds.
     inHandChanged(PlanInHand or None)
         The current plan can be looked at and edited; None while it is not in hand, or there is none.
-    effectsChanged(tuple of EffectChoice)
     refused(str)
         Why an edit was not carried out.
     """
@@ -45,7 +41,6 @@ class PlanDesk(QObject):
     planningStarted = Signal(object, float)  # noqa: N815  (Qt's own way of naming)
     planningEnded = Signal()  # noqa: N815
     inHandChanged = Signal(object)  # noqa: N815
-    effectsChanged = Signal(object)  # noqa: N815
     refused = Signal(str)
 
     def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
@@ -55,14 +50,9 @@ class PlanDesk(QObject):
         self._in_hand: PlanInHand | None = None
         self._planning: Job[Planned] | None = None
         self._taking: Job[PlanInHand] | None = None
-        self._looking: Job[object] | None = None
-        self._effects_timer = QTimer(self)
-        self._effects_timer.setSingleShot(True)
-        self._effects_timer.setInterval(EFFECTS_AFTER_MS)
-        self._effects_timer.timeout.connect(self._look_at_effects)
+        self._not_taken = ""
         workspace.documentChanged.connect(self._document_changed)
         self._take_current()
-        self._effects_timer.start()
 
     @property
     def in_hand(self) -> PlanInHand | None:
@@ -73,6 +63,11 @@ class PlanDesk(QObject):
     def is_planning(self) -> bool:
         """Whether a plan is being made, or waits to be."""
         return self._planning is not None
+
+    @property
+    def why_not_in_hand(self) -> str:
+        """Why the current plan could not be taken in hand; empty while it is, is about to be, or there is none."""
+        return self._not_taken
 
     def set_request(self, request: PlanRequest) -> None:
         """What the next plan is wanted to be."""
@@ -86,6 +81,11 @@ class PlanDesk(QObject):
             return
         current = document.current
         locked = () if current is None else tuple(view for view in current.plan.viewpoints if view.locked)
+        if locked and document.request.method not in KEEPING_METHODS:
+            names = ", ".join(view.id for view in locked)
+            text = self.tr("Only “Greedy with proof” can keep viewpoints. Choose it, or release those kept: {0}")
+            self.refused.emit(text.format(names))
+            return
         try:
             request = replace(document.request, locked=locked)
         except ValueError as error:
@@ -99,7 +99,7 @@ class PlanDesk(QObject):
             )
 
         def done(planned: Planned) -> None:
-            self._planned(planned, request)
+            self._planned(planned, request, site)
 
         job = self._workspace.start(self.tr("Plan"), work, done, lambda _error: self._planning_over())
         self._planning = job
@@ -111,12 +111,16 @@ class PlanDesk(QObject):
             self._planning.stop()
 
     def job_ended(self) -> None:
-        """A job ended; when it was the planning one and nobody else said so, it was cancelled."""
-        if self._planning is not None and self._planning not in self._workspace.jobs():
+        """A job ended: somebody may have cancelled one of these."""
+        if self._planning is not None and self._planning.state is JobState.CANCELLED:
             self._planning_over()
+        if self._taking is not None and self._taking.state is JobState.CANCELLED:
+            self._give_up(self.tr("It was not looked at. Choose it in the list of plans to do so."))
 
     def choose(self, plan_id: str) -> None:
-        """Look at another plan."""
+        """Look at another plan, or again at one that could not be taken in hand."""
+        if plan_id == self._workspace.document.current_plan_id and self._not_taken:
+            self._take_current()
         if plan_id != self._workspace.document.current_plan_id:
             self._workspace.amend(replace(self._workspace.document, current_plan_id=plan_id))
 
@@ -145,13 +149,17 @@ class PlanDesk(QObject):
 
     def set_viewpoint(self, viewpoint: Viewpoint) -> None:
         """Move, turn, lock or unlock the viewpoint with this identifier, as it differs."""
-        in_hand = self._in_hand
-        old = None if in_hand is None else in_hand.revision.viewpoint(viewpoint.id)
-        if old is None or old == viewpoint:
+        if self._in_hand is None:
+            self._refuse_all()
+            return
+        old = self._in_hand.revision.viewpoint(viewpoint.id)
+        if old == viewpoint:
             return
         if old.locked != viewpoint.locked:
             label = self.tr("Keep {0}") if viewpoint.locked else self.tr("Release {0}")
             self._edit(label, viewpoint.id, lambda revision: edits.lock(revision, [viewpoint.id], viewpoint.locked))
+            return
+        if self._refuse_kept(viewpoint.id):
             return
         pose = viewpoint.position_enu_m, viewpoint.heading_deg, viewpoint.gimbal_pitch_deg
         is_turn = old.position_enu_m == viewpoint.position_enu_m
@@ -162,6 +170,7 @@ class PlanDesk(QObject):
         """Add a viewpoint where and as another one looks; it gets an identifier of its own, and is selected."""
         in_hand = self._in_hand
         if in_hand is None:
+            self._refuse_all()
             return
         new_id = edits.next_id(in_hand.plan)
         pose = viewpoint.position_enu_m, viewpoint.heading_deg, viewpoint.gimbal_pitch_deg
@@ -170,7 +179,8 @@ class PlanDesk(QObject):
 
     def delete_viewpoint(self, viewpoint_id: str) -> None:
         """Delete a viewpoint."""
-        self._edit(self.tr("Delete {0}"), viewpoint_id, lambda revision: edits.delete(revision, [viewpoint_id]))
+        if not self._refuse_kept(viewpoint_id):
+            self._edit(self.tr("Delete {0}"), viewpoint_id, lambda revision: edits.delete(revision, [viewpoint_id]))
 
     def aim(self, viewpoint_id: str, panel_id: str) -> None:
         """Turn a viewpoint towards a panel."""
@@ -180,22 +190,13 @@ class PlanDesk(QObject):
             heading, pitch = edits.aim_at(revision, view.position_enu_m, panel_id)
             return edits.move(revision, viewpoint_id, None, heading, pitch)
 
-        self._edit(self.tr("Aim {0}"), viewpoint_id, turned)
-
-    def preview(self, viewpoint: Viewpoint) -> PlanInHand | None:
-        """What moving a viewpoint would give, without doing it; None where it cannot be done."""
-        in_hand = self._in_hand
-        if in_hand is None:
-            return None
-        pose = viewpoint.position_enu_m, viewpoint.heading_deg, viewpoint.gimbal_pitch_deg
-        try:
-            return in_hand.with_revision(edits.move(in_hand.revision, viewpoint.id, *pose))
-        except (GroundStationError, ValueError):
-            return None
+        if not self._refuse_kept(viewpoint_id):
+            self._edit(self.tr("Aim {0}"), viewpoint_id, turned)
 
     def _edit(self, label: str, viewpoint_id: str, edit: Callable[[Revision], Revision]) -> bool:
         in_hand, document = self._in_hand, self._workspace.document
         if in_hand is None or document.current is None:
+            self._refuse_all()
             return False
         try:
             edited = in_hand.with_revision(edit(in_hand.revision))
@@ -206,9 +207,32 @@ class PlanDesk(QObject):
         self._workspace.change(label.format(viewpoint_id), with_edited_plan(document, edited.revision))
         return True
 
-    def _planned(self, planned: Planned, request: PlanRequest) -> None:
+    def _refuse_kept(self, viewpoint_id: str) -> bool:
+        """Whether a viewpoint is to be left alone; says so, in the words of the window."""
+        entry = self._workspace.document.current
+        viewpoint = None if entry is None else entry.viewpoint(viewpoint_id)
+        if viewpoint is None or not viewpoint.locked:
+            return False
+        self.refused.emit(
+            self.tr("{0} stays as it is: switch off “Keep when planning again” before you change it.").format(
+                viewpoint_id
+            )
+        )
+        return True
+
+    def _refuse_all(self) -> None:
+        if self._workspace.document.current is None:
+            self.refused.emit(self.tr("There is no plan to change; plan a flight or open a plan first."))
+        else:
+            self.refused.emit(self._not_taken or self.tr("The plan is still being looked at; try again in a moment."))
+
+    def _planned(self, planned: Planned, request: PlanRequest, site: SiteModel) -> None:
         self._planning_over()
         document, plan = self._workspace.document, planned.plan
+        if not has_same_panels(site, document.site):
+            text = self.tr("The plan is not kept: it was made for “{0}”, which is no longer open.")
+            self._workspace.say(Severity.WARNING, text.format(site.site.name))
+            return
         self._bench.keep_groundwork(Groundwork(planned.prepared))
         title = self.tr("{0}, {1} views").format(plan.method, len(plan.viewpoints))
         entry = PlanEntry(document.free_plan_id(), title, plan, request, planned.bound_for_views)
@@ -232,8 +256,6 @@ class PlanDesk(QObject):
         plan_after = None if after.current is None else after.current.plan
         if plan_before is not plan_after or before.site is not after.site:
             self._take_current()
-        if before.site is not after.site or before.request != after.request or plan_before is not plan_after:
-            self._effects_timer.start()
 
     def _take_current(self) -> None:
         """Take the current plan in hand: at once where it was before, else by a job."""
@@ -242,6 +264,7 @@ class PlanDesk(QObject):
         if self._taking is not None:
             self._workspace.cancel(self._taking)
             self._taking = None
+        self._not_taken = ""
         if entry is None or site is None:
             self._set_in_hand(None)
             return
@@ -255,39 +278,25 @@ class PlanDesk(QObject):
         def taken(in_hand: PlanInHand) -> None:
             self._taking = None
             self._bench.keep(plan, in_hand)
-            now = self._workspace.document
-            if now.current is not None and now.current.plan is plan:
+            if self._is_current(plan):
                 self._set_in_hand(in_hand)
 
         self._taking = self._workspace.start(
             self.tr("Look at the plan"),
             lambda context: take_in_hand(site, plan, groundwork, context),
             taken,
+            lambda error: self._give_up(str(error)) if self._is_current(plan) else None,
         )
+
+    def _is_current(self, plan: Plan) -> bool:
+        current = self._workspace.document.current
+        return current is not None and current.plan is plan
+
+    def _give_up(self, why: str) -> None:
+        self._taking, self._not_taken = None, why
+        self.inHandChanged.emit(None)
 
     def _set_in_hand(self, in_hand: PlanInHand | None) -> None:
         if in_hand is not self._in_hand:
             self._in_hand = in_hand
             self.inHandChanged.emit(in_hand)
-
-    def _look_at_effects(self) -> None:
-        document = self._workspace.document
-        site, request = document.site, document.request
-        plan = None if document.current is None else document.current.plan
-        if self._looking is not None:
-            self._workspace.cancel(self._looking)
-            self._looking = None
-        if site is None:
-            self.effectsChanged.emit(())
-            return
-        if self._planning is not None:
-            self._effects_timer.start()  # it would wait behind the plan
-            return
-
-        def found(choices: object) -> None:
-            self._looking = None
-            self.effectsChanged.emit(choices)
-
-        self._looking = self._workspace.start(
-            self.tr("Look at the scene"), lambda context: planning_effects(site, request, plan, context), found
-        )

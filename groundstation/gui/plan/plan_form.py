@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QFileDialog,
     QFormLayout,
     QLabel,
     QSpinBox,
@@ -19,8 +17,9 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.inputs import LengthBox, NumberBox, QuantityBox, SpeedBox
-from groundstation.services.units import UnitSystem, sampling_unit
-from planning.catalogue import Profile, profile, profiles
+from groundstation.gui.plan.aircraft_box import AircraftBox
+from groundstation.services.units import UnitSystem, length_unit, sampling_unit
+from planning.catalogue import profile
 from planning.errors import GroundStationError
 from planning.methods import METHODS
 from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, PlanRequest
@@ -31,6 +30,9 @@ SECTION_STEPS_DEG = (30, 15, 10, 5)
 
 COARSEST_GSD_M = (0.0001, 0.5)
 """From microscopes to satellites: nobody asks for less or more."""
+
+OFFERED_RANGE = 3.0
+"""Where no pixel size is asked for, the one at so many safety distances is offered."""
 
 
 class PlanForm(QWidget):
@@ -47,6 +49,7 @@ class PlanForm(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._value = PlanRequest()
+        self._units = UnitSystem.METRIC
         self._make_boxes()
         self._wrong = QLabel()
         self._wrong.setProperty("role", "error")
@@ -54,7 +57,8 @@ class PlanForm(QWidget):
         self._wrong.setVisible(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 8, 8, 8)
-        layout.addLayout(self._rows(self._first_rows()))
+        self._first = self._rows(self._first_rows())
+        layout.addLayout(self._first)
         self._more = QToolButton()
         self._more.setCheckable(True)
         self._more.setText(self.tr("More settings"))
@@ -69,10 +73,7 @@ class PlanForm(QWidget):
         self._connect()
 
     def _make_boxes(self) -> None:
-        self._profile = QComboBox()
-        for identifier, found in sorted(profiles().items()):
-            self._profile.addItem(_profile_text(found), identifier)
-        self._profile.addItem(self.tr("From a file ..."), None)
+        self.aircraft = AircraftBox()
         self._method = QComboBox()
         for method in METHODS:
             self._method.addItem(self._method_text(method), method)
@@ -102,7 +103,7 @@ class PlanForm(QWidget):
     def _method_text(self, method: str) -> str:
         texts = {
             "greedy": self.tr("Greedy with proof"),
-            "pso": self.tr("Particle swarm (the paper's)"),
+            "pso": self.tr("Particle swarm (paper)"),
             "noto": self.tr("Nap-of-the-object grid"),
             "orbit": self.tr("Orbits"),
         }
@@ -110,7 +111,7 @@ class PlanForm(QWidget):
 
     def _first_rows(self) -> tuple[tuple[str, QWidget], ...]:
         return (
-            (self.tr("Aircraft"), self._profile),
+            (self.tr("Aircraft"), self.aircraft),
             (self.tr("Plan for"), self._goal),
             (self.tr("Coverage"), self._coverage),
             (self.tr("Views"), self._views),
@@ -151,7 +152,8 @@ class PlanForm(QWidget):
     def _connect(self) -> None:
         for box in (self._method, self._goal, self._step, self._precision):
             box.currentIndexChanged.connect(self._edited)
-        self._profile.currentIndexChanged.connect(self._profile_chosen)
+        self.aircraft.valueChanged.connect(self._edited)
+        self.aircraft.refused.connect(self._say_wrong)
         for spin in (
             self._coverage,
             self._views,
@@ -176,7 +178,7 @@ class PlanForm(QWidget):
         """Show a request."""
         blockers = [QSignalBlocker(box) for box in self.findChildren(QWidget)]
         self._value = request
-        self._show_profile(request.profile_id)
+        wrong = self._show_aircraft(request)
         self._method.setCurrentIndex(self._method.findData(request.method))
         goal = VIEWS if request.n_views is not None else BATTERIES if request.n_batteries is not None else COVERAGE
         self._goal.setCurrentIndex(goal)
@@ -188,8 +190,6 @@ class PlanForm(QWidget):
         self._step.setCurrentIndex(max(0, self._step.findData(constraints.section_step_deg)))
         self._whole_panel.setChecked(constraints.whole_panel)
         self._is_gsd_limited.setChecked(constraints.max_distance_m is not None)
-        if constraints.max_distance_m is not None:
-            self._gsd.setValue(profile(request.profile_id).camera.gsd_m(constraints.max_distance_m))
         self._wind.setValue(rules.wind_m_s)
         self._reserve.setValue(100.0 * rules.battery_reserve)
         self._settle.setValue(rules.settle_s)
@@ -198,45 +198,46 @@ class PlanForm(QWidget):
         self._seed.setValue(request.seed)
         self._budget.setValue(request.time_budget_s)
         del blockers
-        self._say_wrong("")
+        self._say_wrong(wrong)
         self._show_goal()
+
+    def _show_aircraft(self, request: PlanRequest) -> str:
+        """Show the aircraft and what depends on its camera; returns why not, where its file cannot be read."""
+        constraints = request.constraints
+        furthest_m = constraints.max_distance_m or OFFERED_RANGE * max(constraints.min_distance_m, 1.0)
+        try:
+            self.aircraft.setValue(request.profile_id)
+        except GroundStationError as error:
+            return str(error)
+        self._gsd.setValue(profile(request.profile_id).camera.gsd_m(furthest_m))
+        return ""
+
+    def problem(self) -> str:
+        """Why what stands in the boxes makes no sense; empty where it does.
+
+        Boxes have limits; only pixels that small can be asked for that they are not to be had so far away.
+        """
+        furthest_m, unit = self._furthest_m(), length_unit(self._units)
+        if furthest_m is None or furthest_m > self._distance.value():
+            return ""
+        return self.tr(
+            "Pixels of {0} need views within {1}, but the safety distance is {2}: allow coarser pixels, or come nearer."
+        ).format(
+            sampling_unit(self._units).text(self._gsd.value()),
+            unit.text(furthest_m),
+            unit.text(self._distance.value()),
+        )
 
     def set_units(self, system: UnitSystem) -> None:
         """Show lengths and speeds in other units."""
+        self._units = system
         for box in (self._distance, self._wind, self._gsd):
             box.set_units(system)
 
-    def _show_profile(self, identifier: str) -> None:
-        index = self._profile.findData(identifier)
-        if index < 0:
-            index = self._profile.count() - 1
-            self._profile.insertItem(index, _profile_text(profile(identifier)), identifier)
-        self._profile.setCurrentIndex(index)
-
-    def _profile_chosen(self) -> None:
-        if self._profile.currentData() is None:
-            name, _ = QFileDialog.getOpenFileName(
-                self, self.tr("Aircraft and camera"), "", self.tr("Aircraft (*.toml)")
-            )
-            with QSignalBlocker(self._profile):
-                self.use_profile_file(Path(name) if name else None)
-        self._edited()
-
-    def use_profile_file(self, path: Path | None) -> None:
-        """Take an aircraft from a file of the user's own; for None, or a file that is wrong, the one before stays."""
-        try:
-            self._show_profile(self._value.profile_id if path is None else str(path))
-        except GroundStationError as error:
-            self._show_profile(self._value.profile_id)
-            self._say_wrong(str(error))
-
     def _request(self) -> PlanRequest:
-        """What the boxes say; raises `ValueError` where it makes no sense."""
+        """What the boxes say."""
         goal, before = self._goal.currentIndex(), self._value
-        profile_id = str(self._profile.currentData())
-        furthest_m = None
-        if self._is_gsd_limited.isChecked():
-            furthest_m = profile(profile_id).camera.distance_for_gsd_m(self._gsd.value())
+        profile_id = self.aircraft.value()
         return replace(
             before,
             profile_id=profile_id,
@@ -249,7 +250,7 @@ class PlanForm(QWidget):
                 min_distance_m=self._distance.value(),
                 section_step_deg=float(self._step.currentData()),
                 whole_panel=self._whole_panel.isChecked(),
-                max_distance_m=furthest_m,
+                max_distance_m=self._furthest_m(),
             ),
             rules=replace(
                 before.rules,
@@ -263,14 +264,17 @@ class PlanForm(QWidget):
             time_budget_s=self._budget.value(),
         )
 
+    def _furthest_m(self) -> float | None:
+        if not self._is_gsd_limited.isChecked():
+            return None
+        return profile(self.aircraft.value()).camera.distance_for_gsd_m(self._gsd.value())
+
     def _edited(self) -> None:
         self._show_goal()
-        try:
-            request = self._request()
-        except ValueError as error:
-            self._say_wrong(str(error))
+        self._say_wrong(self.problem())
+        if self.problem():
             return
-        self._say_wrong("")
+        request = self._request()
         if request != self._value:
             self._value = request
             self.valueChanged.emit(request)
@@ -281,15 +285,9 @@ class PlanForm(QWidget):
 
     def _show_goal(self) -> None:
         """Only the goal chosen is shown, and only what its limit needs."""
-        layout = self.layout().itemAt(0).layout()
-        assert isinstance(layout, QFormLayout)
         for goal, widget in ((COVERAGE, self._coverage), (VIEWS, self._views), (BATTERIES, self._batteries)):
-            layout.setRowVisible(widget, self._goal.currentIndex() == goal)
+            self._first.setRowVisible(widget, self._goal.currentIndex() == goal)
         self._gsd.setEnabled(self._is_gsd_limited.isChecked())
-
-
-def _profile_text(found: Profile) -> str:
-    return " / ".join(dict.fromkeys([found.aircraft.name, found.camera.name]))
 
 
 def _whole(low: int, high: int) -> QSpinBox:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from PySide6.QtCore import Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFileDialog, QTabWidget, QWidget
 
 from groundstation.gui.mission.waypoint_table import WaypointTable
@@ -22,6 +25,8 @@ from planning.insight.clearance import RouteClearance, route_clearance
 from planning.insight.reasons import Rule
 from planning.insight.sections import PlanInsight, SectionState
 from planning.insight.things import things_of
+from planning.plan import Plan
+from planning.site import Origin
 
 
 class PlanLists(QTabWidget):
@@ -39,13 +44,15 @@ class PlanLists(QTabWidget):
         super().__init__()
         self._workspace, self._desk = workspace, desk
         self._measuring: Job[object] | None = None
+        self._listed: tuple[Plan | None, Origin | None] = (None, None)
+        self._explained: PlanInHand | None = None
+        self._measured: tuple[PlanInHand | None, int] = (None, 0)
         self.compare_window: QWidget | None = None
         self.waypoints = WaypointTable()
         self.reach, self.clearance, self.plans = ReachTable(), ClearanceChart(), PlansList()
         self._make_pages()
         self._connect()
         self._show_document(workspace.document)
-        self._show_in_hand(desk.in_hand)
 
     def _make_pages(self) -> None:
         self.addTab(self.waypoints, self.tr("Viewpoints"))
@@ -63,40 +70,76 @@ class PlanLists(QTabWidget):
         self.reach.picked.connect(self.sectionPicked)
         self.clearance.sortieChosen.connect(lambda _number: self._measure_clearance())
         self.clearance.legPicked.connect(lambda sortie, leg: workspace.jump_to(Item(ItemKind.LEG, f"{sortie}/{leg}")))
-        self.currentChanged.connect(lambda _page: self._measure_clearance())
+        self.currentChanged.connect(lambda _page: self._fill_page())
         plans = self.plans
         plans.chosen.connect(desk.choose)
         plans.renamed.connect(desk.rename)
         plans.removed.connect(desk.remove)
         plans.openWanted.connect(self._ask_plan)
         plans.compareWanted.connect(self.compare)
-        desk.inHandChanged.connect(self._show_in_hand)
+        desk.inHandChanged.connect(lambda _in_hand: self._fill_page())
         workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
-        workspace.selectionChanged.connect(self.waypoints.set_selection)
+        workspace.selectionChanged.connect(lambda _item: self._show_selection())
 
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
         for widget in (self.waypoints, self.clearance, self.plans):
             widget.set_units(units)
 
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Catch up with what changed meanwhile."""
+        super().showEvent(event)
+        self._fill_page()
+
     # What changes
 
     def _show_document(self, document: Document) -> None:
         self.plans.set_document(document)
         entry = document.current
-        origin = None if document.site is None else document.site.site.origin
-        self.waypoints.set_rows(() if entry is None else waypoint_rows(entry.plan, origin))
         self.clearance.set_sorties(0 if entry is None else len(entry.plan.sorties))
-        self.waypoints.set_selection(self._workspace.selection)
+        self._fill_page()
 
-    def _show_in_hand(self, in_hand: PlanInHand | None) -> None:
-        self._measure_clearance()
+    def _fill_page(self) -> None:
+        """Bring the page that is seen up to date; rows of a thousand viewpoints take longer than an edit."""
+        if not self.isVisible():
+            return
+        page = self.currentWidget()
+        if page is self.waypoints:
+            self._list_viewpoints()
+        elif page is self.reach:
+            self._explain()
+        elif page is self.clearance:
+            self._measure_clearance()
+
+    def _list_viewpoints(self) -> None:
+        document, in_hand = self._workspace.document, self._desk.in_hand
+        plan = None if document.current is None else document.current.plan
+        origin = None if document.site is None else document.site.site.origin
+        if self._listed[0] is not plan or self._listed[1] is not origin:
+            self._listed = (plan, origin)
+            self.waypoints.set_rows(() if plan is None else waypoint_rows(plan, origin))
+        covered: dict[str, int] = {}
+        if in_hand is not None:
+            panels = (in_hand.insight.sections >= 0).sum(axis=1)
+            covered = dict(zip(in_hand.insight.view_ids, panels.tolist(), strict=True))
+        self.waypoints.set_panels_covered(covered)
+        self._show_selection()
+
+    def _show_selection(self) -> None:
+        if self.waypoints.isVisible():
+            self.waypoints.set_selection(self._workspace.selection)
+
+    def _explain(self) -> None:
+        """What is not covered, and why."""
+        in_hand = self._desk.in_hand
         if in_hand is None:
+            self._explained = None
             self.reach.set_rows(self.tr("Plan a flight, and what it does not cover stands here."), ())
             return
+        if in_hand is self._explained:
+            return
+        self._explained = in_hand
         insight = in_hand.insight
-        panels = (insight.sections >= 0).sum(axis=1)
-        self.waypoints.set_panels_covered(dict(zip(insight.view_ids, panels.tolist(), strict=True)))
         groups = reach_groups(insight)
         n_missed = sum(group.n_sections for group in groups if group.state is not SectionState.UNREACHABLE)
         n_hidden = sum(group.n_sections for group in groups if group.state is SectionState.UNREACHABLE)
@@ -135,15 +178,16 @@ class PlanLists(QTabWidget):
     # Clearance and other plans
 
     def _measure_clearance(self) -> None:
-        """Measure the chosen sortie, when somebody looks."""
+        """Measure the chosen sortie, unless it is measured already."""
+        in_hand, number = self._desk.in_hand, self.clearance.sortie()
+        if self._measured == (in_hand, number):
+            return
+        self._measured = (in_hand, number)
         if self._measuring is not None:
             self._workspace.cancel(self._measuring)
             self._measuring = None
-        in_hand, number = self._desk.in_hand, self.clearance.sortie()
+        self.clearance.set_clearance(None)
         if in_hand is None or not 1 <= number <= len(in_hand.plan.sorties):
-            self.clearance.set_clearance(None)
-            return
-        if self.currentWidget() is not self.clearance:
             return
         site_model = in_hand.groundwork.prepared.site_model
         space = in_hand.groundwork.prepared.problem.space
@@ -151,7 +195,8 @@ class PlanLists(QTabWidget):
 
         def done(found: RouteClearance) -> None:
             self._measuring = None
-            self.clearance.set_clearance(found, limit_m)
+            if self._measured == (in_hand, number):
+                self.clearance.set_clearance(found, limit_m)
 
         self._measuring = self._workspace.start(
             self.tr("Measure clearance"),
@@ -162,8 +207,6 @@ class PlanLists(QTabWidget):
     def _ask_plan(self) -> None:
         name, _ = QFileDialog.getOpenFileName(self, self.tr("Open plan"), "", self.tr("Plans (*.json)"))
         if name:
-            from pathlib import Path
-
             self._desk.open_plan(Path(name))
 
     def compare(self, plan_ids: tuple[str, ...]) -> None:

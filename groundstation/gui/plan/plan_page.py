@@ -9,6 +9,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
+from groundstation.gui.plan.effects_desk import EffectsDesk
 from groundstation.gui.plan.effects_panel import EffectsPanel
 from groundstation.gui.plan.paint_bar import PaintBar
 from groundstation.gui.plan.panel_detail import PanelDetail
@@ -21,11 +22,11 @@ from groundstation.gui.scrolling import scrolled
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
-from groundstation.services.effects import EffectChoice
 from groundstation.services.jobs import Job, JobBounded, JobImproved
 from groundstation.services.plan_bench import PlanInHand
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, sampling_unit
 from planning.findings import Severity, is_flyable
+from planning.plan import Plan
 from planning.progress import QualityPoint
 from planning.request import PlanRequest
 
@@ -40,6 +41,7 @@ class PlanPage(QObject):
         self.desk = PlanDesk(workspace, self)
         self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
         self.effects, self.panel, self.paint = EffectsPanel(), PanelDetail(), PaintBar()
+        self.effects_desk = EffectsDesk(workspace, self.effects.isVisible, lambda: self.desk.is_planning, self)
         self.lists, self.viewpoint = PlanLists(workspace, self.desk), ViewpointPage(workspace, self.desk, stage)
         self._result, self._verdict = QLabel(), QLabel()
         self._plan_button = QPushButton(self.tr("Plan"))
@@ -57,7 +59,7 @@ class PlanPage(QObject):
     def _make_actions(self) -> None:
         self._plan_action = QAction(self.tr("Plan the flight"), self)
         self._plan_action.setShortcut(QKeySequence("Ctrl+P"))
-        self._plan_action.triggered.connect(self.desk.plan)
+        self._plan_action.triggered.connect(self._plan)
         self._enough_action = QAction(self.tr("Good enough, stop here"), self)
         self._enough_action.setShortcut(QKeySequence("Ctrl+Return"))
         self._enough_action.triggered.connect(self.desk.stop_here)
@@ -91,7 +93,7 @@ class PlanPage(QObject):
     def _connect(self) -> None:
         desk, workspace = self.desk, self._workspace
         self.form.valueChanged.connect(desk.set_request)
-        self._plan_button.clicked.connect(desk.plan)
+        self._plan_button.clicked.connect(self._plan)
         self.chart.enough.clicked.connect(desk.stop_here)
         self.effects.wishChanged.connect(self._wish_changed)
         self.panel.viewpointPicked.connect(
@@ -102,7 +104,8 @@ class PlanPage(QObject):
         desk.planningStarted.connect(self._planning_started)
         desk.planningEnded.connect(self._planning_ended)
         desk.inHandChanged.connect(self._show_in_hand)
-        desk.effectsChanged.connect(self._show_effects)
+        self.effects.lookedAt.connect(self.effects_desk.look)
+        self.effects_desk.effectsChanged.connect(self.effects.set_effects)
         desk.refused.connect(lambda text: workspace.say(Severity.ERROR, text))
         workspace.bridge.improved.connect(self._improved)
         workspace.bridge.bounded.connect(self._bounded)
@@ -143,17 +146,26 @@ class PlanPage(QObject):
             words = self.tr("Planning ...") if self.desk.is_planning else self.tr("No plan yet.")
             self._say_verdict(words, "muted")
             self._result.clear()
-        if entry is not None and not self.desk.is_planning:
-            points = tuple(QualityPoint(point.t_s, float(point.covered)) for point in entry.plan.history)
-            self.chart.show_history(points, float(entry.plan.coverage.reachable_upper_bound))
+        if not self.desk.is_planning:
+            self._show_history(None if entry is None else entry.plan)
+
+    def _show_history(self, plan: Plan | None) -> None:
+        if plan is None:
+            self.chart.show_history((), None)
+            return
+        points = tuple(QualityPoint(point.t_s, float(point.covered)) for point in plan.history)
+        self.chart.show_history(points, float(plan.coverage.reachable_upper_bound))
 
     def _show_in_hand(self, in_hand: PlanInHand | None) -> None:
         self.panel.set_plan(None if in_hand is None else in_hand.insight, None if in_hand is None else in_hand.plan)
-        self._show_selection(self._workspace.selection)
         self._paint()
         if in_hand is None:
             if self._workspace.document.current is not None:
-                self._say_verdict(self.tr("The plan is being looked at ..."), "muted")
+                why = self.desk.why_not_in_hand
+                if why:
+                    self._say_verdict(self.tr("This plan cannot be judged. {0}").format(why), "error")
+                else:
+                    self._say_verdict(self.tr("The plan is being looked at ..."), "muted")
                 self._result.clear()
             return
         self._show_result(in_hand)
@@ -178,7 +190,7 @@ class PlanPage(QObject):
                 100.0 * coverage.covered / max(coverage.reachable_upper_bound, 1),
                 coverage.reachable_upper_bound,
             ),
-            self.tr("{0} minutes, {1}").format(
+            self.tr("Time in the air {0}, way flown {1}").format(
                 minutes_text(plan.duration_s),
                 distance_unit(units).text(sum(sortie.length_m for sortie in plan.sorties)),
             ),
@@ -211,10 +223,14 @@ class PlanPage(QObject):
             paint_plan(scene, self.desk.in_hand, *self.paint.value(), self._workspace.units)
 
     def _show_selection(self, item: Item | None) -> None:
-        if item is None or self.desk.is_planning:
+        if item is None:
             return
         if item.kind is ItemKind.PANEL:
             self.panel.set_panel(item.id)
+        # While a plan runs, its progress and "good enough" stay in sight.
+        if self.desk.is_planning:
+            return
+        if item.kind is ItemKind.PANEL:
             self._detail.setCurrentWidget(self.panel)
         elif item.kind is ItemKind.VIEWPOINT:
             self._detail.setCurrentIndex(self._detail.count() - 1)
@@ -224,9 +240,6 @@ class PlanPage(QObject):
         self.panel.set_panel(panel_id)
         self.panel.pick_section(section)
         self._detail.setCurrentWidget(self.panel)
-
-    def _show_effects(self, choices: tuple[EffectChoice, ...]) -> None:
-        self.effects.set_effects(choices)
 
     def _wish_changed(self, effect: str, wish: str) -> None:
         request: PlanRequest = self._workspace.document.request
@@ -241,6 +254,13 @@ class PlanPage(QObject):
         self._paint()
 
     # While a plan runs
+
+    def _plan(self) -> None:
+        """Plan what the form says, where that makes sense: never what it said before."""
+        if self.form.problem():
+            self._workspace.say(Severity.ERROR, self.form.problem())
+        else:
+            self.desk.plan()
 
     def _planning_started(self, job: Job[object], budget_s: float) -> None:
         self._planning_id = job.id

@@ -58,13 +58,13 @@ class PlansList(QWidget):
         """Show the plans of a document."""
         self._current = document.current_plan_id
         if self._model.rows() != document.plans:
-            chosen = set(self.selected())
+            chosen = self.selected()
+            has_same_titles = [entry.title for entry in self._model.rows()] == [entry.title for entry in document.plans]
             self._model.set_rows(document.plans)
-            flags = QItemSelectionModel.SelectionFlag
-            for number, entry in enumerate(document.plans):
-                if entry.id in chosen:
-                    self._view.selectionModel().select(self._model.index(number, 0), flags.Select | flags.Rows)
-            self._view.resizeColumnsToContents()
+            self.select(chosen)
+            # An edit of a plan changes no width that matters, and measuring takes longer than the edit.
+            if not has_same_titles:
+                self._view.resizeColumnsToContents()
         else:
             self._view.viewport().update()
         self._update()
@@ -72,7 +72,9 @@ class PlansList(QWidget):
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
         self._units = units
+        chosen = self.selected()
         self._model.set_columns(self._columns())
+        self.select(chosen)
 
     def select(self, plan_ids: tuple[str, ...]) -> None:
         """Select plans."""

@@ -112,7 +112,8 @@ class QualityChart(QWidget):
     def _draw(self) -> None:
         times, values = [p.t_s for p in self._points], [p.value for p in self._points]
         elapsed_s = None if self._started_s is None else self._clock() - self._started_s
-        end_s = max([*times[-1:], 0.0 if elapsed_s is None else elapsed_s, 1.0])
+        # Room behind the last improvement, or a plan that was found in one go would have no curve.
+        end_s = max([*(1.05 * t_s for t_s in times[-1:]), 0.0 if elapsed_s is None else elapsed_s, 1.0])
         if times and end_s > times[-1]:
             times, values = [*times, end_s], [*values, values[-1]]
         self._line.setData(times, values)
@@ -130,6 +131,10 @@ class QualityChart(QWidget):
     def _say(self, values: list[float], elapsed_s: float | None) -> None:
         if not values:
             self._words.setText(self.tr("Quality against time appears here while a plan runs."))
+        elif elapsed_s is None and self._bound:
+            # The plan may have been edited since.
+            words = self.tr("The search found {0:.0f} sections, {1:.1f} % of the {2:.0f} that any flight could cover")
+            self._words.setText(words.format(values[-1], 100.0 * values[-1] / self._bound, self._bound))
         elif self._bound:
             self._words.setText(
                 self.tr("{0:.0f} sections covered, {1:.1f} % of the {2:.0f} that any flight could cover").format(

@@ -43,7 +43,7 @@ class ReachTable(QWidget):
                 Column(self.tr("Why not"), lambda row: row.reason),
                 Column(self.tr("Sections"), lambda row: str(row.n_sections), is_number=True),
                 Column(self.tr("Panels"), lambda row: str(row.n_panels), is_number=True),
-                Column(self.tr("What lacks least"), lambda row: f"{row.panel_id}: {row.example}"),
+                Column(self.tr("What lacks least"), lambda row: ": ".join(filter(None, (row.panel_id, row.example)))),
             ),
             self,
         )

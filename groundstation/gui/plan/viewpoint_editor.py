@@ -69,11 +69,12 @@ class ViewpointEditor(QWidget):
             buttons.addWidget(button)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 8, 8, 0)
-        layout.addWidget(self._name)
+        # What an edit did must be seen without scrolling.
+        for widget in (self._name, self._says):
+            layout.addWidget(widget)
         layout.addLayout(form)
         layout.addLayout(buttons)
         layout.addWidget(self._locked)
-        layout.addWidget(self._says)
 
     def value(self) -> Viewpoint | None:
         """The viewpoint as it is edited; None where none is shown."""
@@ -82,8 +83,9 @@ class ViewpointEditor(QWidget):
     def setValue(self, viewpoint: Viewpoint | None) -> None:  # noqa: N802
         """Show a viewpoint, or none."""
         self._value = viewpoint
-        for widget in (*self._position, self._heading, self._pitch, self._locked, self._delete, self._aim):
-            widget.setEnabled(viewpoint is not None)
+        self._locked.setEnabled(viewpoint is not None)
+        for widget in (*self._position, self._heading, self._pitch, self._delete, self._aim):
+            widget.setEnabled(viewpoint is not None and not viewpoint.locked)
         self._name.setText(self.tr("No viewpoint selected") if viewpoint is None else viewpoint.id)
         if viewpoint is None:
             self._says.clear()

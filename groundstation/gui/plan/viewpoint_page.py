@@ -13,12 +13,9 @@ from groundstation.gui.plan.viewpoint_editor import ViewpointEditor
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
+from groundstation.services.plan_editing import above_home, beside
 from groundstation.services.units import UnitSystem
 from planning.findings import Severity
-from planning.plan import Viewpoint
-
-BESIDE_M = 2.0
-"""A new viewpoint stands this far beside the one it is added to: two aircraft lengths, clearly another place."""
 
 
 class ViewpointPage(QWidget):
@@ -28,6 +25,7 @@ class ViewpointPage(QWidget):
         super().__init__()
         self._workspace, self._desk, self._stage = workspace, desk, stage
         self._aim_panel = ""
+        self._is_changing_tool = False
         self.editor = ViewpointEditor()
         self._move = QCheckBox(self.tr("Move in the 3-D view"))
         self._move.setToolTip(self.tr("Drag the selected viewpoint; with Shift along its line of sight; or arrow keys"))
@@ -47,7 +45,7 @@ class ViewpointPage(QWidget):
         self.editor.aimWanted.connect(self._aim)
         self._move.toggled.connect(self._move_toggled)
         desk.inHandChanged.connect(lambda _in_hand: self._say_of_viewpoint())
-        desk.refused.connect(lambda text: self.editor.say(text, wrong=True))
+        desk.refused.connect(self._refused)
         workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
         workspace.selectionChanged.connect(self._show_selection)
         workspace.unitsChanged.connect(self.set_units)
@@ -93,6 +91,11 @@ class ViewpointPage(QWidget):
         if self._move.isChecked():
             self._start_tool()
 
+    def _refused(self, text: str) -> None:
+        """The viewpoint is still as it was, and so are the boxes."""
+        self._show_selection(self._workspace.selection)
+        self.editor.say(text, wrong=True)
+
     def _say_of_viewpoint(self) -> None:
         """What the selected viewpoint covers, or what is wrong with it."""
         in_hand, viewpoint = self._desk.in_hand, self.editor.value()
@@ -117,20 +120,12 @@ class ViewpointPage(QWidget):
         )
 
     def add_viewpoint(self) -> None:
-        """A new viewpoint, to the right of the selected one or in front of home."""
+        """A new viewpoint, beside the selected one or above home."""
         in_hand, value = self._desk.in_hand, self.editor.value()
         site = self._workspace.document.site
         if in_hand is None or site is None:
             return
-        if value is None:
-            x, y, _ = site.site.home_enu_m
-            _, _, floor = site.site.airspace.min_enu_m
-            self._desk.add_viewpoint(Viewpoint("new", (x, y, floor + BESIDE_M), 0.0, 0.0))
-            return
-        heading = math.radians(value.heading_deg)
-        x, y, z = value.position_enu_m
-        place = (x + BESIDE_M * math.cos(heading), y - BESIDE_M * math.sin(heading), z)
-        self._desk.add_viewpoint(replace(value, position_enu_m=place))
+        self._desk.add_viewpoint(above_home(site.site) if value is None else beside(value, site.site.airspace))
 
     def delete_viewpoint(self) -> None:
         """The selected viewpoint away."""
@@ -160,13 +155,20 @@ class ViewpointPage(QWidget):
             self.stop_moving()
 
     def _start_tool(self) -> None:
+        """Take the selected viewpoint in the tool, in place of the one before; none where it cannot be moved."""
         scene, value = self._stage.scene(), self.editor.value()
-        if scene is None or value is None or value.locked:
+        if scene is None:
             return
         from groundstation.gui.view3d.viewpoint_tool import ViewpointTool
 
-        angles = math.radians(value.heading_deg), math.radians(value.gimbal_pitch_deg)
-        scene.start_tool(ViewpointTool(value.id, value.position_enu_m, *angles))
+        # The tool before ends with this, but moving goes on.
+        self._is_changing_tool = True
+        if value is None or value.locked:
+            scene.cancel_tool()
+        else:
+            angles = math.radians(value.heading_deg), math.radians(value.gimbal_pitch_deg)
+            scene.start_tool(ViewpointTool(value.id, value.position_enu_m, *angles))
+        self._is_changing_tool = False
 
     def stop_moving(self) -> None:
         """Put the tool away."""
@@ -176,7 +178,7 @@ class ViewpointPage(QWidget):
             scene.cancel_tool()
 
     def _tool_ended(self) -> None:
-        if self._move.isChecked() and self._stage.scene() is not None and self._stage.scene().tool() is None:
+        if not self._is_changing_tool:
             self._move.setChecked(False)
 
     def _moved_in_scene(self, result: object) -> None:

@@ -27,6 +27,9 @@ FAINTEST_EDGE_PX, FULL_EDGE_PX = 8.0, 40.0
 """Outlines of cells that are smaller on screen than the first are not drawn, for they would be all that is seen; up to
 the second they grow from faint to opaque."""
 
+VTK_POINT_SHIFT = -8.0
+"""Steps by which VTK draws all dots nearer once anything in the program is shifted: through walls, tens of metres."""
+
 DEPTH_RATIO = 1e-4
 """Nearest depth drawn as a part of the farthest: 24 bits of depth still part surfaces 2 cm apart 250 m away."""
 
@@ -206,7 +209,7 @@ def _drawn(drawable: Drawable) -> _Drawn:
     if drawable.depth_shift:
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, drawable.depth_shift)
-        mapper.SetRelativeCoincidentTopologyPointOffsetParameter(drawable.depth_shift)
+    mapper.SetRelativeCoincidentTopologyPointOffsetParameter(drawable.depth_shift - VTK_POINT_SHIFT)
     return _Drawn(actor, data, edge_size_m, drawable.nearer, data.GetBounds())
 
 

@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 LEVEL_SLOPE = 0.05
 """Lower edges within 3 degrees of level are made level, unless Shift is held: nobody clicks to a pixel."""
 
+STEEP = 0.9
+"""Sine of the pitch from which a view counts as from above: 64 degrees."""
+
 MIN_SIZE_M = 0.05
 """Shorter edges are a double click."""
 
@@ -376,7 +379,14 @@ class BoxTool(ClickTool):
 
 
 def _height_on_post(pointer: Pointer, foot_enu_m: Array) -> float:
-    """Height above a foot at which the upright line through it is nearest to the pointer's ray, metres."""
+    """Height above a foot at which the upright line through it is nearest to the pointer's ray, metres.
+
+    From above, where that line is hardly to be seen, the height is how far the pointer moved up in the picture.
+    """
+    view = pointer.view
+    if view.forward[2] < -STEEP:
+        pixel, depth = view.project(foot_enu_m)
+        return float(pixel[1] - pointer.y_px) * view.metres_per_px(float(depth))
     ray, to_foot = pointer.ray, foot_enu_m - pointer.view.eye_enu_m
     level = float(ray[0] ** 2 + ray[1] ** 2)
     if level < 1e-9:

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from groundstation.gui.view3d.pinhole import Pinhole, photo_pinhole
 from groundstation.gui.view3d.plan_scene import FRUSTUM_M, PlanScene
 from groundstation.gui.view3d.shapes import Shape, box_edges, frusta, joined, outlines, polyline, shown_panels
 from groundstation.gui.view3d.site_scene import SiteScene, home_pad
 from groundstation.services.document import Item, ItemKind
+from planning.coverage.sections import PanelFrames
+from planning.frames import camera_axes
 from planning.plan import ViewpointArrays
 
 Array = NDArray[np.float64]
@@ -21,23 +24,31 @@ MARK_LIFT_M = 0.03
 SURROUNDINGS_M = 6.0
 """Something smaller is shown with at least this much around it."""
 
+NO_PANEL_M = 15.0
+"""How far a viewpoint looks that has no panel in its picture: as far as most have theirs."""
+
+PANEL_ASIDE_DEG, PLAN_ASIDE_DEG = 20.0, 50.0
+"""How far beside their front things are looked at: glass nearly straight on, a viewpoint and what it sees apart."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ItemShape:
-    """Lines that mark an item; points, shape (n, 3), that show it; the side from which it is looked at.
+    """Lines that mark an item; points, shape (n, 3), that show it; from where it is looked at.
 
-    `normal` has shape (3,) and is zero where any side will do.
+    `normal` has shape (3,) and points to the side on which to stand, `aside_deg` to the right of it; zero where any
+    side will do.
     """
 
     lines: Shape
     points_enu_m: Array
     normal: Array
+    aside_deg: float = PANEL_ASIDE_DEG
 
 
 def item_shape(item: Item, site: SiteScene | None, plan: PlanScene | None) -> ItemShape | None:
     """Shape of an item of a site or plan; None where there is none such."""
     if plan is not None and item.kind in (ItemKind.VIEWPOINT, ItemKind.SORTIE, ItemKind.LEG):
-        return _of_plan(item, plan)
+        return _of_plan(item, site, plan)
     if site is None:
         return None
     model = site.model
@@ -66,14 +77,10 @@ def item_shape(item: Item, site: SiteScene | None, plan: PlanScene | None) -> It
             return None
 
 
-def _of_plan(item: Item, plan: PlanScene) -> ItemShape | None:
+def _of_plan(item: Item, site: SiteScene | None, plan: PlanScene) -> ItemShape | None:
     if item.kind is ItemKind.VIEWPOINT:
         index = plan.viewpoint_index.get(item.id)
-        if index is None:
-            return None
-        view = ViewpointArrays(*(part[index : index + 1] for part in plan.views))
-        shape = frusta(view, plan.plan.camera, 2.0 * FRUSTUM_M)
-        return ItemShape(shape, shape[0], np.zeros(3))
+        return None if index is None else _of_viewpoint(index, site, plan)
     number, _, leg = item.id.partition("/")
     if not (number.isdecimal() and 1 <= int(number) <= len(plan.paths)):
         return None
@@ -81,8 +88,43 @@ def _of_plan(item: Item, plan: PlanScene) -> ItemShape | None:
     if item.kind is ItemKind.LEG:
         if not (leg.isdecimal() and 1 <= int(leg) < len(path)):
             return None
-        path = path[int(leg) - 1 : int(leg) + 1]
+        return _of_leg(path[int(leg) - 1 : int(leg) + 1], site)
     return ItemShape(polyline(path), path, np.zeros(3)) if len(path) > 1 else None
+
+
+def _of_viewpoint(index: int, site: SiteScene | None, plan: PlanScene) -> ItemShape:
+    """A viewpoint is looked at together with what its picture shows, from behind and beside it."""
+    view = ViewpointArrays(*(part[index : index + 1] for part in plan.views))
+    camera, eye = plan.plan.camera, view.positions_enu_m[0]
+    heading, pitch = float(view.heading_rad[0]), float(view.pitch_rad[0])
+    reach_m = NO_PANEL_M if site is None else _reach_m(photo_pinhole(eye, heading, pitch, camera, 1000.0), site.frames)
+    lines = frusta(view, camera, 2.0 * FRUSTUM_M)
+    # Level, so that a view that looks up is not looked at from below the ground.
+    ahead, _, _ = camera_axes(heading, 0.0)
+    return ItemShape(lines, frusta(view, camera, reach_m)[0], -ahead, PLAN_ASIDE_DEG)
+
+
+def _reach_m(view: Pinhole, frames: PanelFrames) -> float:
+    """Depth of the panel nearest to the middle of a picture, of those that turn their front to it."""
+    pixels, depths = view.project(frames.centroids)
+    away = frames.centroids - view.eye_enu_m
+    middle = np.array([0.5 * view.width_px, 0.5 * view.height_px])
+    is_in = (depths > 0.0) & (np.abs(pixels - middle) <= middle).all(axis=1)
+    is_in &= np.einsum("ij,ij->i", away, frames.normals) < 0.0
+    if not is_in.any():
+        return NO_PANEL_M
+    beside = np.linalg.norm(pixels - middle, axis=1)
+    return float(depths[np.argmin(np.where(is_in, beside, np.inf))])
+
+
+def _of_leg(ends_enu_m: Array, site: SiteScene | None) -> ItemShape:
+    """A leg is looked at together with the panel nearest to its middle, from that panel's front."""
+    lines = polyline(ends_enu_m)
+    if site is None or len(site.frames) == 0:
+        return ItemShape(lines, ends_enu_m, np.zeros(3))
+    centroids = site.frames.centroids
+    nearest = int(np.linalg.norm(centroids - ends_enu_m.mean(axis=0), axis=1).argmin())
+    return ItemShape(lines, np.vstack([ends_enu_m, centroids[nearest]]), site.frames.normals[nearest], PLAN_ASIDE_DEG)
 
 
 def _of_panels(item: Item, site: SiteScene) -> ItemShape | None:

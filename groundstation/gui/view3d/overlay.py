@@ -19,7 +19,7 @@ from groundstation.gui.view3d.paint import NO_VALUE, SCALE_STOPS, ColourScale, V
 from groundstation.gui.view3d.pinhole import Pinhole
 from groundstation.services.units import UnitSystem, length_unit
 
-MARGIN_PX = 12.0
+MARGIN_PX, GAP_PX = 12.0, 6.0
 NORTH_PX = 26.0
 BAR_WIDTH_PX = 160.0
 """Longest that the scale becomes, and length of the colour bar."""
@@ -56,8 +56,7 @@ class Overlay(QWidget):
         self._view: Pinhole | None = None
         self._focus_depth_m = 1.0
         self._labels: Sequence[Label] = ()
-        self._scale: ColourScale | None = None
-        self._no_value_text = ""
+        self._scales: Sequence[ColourScale] = ()
         self._legend: Sequence[tuple[str, str]] = ()
         self._hint = ""
         self._tip: Tip | None = None
@@ -73,9 +72,9 @@ class Overlay(QWidget):
         self._labels = labels
         self.update()
 
-    def set_scale(self, scale: ColourScale | None, no_value_text: str = "") -> None:
-        """Show a colour bar."""
-        self._scale, self._no_value_text = scale, no_value_text
+    def set_scales(self, scales: Sequence[ColourScale]) -> None:
+        """Show colour bars, one above the other."""
+        self._scales = scales
         self.update()
 
     def set_legend(self, legend: Sequence[tuple[str, str]]) -> None:
@@ -109,10 +108,11 @@ class Overlay(QWidget):
         self._paint_labels(painter, self._view)
         self._paint_north(painter, self._view)
         self._paint_length(painter, self._view)
-        if self._scale is not None:
-            self._paint_scale(painter, self._scale)
-        elif self._legend:
-            self._paint_legend(painter)
+        bottom_px = self.height() - MARGIN_PX
+        for scale in self._scales:
+            bottom_px = self._paint_scale(painter, scale, bottom_px) - GAP_PX
+        if self._legend:
+            self._paint_legend(painter, bottom_px)
         if self._hint:
             width = self.width() / 2.0
             self._paint_box(painter, self._hint, QPointF(width, MARGIN_PX), Qt.AlignmentFlag.AlignHCenter)
@@ -191,14 +191,15 @@ class Overlay(QWidget):
             painter.drawLine(QPointF(x, y - 4.0), QPointF(x, y + 4.0))
         painter.drawText(QPointF(left, y - 7.0), text)
 
-    def _paint_scale(self, painter: QPainter, scale: ColourScale) -> None:
+    def _paint_scale(self, painter: QPainter, scale: ColourScale, bottom_px: float) -> float:
+        """A colour bar that ends at a height; returns where it begins."""
         metrics = QFontMetricsF(self.font())
         row = metrics.height()
         title = f"{scale.title} [{scale.unit}]" if scale.unit else scale.title
         low, high = f"{scale.low:.4g}", f"{scale.high:.4g}"
         width = max(BAR_WIDTH_PX, metrics.horizontalAdvance(title))
         box = QRectF(0.0, 0.0, width + 16.0, 3.0 * row + 34.0)
-        box.moveBottomRight(QPointF(self.width() - MARGIN_PX, self.height() - MARGIN_PX))
+        box.moveBottomRight(QPointF(self.width() - MARGIN_PX, bottom_px))
         self._paint_plate(painter, box)
         inner = box.adjusted(8.0, 4.0, -8.0, -4.0)
         painter.setPen(QColor(colours().text))
@@ -213,14 +214,15 @@ class Overlay(QWidget):
         painter.drawText(ends, Qt.AlignmentFlag.AlignRight, high)
         grey = QRectF(inner.left(), ends.bottom() + 3.0, 10.0, 10.0)
         painter.fillRect(grey, QColor(NO_VALUE))
-        painter.drawText(QPointF(grey.right() + 5.0, grey.bottom()), self._no_value_text or self.tr("no value"))
+        painter.drawText(QPointF(grey.right() + 5.0, grey.bottom()), self.tr("no value"))
+        return box.top()
 
-    def _paint_legend(self, painter: QPainter) -> None:
+    def _paint_legend(self, painter: QPainter, bottom_px: float) -> None:
         metrics = QFontMetricsF(self.font())
         row = metrics.height() + 3.0
         width = max(metrics.horizontalAdvance(text) for _, text in self._legend) + 34.0
         box = QRectF(0.0, 0.0, width, row * len(self._legend) + 10.0)
-        box.moveBottomRight(QPointF(self.width() - MARGIN_PX, self.height() - MARGIN_PX))
+        box.moveBottomRight(QPointF(self.width() - MARGIN_PX, bottom_px))
         self._paint_plate(painter, box)
         for i, (colour, text) in enumerate(self._legend):
             top = box.top() + 5.0 + i * row

@@ -45,6 +45,9 @@ SELECTED_PX, HOVERED_PX, FOOTPRINT_PX = 4.0, 2.0, 3.0
 ASIDE_DEG, ABOVE_DEG = 28.0, 22.0
 """Standard view: from the right and from above, so that depth can be seen."""
 
+WELL_SEEN = 0.5
+"""Cosine to its front up to which a thing is looked at from where the view stands: turning takes bearings away."""
+
 
 class StandardView(Enum):
     """Views that a user asks for by name."""
@@ -119,7 +122,7 @@ class ScenePicture(QWidget):
 
     def set_route_values(self, scale: ColourScale | None, values: Sequence[Array] = ()) -> None:
         """Colour the routes by a value per vertex of each sortie's path, NaN where it is not known; None by sortie."""
-        if self._plan is None:
+        if self._plan is None or (scale is None and self._route_values is None):
             return
         self._route_values = None if scale is None else (scale, tuple(values))
         self._plan = plan_scene(self._plan.plan, colours(), self._locked, self._route_values)
@@ -187,15 +190,19 @@ class ScenePicture(QWidget):
         self._navigator.follow(orbit)
 
     def look_at(self, item: Item) -> None:
-        """Bring an item into view: panels from their front, all else from where the view stands."""
+        """Bring an item into view: panels from their front, viewpoints with what they look at.
+
+        All else, and what is seen from its front side already, is looked at from where the view stands.
+        """
         shape = self._shape(item)
         if shape is None:
             return
-        points = with_surroundings(shape.points_enu_m)
-        if np.linalg.norm(shape.normal) > 1e-6:
-            orbit = facing(shape.normal, points, self._navigator.aspect, 20.0, 12.0)
+        points, aspect = with_surroundings(shape.points_enu_m), self._navigator.aspect
+        orbit = self._navigator.orbit
+        if np.linalg.norm(shape.normal) > 1e-6 and not _is_in_front(orbit, shape.normal):
+            orbit = facing(shape.normal, points, aspect, shape.aside_deg, 12.0)
         else:
-            orbit = self._navigator.orbit.fitted(points, self._navigator.aspect)
+            orbit = orbit.fitted(points, aspect)
         self._navigator.go(self._in_sight(orbit, shape))
 
     def look_at_all(self) -> None:
@@ -348,10 +355,8 @@ class ScenePicture(QWidget):
         self._overlay.set_labels(self._texts.labels(self._site, self._plan, self._hidden))
 
     def _show_legend(self) -> None:
-        scale = self._panel_values[0] if self._panel_values is not None else None
-        if scale is None and self._route_values is not None:
-            scale = self._route_values[0]
-        self._overlay.set_scale(scale)
+        painted = (self._panel_values, self._route_values)
+        self._overlay.set_scales([values[0] for values in painted if values is not None])
         self._overlay.set_legend(self._texts.coverage_legend() if self._coverage.is_on else ())
 
     # Moving
@@ -404,3 +409,9 @@ class ScenePicture(QWidget):
         """Start to index the site: on another thread, for a mesh of a million triangles takes most of a second."""
         if self._index is None and self._site is not None and self._canvas.is_open:
             self._index = self._indexer.submit(PickIndex, self._site)
+
+
+def _is_in_front(orbit: Orbit, normal: Array) -> bool:
+    """Whether a surface is seen well from where the view stands, so that it need not be turned."""
+    back = (orbit.eye_enu_m - np.array(orbit.focus_enu_m)) / orbit.distance_m
+    return bool(orbit.pitch_deg <= 0.0 and back @ normal >= WELL_SEEN * np.linalg.norm(normal))

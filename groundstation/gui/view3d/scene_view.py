@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
@@ -16,14 +14,6 @@ from groundstation.gui.view3d.scene_picture import ScenePicture, StandardView
 from groundstation.gui.view3d.tool_driver import ToolDriver, preview_drawables
 from groundstation.gui.view3d.tools import Pointer, Tool
 from groundstation.services.units import UnitSystem
-
-Array = NDArray[np.float64]
-
-SELECTED_PX, HOVERED_PX, FOOTPRINT_PX = 4.0, 2.0, 3.0
-
-ASIDE_DEG, ABOVE_DEG = 28.0, 22.0
-"""Standard view: from the right and from above, so that depth can be seen."""
-
 
 __all__ = ["SceneView", "StandardView"]
 

@@ -104,8 +104,9 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
     full = flight_brief(MODEL, plan, errors, "today")
     empty = flight_brief(kiosk(obstacles=()), replace(plan, sorties=(), viewpoints=()), (), "today")
     bare = replace(full, findings=(), is_flyable=True, link_loss=LinkLoss.GO_HOME)
+    warned = replace(full, findings=errors[1:], is_flyable=True)
     pictures = brief_pictures(MODEL, plan, UNITS, say)
-    for brief in (full, empty, bare):
+    for brief in (full, empty, bare, warned):
         brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), say)
     assert said <= set(WORDS)
     assert set(WORDS) - said == {"Page {0} of {1}"}

@@ -96,10 +96,56 @@ def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, workspace,
     workspace.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict() == "Ready to fly")
     assert page.findings.state_text() == ""
-    model = page.waypoints.model()
+    model = page.lists.waypoints.model()
     row = model.row_of(Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[0]))
     assert int(model.index(row, 11).data()) >= 1
     assert all(action.isEnabled() for action in page.actions())
+
+
+def test_only_the_list_in_sight_is_filled_and_none_while_the_tab_is_hidden(page, workspace, planned, idle, application):
+    model = page.lists.waypoints.model()
+    workspace.session.open(opened(planned), None)
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+    n_rows = model.rowCount()
+    assert n_rows > 10
+    assert not page.lists.profile.plots()[0].listDataItems()
+    page.lists.setCurrentWidget(page.lists.profile)
+    assert page.lists.profile.plots()[0].listDataItems()
+    page.hidden()
+    workspace.amend(replace(workspace.document, plans=(), current_plan_id=""))
+    assert page.sorties.model().rowCount() == 1
+    page.shown()
+    assert page.sorties.model().rowCount() == 0
+    application.processEvents()
+    assert not page.lists.profile.plots()[0].listDataItems()
+    assert model.rowCount() == n_rows
+    page.lists.setCurrentWidget(page.lists.waypoints)
+    assert model.rowCount() == 0
+
+
+def test_a_list_that_is_shown_later_knows_the_selection_and_the_panels(page, workspace, planned, idle):
+    page.lists.setCurrentWidget(page.lists.comparison)
+    workspace.session.open(opened(planned), None)
+    idle(lambda: page.findings.verdict() == "Ready to fly")
+    wanted = Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[3])
+    workspace.select(wanted)
+    page.lists.setCurrentWidget(page.lists.waypoints)
+    model = page.lists.waypoints.model()
+    assert page.lists.waypoints.view().selectionModel().currentIndex().row() == model.row_of(wanted)
+    assert int(model.index(model.row_of(wanted), 11).data()) >= 1
+    page.lists.setCurrentWidget(page.lists.profile)
+    assert [mark.isVisible() for mark in page.lists.profile._marks] == [True, True]
+
+
+def test_files_are_taken_in_the_order_of_their_sorties(page, monkeypatch, tmp_path):
+    from PySide6.QtWidgets import QFileDialog
+
+    names = [str(tmp_path / name) for name in ("roof-2.plan", "roof-3.plan", "roof.plan")]
+    monkeypatch.setattr(QFileDialog, "getOpenFileNames", lambda *_arguments: (names, ""))
+    heard = []
+    monkeypatch.setattr(page.desk, "import_files", heard.extend)
+    page._choose_import()
+    assert [path.name for path in heard] == ["roof.plan", "roof-2.plan", "roof-3.plan"]
 
 
 def test_findings_are_old_as_soon_as_the_plan_changes_and_then_renewed(page, workspace, planned, idle):
@@ -147,18 +193,21 @@ def test_places_of_findings_lead_to_their_things(page, workspace, planned, said)
     assert "template.kml is not shown" in said[-1].text
 
 
-def test_selection_goes_through_table_and_chart_and_back(page, workspace, planned):
+def test_selection_goes_through_table_and_chart_and_back(page, workspace, planned, application):
     workspace.session.open(opened(planned), None)
+    application.processEvents()
     heard = []
     workspace.selectionChanged.connect(heard.append)
     wanted = Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[4])
-    page.waypoints.view().selectRow(page.waypoints.model().row_of(wanted))
+    page.lists.waypoints.view().selectRow(page.lists.waypoints.model().row_of(wanted))
     assert heard == [wanted]
     other = Item(ItemKind.VIEWPOINT, planned[1].sorties[0].viewpoint_ids[1])
     workspace.select(other)
     assert heard == [wanted, other]
-    assert page.waypoints.view().selectionModel().currentIndex().row() == page.waypoints.model().row_of(other)
-    assert all(mark.isVisible() for mark in page.profile._marks)
+    table = page.lists.waypoints
+    assert table.view().selectionModel().currentIndex().row() == table.model().row_of(other)
+    page.lists.setCurrentWidget(page.lists.profile)
+    assert [mark.isVisible() for mark in page.lists.profile._marks] == [True, True]
 
 
 def test_export_shows_findings_first_then_writes_and_remembers_the_folder(
@@ -276,21 +325,37 @@ def test_compare_answers_and_leads_to_the_photos_that_differ(page, workspace, pl
     write_export(prepare_export(plan, model, FileFormat.MAVLINK_PLAN), path)
     workspace.session.open(opened(planned), None)
     page.desk.compare_files([path])
-    idle(lambda: "kiosk.plan is the plan: all 10 photos" in page.comparison.answer())
-    assert page.lists.currentWidget() is page.comparison
-    assert page.comparison.table().model().rowCount() == 0
+    idle(lambda: "kiosk.plan is the plan: all 10 photos" in page.lists.comparison.answer())
+    assert page.lists.currentWidget() is page.lists.comparison
+    assert page.lists.comparison.table().model().rowCount() == 0
     first = plan.sorties[0].viewpoint_ids[0]
     turned = tuple(replace(v, heading_deg=v.heading_deg - 3.0) if v.id == first else v for v in plan.viewpoints)
     workspace.change("Turn", opened(planned, viewpoints=turned))
-    assert "Compare with file" in page.comparison.answer()
+    assert "Compare with file" in page.lists.comparison.answer()
     page.desk.compare_files([path])
-    idle(lambda: "NOT the plan: 9 photos the same, 1 changed" in page.comparison.answer())
-    rows = page.comparison.table().model()
+    idle(lambda: "NOT the plan: 9 photos the same, 1 changed" in page.lists.comparison.answer())
+    rows = page.lists.comparison.table().model()
     assert [rows.index(0, c).data() for c in (0, 1, 5)] == ["changed", first, "3.0"]
     heard = []
-    page.comparison.picked.connect(heard.append)
-    page.comparison.table().clicked.emit(rows.index(0, 3))
+    page.lists.comparison.picked.connect(heard.append)
+    page.lists.comparison.table().clicked.emit(rows.index(0, 3))
     assert heard == [Item(ItemKind.VIEWPOINT, first)]
+
+
+def test_all_photos_in_another_order_are_neither_the_plan_nor_strangers(page, workspace, planned, idle, tmp_path):
+    from groundstation.services.mission_files import prepare_export, write_export
+
+    model, plan = planned
+    path = tmp_path / "kiosk.plan"
+    write_export(prepare_export(plan, model, FileFormat.MAVLINK_PLAN), path)
+    backwards = tuple(
+        replace(sortie, viewpoint_ids=sortie.viewpoint_ids[::-1], path_enu_m=sortie.path_enu_m[::-1])
+        for sortie in plan.sorties
+    )
+    workspace.session.open(opened(planned, sorties=backwards), None)
+    page.desk.compare_files([path])
+    idle(lambda: "takes all 10 photos of the plan, but flies otherwise" in page.lists.comparison.answer())
+    assert "NOT the plan" not in page.lists.comparison.answer()
 
 
 def test_brief_is_shown_and_saved(page, workspace, planned, idle, tmp_path):
@@ -314,10 +379,10 @@ def test_units_reach_every_part(page, workspace, planned, idle):
     idle(lambda: page.findings.verdict() == "Ready to fly")
     page.findings.show_severity(Severity.OK, True)
     workspace.set_units(UnitSystem.IMPERIAL)
-    assert "[ft]" in page.waypoints.model().headerData(5, _horizontal())
+    assert "[ft]" in page.lists.waypoints.model().headerData(5, _horizontal())
     assert page.sorties.model().headerData(3, _horizontal()) == "mi"
     assert any(" ft" in text for text in page.findings.list_view().texts())
-    assert "[ft]" in page.profile.plots()[0].getAxis("left").labelText
+    assert "[ft]" in page.lists.profile.plots()[0].getAxis("left").labelText
 
 
 def _horizontal():

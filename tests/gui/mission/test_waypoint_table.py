@@ -182,3 +182,14 @@ def test_another_plan_does_not_speak_for_the_user(table):
     table.set_rows(waypoint_rows(make_plan([(ring(3), {})])))
     table.set_rows(())
     assert heard == []
+
+
+def test_what_the_choosers_say_is_what_the_columns_show(table):
+    table.set_rows(waypoint_rows(example_plan()))
+    header = table.model()
+    for position, first in ((1, "Latitude [°]"), (0, "East [m]")):
+        table._position.setCurrentIndex(position)
+        assert header.headerData(3, _horizontal()) == first
+    for height, title in ((2, "Above ellipsoid [m]"), (1, "Above sea (EGM96) [m]"), (0, "Up, local [m]")):
+        table._height.setCurrentIndex(height)
+        assert header.headerData(5, _horizontal()) == title
