@@ -71,6 +71,7 @@ class Workspace(QObject):
         self._selection: Item | None = None
         self._units = UnitSystem.METRIC
         self._waiting: dict[int, _Waiting] = {}
+        self._quiet: set[int] = set()
         self.bridge = JobBridge(runner, self)
         self.bridge.state_changed.connect(self._job_changed)
         session.subscribe(self._document_changed)
@@ -141,8 +142,10 @@ class Workspace(QObject):
         """Jobs that have not ended, in the order in which they run."""
         return tuple(waiting.job for waiting in self._waiting.values())
 
-    def cancel(self, job: Job[Any]) -> None:
-        """Throw a job away, whether it runs or waits."""
+    def cancel(self, job: Job[Any], *, quietly: bool = False) -> None:
+        """Throw a job away, whether it runs or waits; `quietly` where the user has no part in it."""
+        if quietly:
+            self._quiet.add(job.id)
         self._runner.cancel(job)
 
     def close(self, timeout_s: float = 10.0) -> bool:
@@ -172,7 +175,8 @@ class Workspace(QObject):
             if waiting.done is not None:
                 waiting.done(event.result)
         elif event.state is JobState.CANCELLED:
-            self.say(Severity.NOTE, self.tr("{0}: cancelled").format(event.name))
+            if event.job_id not in self._quiet:
+                self.say(Severity.NOTE, self.tr("{0}: cancelled").format(event.name))
         elif event.error is not None:
             self._say_error(event.name, event.error)
             if waiting.failed is not None:

@@ -28,9 +28,3 @@ def _garbage_stays_in_this_thread():
     gc.disable()
     yield
     gc.enable()
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _garbage_goes_between_modules():
-    yield
-    gc.collect()

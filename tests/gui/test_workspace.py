@@ -162,3 +162,12 @@ def test_messages_keep_their_place_and_lead_to_it(application, workspace, messag
         workspace.say(Severity.NOTE, str(number))
     assert messages._list.count() == 500
     assert messages.texts().endswith("Note: 599")
+
+
+def test_a_job_that_the_window_itself_throws_away_is_not_spoken_of(application, workspace, messages):
+    gate = Gate()
+    job = workspace.start("looking", gate)
+    wait(application, gate.begun.is_set)
+    workspace.cancel(job, quietly=True)
+    wait(application, lambda: not workspace.jobs())
+    assert messages.texts() == ""

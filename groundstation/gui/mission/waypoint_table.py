@@ -68,7 +68,7 @@ class WaypointTable(QWidget):
 
     def set_rows(self, rows: Sequence[WaypointRow]) -> None:
         """Show the waypoints of another plan; filter, order and references stay."""
-        chosen = self._sortie.currentData()
+        chosen, was_empty = self._sortie.currentData(), self._model.rowCount() == 0
         self._model.set_rows(rows)
         numbers = sorted({row.sortie for row in rows})
         with QSignalBlocker(self._sortie):
@@ -79,7 +79,8 @@ class WaypointTable(QWidget):
                 self._sortie.addItem(text, number)
             self._sortie.setCurrentIndex(max(0, self._sortie.findData(chosen)))
         self._filter_rows()
-        self._view.resizeColumnsToContents()
+        if was_empty:  # after an edit the columns are as wide as they must be
+            self._view.resizeColumnsToContents()
 
     def set_panels_covered(self, panels_covered: Mapping[str, int]) -> None:
         """Say how many panels each viewpoint covers."""

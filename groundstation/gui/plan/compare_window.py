@@ -219,7 +219,7 @@ class CompareWindow(QDialog):
 
     def done(self, result: int) -> None:
         """Free the pictures, and do not wait for the table."""
-        self._workspace.cancel(self._job)
+        self._workspace.cancel(self._job, quietly=True)
         for scene in self._scenes:
             scene.close_view()
         super().done(result)

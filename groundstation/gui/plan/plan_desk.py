@@ -262,7 +262,7 @@ class PlanDesk(QObject):
         document = self._workspace.document
         entry, site = document.current, document.site
         if self._taking is not None:
-            self._workspace.cancel(self._taking)
+            self._workspace.cancel(self._taking, quietly=True)
             self._taking = None
         self._not_taken = ""
         if entry is None or site is None:

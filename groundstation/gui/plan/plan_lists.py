@@ -184,7 +184,7 @@ class PlanLists(QTabWidget):
             return
         self._measured = (in_hand, number)
         if self._measuring is not None:
-            self._workspace.cancel(self._measuring)
+            self._workspace.cancel(self._measuring, quietly=True)
             self._measuring = None
         self.clearance.set_clearance(None)
         if in_hand is None or not 1 <= number <= len(in_hand.plan.sorties):

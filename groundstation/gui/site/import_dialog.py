@@ -176,7 +176,7 @@ class ImportDialog(QDialog):
 
     def _stop_job(self) -> None:
         if self._job is not None:
-            self._workspace.cancel(self._job)
+            self._workspace.cancel(self._job, quietly=True)
             self._job = None
 
     def _failed(self) -> None:

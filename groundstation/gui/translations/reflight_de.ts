@@ -2,6 +2,21 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="de_DE">
 <context>
+    <name>AircraftBox</name>
+    <message>
+        <source>From a file ...</source>
+        <translation>Aus Datei ...</translation>
+    </message>
+    <message>
+        <source>Aircraft and camera</source>
+        <translation>Fluggerät und Kamera</translation>
+    </message>
+    <message>
+        <source>Aircraft (*.toml)</source>
+        <translation>Fluggeräte (*.toml)</translation>
+    </message>
+</context>
+<context>
     <name>AirspacePage</name>
     <message>
         <source>Airspace</source>
@@ -86,6 +101,10 @@
         <translation>Alle Regeln vor dem Flug sind eingehalten: flugbereit.</translation>
     </message>
     <message>
+        <source>Ready to fly, but read the warnings.</source>
+        <translation>Flugbereit, aber Warnungen lesen.</translation>
+    </message>
+    <message>
         <source>NOT ready to fly: see the findings.</source>
         <translation>NICHT flugbereit: siehe Befunde.</translation>
     </message>
@@ -112,10 +131,6 @@
     <message>
         <source>Flight time, all sorties</source>
         <translation>Flugzeit, alle Einsätze</translation>
-    </message>
-    <message>
-        <source>{0} min</source>
-        <translation>{0} min</translation>
     </message>
     <message>
         <source>Coverage of what can be covered</source>
@@ -423,12 +438,12 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Einsatz {0}</translation>
     </message>
     <message>
-        <source>clearance in {0}</source>
-        <translation>Abstand in {0}</translation>
-    </message>
-    <message>
         <source>distance flown in {0}</source>
         <translation>Flugweg in {0}</translation>
+    </message>
+    <message>
+        <source>in {0}</source>
+        <translation>in {0}</translation>
     </message>
     <message>
         <source>No route to measure yet.</source>
@@ -637,6 +652,10 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>{0} hat alle {1} Fotos des Plans in richtiger Reihenfolge. Ein Flugweg zum Vergleichen fehlt.</translation>
     </message>
     <message>
+        <source>{0} takes all {1} photos of the plan, but flies otherwise: {2} out of order</source>
+        <translation>{0} macht alle {1} Fotos der Planung, fliegt aber anders: {2} in anderer Reihenfolge</translation>
+    </message>
+    <message>
         <source>{0} is NOT the plan: {1} photos the same, {2} changed, {3} missing, {4} not planned, {5} out of order</source>
         <translation>{0} ist NICHT der Plan: {1} Fotos gleich, {2} geändert, {3} fehlend, {4} nicht geplant, {5} in falscher Reihenfolge</translation>
     </message>
@@ -650,6 +669,10 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     <message>
         <source>{0}. The settings of the first start are used; the file stays as it is.</source>
         <translation>{0}. Es gelten die Einstellungen des ersten Starts; die Datei bleibt, wie sie ist.</translation>
+    </message>
+    <message>
+        <source>Something is running: the language changes when Reflight is started next.</source>
+        <translation>Etwas läuft noch: Die Sprache wechselt beim nächsten Start von Reflight.</translation>
     </message>
     <message>
         <source>New project</source>
@@ -690,6 +713,13 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     <message>
         <source>{0}: {1} panels, {2} plans</source>
         <translation>{0}: Scheiben {1}, Pläne {2}</translation>
+    </message>
+</context>
+<context>
+    <name>EffectsDesk</name>
+    <message>
+        <source>Look at the scene</source>
+        <translation>Szene auswerten</translation>
     </message>
 </context>
 <context>
@@ -734,8 +764,8 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Export nicht möglich: {0}</translation>
     </message>
     <message>
-        <source>An aircraft would refuse these files; see the errors.</source>
-        <translation>Ein Fluggerät würde diese Dateien ablehnen; siehe Fehler.</translation>
+        <source>Not to be written like this: see the errors.</source>
+        <translation>So nicht zu schreiben: siehe die Fehler.</translation>
     </message>
     <message>
         <source>Ready to be written, files: {0}. Read the warnings.</source>
@@ -1358,8 +1388,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Dieser Standort liegt jenseits des Randes von Webkarten (85.05 Grad); die 3D-Ansicht nutzen.</translation>
     </message>
     <message>
-        <source>No map is loaded. &quot;Map file&quot; opens one (MBTiles with PNG, JPEG or WebP); no network is used.</source>
-        <translation>Keine Karte geladen. „Kartendatei“ öffnet eine (MBTiles mit PNG, JPEG oder WebP); ohne Netzzugriff.</translation>
+        <source>No map is loaded. &quot;Map file&quot; opens one (MBTiles); no network is used.</source>
+        <translation>Keine Karte geladen. „Kartendatei“ öffnet eine (MBTiles); ohne Netzzugriff.</translation>
     </message>
     <message>
         <source>The map &quot;{0}&quot; does not cover this place.</source>
@@ -1611,8 +1641,27 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Vergleichen</translation>
     </message>
     <message>
+        <source>{0}: {1}</source>
+        <translation>{0}: {1}</translation>
+    </message>
+    <message>
         <source>{0} more findings like these</source>
         <translation>{0} weitere solche Befunde</translation>
+    </message>
+</context>
+<context>
+    <name>MissionLists</name>
+    <message>
+        <source>Waypoints</source>
+        <translation>Wegpunkte</translation>
+    </message>
+    <message>
+        <source>Profile</source>
+        <translation>Profil</translation>
+    </message>
+    <message>
+        <source>Comparison</source>
+        <translation>Vergleich</translation>
     </message>
 </context>
 <context>
@@ -1670,16 +1719,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Jede Regel vor dem Flug neu messen</translation>
     </message>
     <message>
-        <source>Waypoints</source>
-        <translation>Wegpunkte</translation>
-    </message>
-    <message>
-        <source>Profile</source>
-        <translation>Profil</translation>
-    </message>
-    <message>
-        <source>Comparison</source>
-        <translation>Vergleich</translation>
+        <source>{0}, photos: {1}, batteries: {2}, {3}</source>
+        <translation>{0}, Fotos: {1}, Akkus: {2}, {3}</translation>
     </message>
     <message>
         <source>No site</source>
@@ -1696,10 +1737,6 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Plan a flight on the Plan tab, or import a mission file.</source>
         <translation>Im Reiter Planung einen Flug planen oder eine Missionsdatei importieren.</translation>
-    </message>
-    <message>
-        <source>{0}, photos: {1}, batteries: {2}, {3} min</source>
-        <translation>{0}, Fotos: {1}, Akkus: {2}, {3} min</translation>
     </message>
     <message>
         <source>{0} is not shown in the view</source>
@@ -1846,6 +1883,10 @@ Größe: {1}; Dreiecke: {2}</translation>
         <translation>Scheibe {0}</translation>
     </message>
     <message>
+        <source>What a plan covers of it stands here.</source>
+        <translation>Hier steht, was ein Plan davon abdeckt.</translation>
+    </message>
+    <message>
         <source>{0} of {1} sections covered, {2} possible</source>
         <translation>{0} von {1} Sektoren abgedeckt, {2} erreichbar</translation>
     </message>
@@ -1858,8 +1899,8 @@ Größe: {1}; Dreiecke: {2}</translation>
         <translation>{0:g} bis {1:g}° neben der Normalen, {2:g} bis {3:g}° um sie</translation>
     </message>
     <message>
-        <source>covered by {0} views</source>
-        <translation>Aufnahmen, die ihn abdecken: {0}</translation>
+        <source>covered; views that see it: {0}</source>
+        <translation>abgedeckt; Aufnahmen davon: {0}</translation>
     </message>
     <message>
         <source>could be covered, but no view of this plan does</source>
@@ -1919,12 +1960,20 @@ Blickrichtung: {3}</translation>
 <context>
     <name>PlanDesk</name>
     <message>
+        <source>Only “Greedy with proof” can keep viewpoints. Choose it, or release those kept: {0}</source>
+        <translation>Nur „Greedy mit Beweis“ kann Aufnahmepunkte fixieren. Diese Methode wählen oder die fixierten freigeben: {0}</translation>
+    </message>
+    <message>
         <source>{0}; release some, or ask for more views</source>
         <translation>{0}; einige freigeben oder mehr Aufnahmen verlangen</translation>
     </message>
     <message>
         <source>Plan</source>
         <translation>Planen</translation>
+    </message>
+    <message>
+        <source>It was not looked at. Choose it in the list of plans to do so.</source>
+        <translation>Er wurde nicht ausgewertet. Dazu in der Liste der Pläne auswählen.</translation>
     </message>
     <message>
         <source>Rename plan</source>
@@ -1967,6 +2016,22 @@ Blickrichtung: {3}</translation>
         <translation>{0} ausrichten</translation>
     </message>
     <message>
+        <source>{0} stays as it is: switch off “Keep when planning again” before you change it.</source>
+        <translation>{0} bleibt, wie er ist: vor dem Ändern „Für Neuplanung fixieren“ ausschalten.</translation>
+    </message>
+    <message>
+        <source>There is no plan to change; plan a flight or open a plan first.</source>
+        <translation>Es gibt keinen Plan zum Ändern; zuerst einen Flug planen oder einen Plan öffnen.</translation>
+    </message>
+    <message>
+        <source>The plan is still being looked at; try again in a moment.</source>
+        <translation>Der Plan wird noch ausgewertet; gleich noch einmal versuchen.</translation>
+    </message>
+    <message>
+        <source>The plan is not kept: it was made for “{0}”, which is no longer open.</source>
+        <translation>Der Plan wird verworfen: Er gilt für „{0}“, das nicht mehr offen ist.</translation>
+    </message>
+    <message>
         <source>{0}, {1} views</source>
         <translation>{0}, Aufnahmen: {1}</translation>
     </message>
@@ -1978,20 +2043,12 @@ Blickrichtung: {3}</translation>
         <source>Look at the plan</source>
         <translation>Plan auswerten</translation>
     </message>
-    <message>
-        <source>Look at the scene</source>
-        <translation>Szene auswerten</translation>
-    </message>
 </context>
 <context>
     <name>PlanForm</name>
     <message>
         <source>More settings</source>
         <translation>Mehr Einstellungen</translation>
-    </message>
-    <message>
-        <source>From a file ...</source>
-        <translation>Aus Datei ...</translation>
     </message>
     <message>
         <source>coverage wanted</source>
@@ -2034,7 +2091,7 @@ Blickrichtung: {3}</translation>
         <translation>Greedy mit Beweis</translation>
     </message>
     <message>
-        <source>Particle swarm (the paper&apos;s)</source>
+        <source>Particle swarm (paper)</source>
         <translation>Schwarm (Paper)</translation>
     </message>
     <message>
@@ -2106,12 +2163,8 @@ Blickrichtung: {3}</translation>
         <translation>Startwert</translation>
     </message>
     <message>
-        <source>Aircraft and camera</source>
-        <translation>Fluggerät und Kamera</translation>
-    </message>
-    <message>
-        <source>Aircraft (*.toml)</source>
-        <translation>Fluggeräte (*.toml)</translation>
+        <source>Pixels of {0} need views within {1}, but the safety distance is {2}: allow coarser pixels, or come nearer.</source>
+        <translation>Pixel von {0} brauchen Aufnahmen aus höchstens {1}, der Mindestabstand ist aber {2}: gröbere Pixel zulassen oder näher heran.</translation>
     </message>
 </context>
 <context>
@@ -2264,6 +2317,10 @@ Blickrichtung: {3}</translation>
         <translation>Noch kein Plan.</translation>
     </message>
     <message>
+        <source>This plan cannot be judged. {0}</source>
+        <translation>Dieser Plan lässt sich nicht beurteilen. {0}</translation>
+    </message>
+    <message>
         <source>The plan is being looked at ...</source>
         <translation>Der Plan wird ausgewertet ...</translation>
     </message>
@@ -2284,8 +2341,8 @@ Blickrichtung: {3}</translation>
         <translation>{0} von {1} Sektoren abgedeckt ({2:.1f} % der {3} überhaupt erreichbaren)</translation>
     </message>
     <message>
-        <source>{0} minutes, {1}</source>
-        <translation>{0} Minuten, {1}</translation>
+        <source>Time in the air {0}, way flown {1}</source>
+        <translation>Flugzeit {0}, Flugweg {1}</translation>
     </message>
     <message>
         <source>smallest clearance {0}</source>
@@ -2473,6 +2530,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Quality against time appears here while a plan runs.</source>
         <translation>Während der Planung erscheint hier Güte über der Zeit.</translation>
+    </message>
+    <message>
+        <source>The search found {0:.0f} sections, {1:.1f} % of the {2:.0f} that any flight could cover</source>
+        <translation>Die Suche fand {0:.0f} Sektoren, {1:.1f} % der {2:.0f} überhaupt erreichbaren</translation>
     </message>
     <message>
         <source>{0:.0f} sections covered, {1:.1f} % of the {2:.0f} that any flight could cover</source>
@@ -2890,16 +2951,16 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Zeit</translation>
     </message>
     <message>
-        <source>Battery</source>
+        <source>Used</source>
         <translation>Akku</translation>
+    </message>
+    <message>
+        <source>Part of the battery&apos;s endurance that the sortie takes</source>
+        <translation>Anteil der Flugzeit eines Akkus, den der Einsatz braucht</translation>
     </message>
     <message>
         <source>Length of the flight</source>
         <translation>Länge des Flugwegs</translation>
-    </message>
-    <message>
-        <source>Part of the endurance that the sortie takes</source>
-        <translation>Anteil der Akkulaufzeit, den der Einsatz braucht</translation>
     </message>
 </context>
 <context>
