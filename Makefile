@@ -45,7 +45,7 @@ benchmark: setup
 # Every tab and state of the window, and from them those that the documents show.
 pictures: setup
 	$(PY) app.py --screenshots pictures
-	cp pictures/1280x720/plan-panel.png docs/window.png
+	cp pictures/1280x720/plan-hemispheres.png docs/window.png
 	cp pictures/1280x720/site.png docs/window-site.png
 	cp pictures/1280x720/mission-2.png docs/window-mission.png
 
