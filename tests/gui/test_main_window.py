@@ -103,6 +103,9 @@ def test_editing_by_hand_shows_at_once_and_can_be_undone(application, desk):
     page.desk.set_viewpoint(replace(viewpoint, position_enu_m=(0.0, 0.0, 14.0)))
     assert page.verdict().startswith("NOT ready to fly"), "without a turn of the event loop"
     assert viewpoint.id in {f.place for f in page.desk.in_hand.revision.findings if f.severity == "error"}
+    said = desk.window.messages.texts()
+    assert f"Move {viewpoint.id}: sections gained" in said
+    assert "Error: smallest distance at a viewpoint" in said
     desk.workspace.session.undo()
     assert desk.workspace.document.current.plan is before
     assert page.verdict().startswith("Ready to fly")

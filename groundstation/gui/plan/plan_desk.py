@@ -11,8 +11,9 @@ from PySide6.QtCore import QObject, Signal
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.jobs import Job, JobContext, JobState
+from groundstation.services.places import item_of_place
 from groundstation.services.plan_bench import Bench, Groundwork, PlanInHand, take_in_hand
-from groundstation.services.plan_editing import KEEPING_METHODS, has_same_panels, with_edited_plan
+from groundstation.services.plan_editing import KEEPING_METHODS, edit_effect, has_same_panels, with_edited_plan
 from groundstation.services.planning import plan_document_site
 from planning import revision as edits
 from planning.errors import GroundStationError
@@ -204,7 +205,16 @@ class PlanDesk(QObject):
             self.refused.emit(str(error))
             return False
         self._bench.keep(edited.plan, edited)
-        self._workspace.change(label.format(viewpoint_id), with_edited_plan(document, edited.revision))
+        done, effect = label.format(viewpoint_id), edit_effect(in_hand.revision, edited.revision)
+        self._workspace.change(done, with_edited_plan(document, edited.revision))
+        text = self.tr("{0}: sections gained {1}, lost {2}; flight time {3:+.0f} s").format(
+            done, effect.gained, effect.lost, effect.added_s
+        )
+        self._workspace.say(Severity.NOTE, text)
+        for finding in effect.problems:
+            self._workspace.say(
+                finding.severity, finding.message, item_of_place(finding.place, self._workspace.document)
+            )
         return True
 
     def _refuse_kept(self, viewpoint_id: str) -> bool:

@@ -2016,6 +2016,10 @@ Blickrichtung: {3}</translation>
         <translation>{0} ausrichten</translation>
     </message>
     <message>
+        <source>{0}: sections gained {1}, lost {2}; flight time {3:+.0f} s</source>
+        <translation>{0}: Sektoren gewonnen {1}, verloren {2}; Flugzeit {3:+.0f} s</translation>
+    </message>
+    <message>
         <source>{0} stays as it is: switch off “Keep when planning again” before you change it.</source>
         <translation>{0} bleibt, wie er ist: vor dem Ändern „Für Neuplanung fixieren“ ausschalten.</translation>
     </message>
