@@ -93,19 +93,3 @@ def depth(model: CoverageModel, viewpoints: Sequence[Viewpoint], max_views: int 
         DepthCount(model.grid.step_deg, k, int(np.count_nonzero(counts >= k)), model.n_elements)
         for k in range(1, max_views + 1)
     )
-
-
-def nearest_panel_m(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> NDArray[np.float64]:
-    """Distance of each viewpoint to the nearest centroid of the panels it covers, shape (n,); inf where none."""
-    return np.array([sight.nearest_m for sight in sights(model, viewpoints)], np.float64)
-
-
-def ground_sampling_m(model: CoverageModel, viewpoints: Sequence[Viewpoint]) -> tuple[float, float]:
-    """Best and worst ground sampling distance, metres per pixel, of all panels in all views that cover them.
-
-    Measured across the line of sight at the centroid; on the pane itself it is larger by 1 / cos(theta) in one
-    direction. (inf, 0) when nothing is covered.
-    """
-    seen = sights(model, viewpoints)
-    nearest = min((sight.nearest_m for sight in seen), default=np.inf)
-    return model.camera.gsd_m(nearest), model.camera.gsd_m(max((sight.furthest_m for sight in seen), default=0.0))

@@ -58,8 +58,8 @@ class MapView(MapCanvas):
     picked(Item or None)
         The user clicked a thing, or nothing.
     hovered(Item or None)
-    mapChanged(Path or None)
-        Another map file was opened, or the map was taken away.
+    mapChanged(Path)
+        Another map file was opened.
     refused(str)
         A map file could not be opened, and why.
     """
@@ -147,12 +147,6 @@ class MapView(MapCanvas):
             self._look_at_map()
         self.update()
         return True
-
-    def close_map(self) -> None:
-        """Take the tiles away."""
-        self._tiles.set_source(None)
-        self.mapChanged.emit(None)
-        self.update()
 
     def map_file(self) -> Path | None:
         """The map that is shown."""

@@ -136,7 +136,7 @@ class Stage(QWidget):
             self._map.refused.connect(lambda text: self._workspace.say(Severity.ERROR, text))
             if self._tiles is not None:
                 self._map.open_map(self._tiles)
-            self._map.mapChanged.connect(lambda path: self.tilesChanged.emit("" if path is None else str(path)))
+            self._map.mapChanged.connect(lambda path: self.tilesChanged.emit(str(path)))
             self._pages.addWidget(self._map)
         return self._map
 

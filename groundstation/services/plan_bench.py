@@ -17,7 +17,7 @@ from planning.catalogue import profile
 from planning.coverage.sections import NOT_SEEN, PanelFrames
 from planning.insight.reasons import SectionReasons, section_reasons
 from planning.insight.sampling import PanelSampling, panel_sampling
-from planning.insight.sections import PlanInsight, section_states
+from planning.insight.sections import PlanInsight, assembled
 from planning.plan import Camera, Constraints, Plan, viewpoint_arrays
 from planning.prepare import Prepared, is_same_place, prepare
 from planning.progress import QUIET, Monitor
@@ -139,19 +139,8 @@ def insight_of(revision: Revision, reasons: SectionReasons, before: PlanInHand |
         panel, section = np.divmod(revision.elements_of_pose(viewpoint), n_sections)
         sections[number, panel] = section
     counts = revision.counts.astype(np.int32)
-    return PlanInsight(
-        tuple(viewpoint.id for viewpoint in plan.viewpoints),
-        tuple(panel.id for panel in prepared.site_model.site.panels),
-        prepared.constraints,
-        model.camera,
-        model.frames,
-        model.grid,
-        sections,
-        counts,
-        section_states(counts, prepared.problem.reachability.verdicts),
-        _sampling(revision, sections, before),
-        reasons,
-    )
+    sampling = _sampling(revision, sections, before)
+    return assembled(prepared.site_model, prepared, plan, sections, counts, sampling, reasons)
 
 
 def _sampling(revision: Revision, sections: NDArray[np.int16], before: PlanInHand | None) -> PanelSampling:

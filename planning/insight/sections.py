@@ -110,6 +110,21 @@ def plan_insight(
     views = viewpoint_arrays(plan.viewpoints)
     sections = exact_sections(model, views)
     counts = section_counts(sections, model.grid.n_sections)
+    sampling = panel_sampling(model.frames, model.camera, views.positions_enu_m, sections)
+    return assembled(site_model, prepared, plan, sections.astype(np.int16), counts, sampling, reasons)
+
+
+def assembled(
+    site_model: SiteModel,
+    prepared: Prepared,
+    plan: Plan,
+    sections: NDArray[np.int16],
+    counts: NDArray[np.int32],
+    sampling: PanelSampling,
+    reasons: SectionReasons,
+) -> PlanInsight:
+    """An insight from what was measured on a plan; see `PlanInsight`."""
+    model = prepared.problem.model
     return PlanInsight(
         tuple(viewpoint.id for viewpoint in plan.viewpoints),
         tuple(panel.id for panel in site_model.site.panels),
@@ -117,10 +132,10 @@ def plan_insight(
         model.camera,
         model.frames,
         model.grid,
-        sections.astype(np.int16),
+        sections,
         counts,
-        section_states(counts, verdicts),
-        panel_sampling(model.frames, model.camera, views.positions_enu_m, sections),
+        section_states(counts, prepared.problem.reachability.verdicts),
+        sampling,
         reasons,
     )
 

@@ -10,7 +10,7 @@ import pytest
 from planning.catalogue import profile
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import SectionGrid, panel_frames
-from planning.evaluate import coverage, coverage_counts, depth, ground_sampling_m, nearest_panel_m
+from planning.evaluate import coverage, coverage_counts, depth, sights
 from planning.occlusion import line_of_sight
 from planning.plan import Viewpoint
 from planning.reach_kernel import REACHABLE, UNREACHABLE
@@ -62,21 +62,20 @@ def test_bound_holds_even_for_viewpoints_that_break_the_rules_it_rests_on() -> N
     assert coverage(model(), (), everything).reachable_upper_bound == model().n_elements
 
 
-def test_pixels_follow_from_distances() -> None:
-    one = Viewpoint("v", (0.0, -12.29, 4.5), 0.0, 0.0)  # 12.29 m in front of the middle panel: 3.2766 mm a pixel
+def test_a_view_tells_its_nearest_and_furthest_panel() -> None:
+    one = Viewpoint("v", (0.0, -12.29, 4.5), 0.0, 0.0)  # in front of the middle panel
     narrow = model()
-    best, worst = ground_sampling_m(narrow, (one,))
-    assert best == pytest.approx(17.3e-3 / 5280.0 * 1000.0)
+    (seen,) = sights(narrow, (one,))
     furthest = max(np.linalg.norm(np.array([x, 0.0, z]) - one.position_enu_m) for x in (-4, 0, 4) for z in (1.5, 7.5))
-    assert worst == pytest.approx(CAMERA.gsd_m(furthest))
-    assert nearest_panel_m(narrow, (one,)) == pytest.approx([12.29])
+    assert seen.furthest_m == pytest.approx(furthest)
+    assert seen.nearest_m == pytest.approx(12.29)
     away = Viewpoint("w", (0.0, -12.0, 4.5), 180.0, 0.0)
-    assert nearest_panel_m(narrow, (one, away)).tolist() == [pytest.approx(12.29), np.inf]
-    assert nearest_panel_m(model(max_distance_m=12.0), (one,)).tolist() == [np.inf]
+    assert [sight.nearest_m for sight in sights(narrow, (one, away))] == [pytest.approx(12.29), np.inf]
+    (nothing,) = sights(model(max_distance_m=12.0), (one,))
+    assert (nothing.nearest_m, nothing.furthest_m, len(nothing.elements)) == (np.inf, 0.0, 0)
 
 
 def test_no_viewpoints_cover_nothing() -> None:
     assert coverage_counts(model(), ()).sum() == 0
-    assert ground_sampling_m(model(), ()) == (np.inf, 0.0)
-    assert nearest_panel_m(model(), ()).shape == (0,)
+    assert sights(model(), ()) == ()
     assert [count.covered for count in depth(model(), (), 2)] == [0, 0]

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from PySide6.QtCore import QCoreApplication, Signal
 from PySide6.QtWidgets import QLabel, QPushButton, QWidget
 
-from groundstation.gui.inputs import LengthBox
 from groundstation.gui.site.origin_box import OriginBox
 from groundstation.gui.site.site_tree_model import size_text
 from groundstation.gui.site.value_boxes import (
@@ -142,10 +141,6 @@ class AirspacePage(Page):
     def extent_box(self) -> ExtentBox:
         """Editor of the box."""
         return self._extent
-
-    def ground_box(self) -> LengthBox:
-        """Editor of the ground's level."""
-        return self._ground
 
     def _set(self, _value: object) -> None:
         (low, high), ground_z_m = self._extent.value(), self._ground.value()
