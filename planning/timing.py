@@ -290,18 +290,16 @@ def flight_path(
     is_photo = np.zeros(k, np.bool_)
     is_photo[photo_vertices] = True
     hover_s = np.where(is_photo, photo_stop_s(aircraft, rules), 0.0)
-    turn_s = np.zeros(k - 1)
+    heading_change = np.concatenate([[UNKNOWN_TURN_RAD], heading_difference_rad(heading_rad[:-1], heading_rad[1:])])
+    needed_s = turn_times_s(heading_change[:m], np.diff(pitch_rad, prepend=0.0), limits)
+    # Legs up to a photo turn for it; the last ones, towards home, belong to no photo.
     length_m = np.linalg.norm(np.diff(vertices_enu_m, axis=0), axis=1)
-    for i, vertex in enumerate(photo_vertices):
-        heading_change = UNKNOWN_TURN_RAD if i == 0 else heading_difference_rad(heading_rad[i - 1], heading_rad[i])
-        pitch_change = pitch_rad[i] - (0.0 if i == 0 else pitch_rad[i - 1])
-        needed_s = float(turn_times_s(heading_change, pitch_change, limits))
-        legs = slice(0 if i == 0 else int(photo_vertices[i - 1]), int(vertex))
-        stretch_m = float(length_m[legs].sum())
-        if rules.turn_in_flight and stretch_m > 0.0:
-            turn_s[legs] = needed_s * length_m[legs] / stretch_m
-        else:
-            hover_s[vertex] += needed_s
+    photo_of_leg = np.searchsorted(photo_vertices, np.arange(k - 1), side="right")
+    stretch_m = np.bincount(photo_of_leg, length_m, minlength=m + 1)[:m]
+    in_flight = rules.turn_in_flight & (stretch_m > 0.0)
+    hover_s[photo_vertices] += np.where(in_flight, 0.0, needed_s)
+    pace_s_m = np.append(np.where(in_flight, needed_s, 0.0) / np.where(in_flight, stretch_m, 1.0), 0.0)
+    turn_s = pace_s_m[photo_of_leg] * length_m
     ends = np.isin(np.arange(k), [0, k - 1])
     return FlightPath(np.asarray(vertices_enu_m, float), is_photo | ends | stop_at_corners, hover_s, turn_s)
 

@@ -6,6 +6,7 @@ in the workspace, the window only shows it.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -31,6 +32,7 @@ from groundstation.services.project_lock import ProjectLock
 from groundstation.services.recovery import Recovery, discard_recovery, find_recovery, find_unsaved, recover
 from groundstation.services.session import Session
 from groundstation.services.settings import Settings, read_settings, settings_path, write_settings
+from groundstation.services.worker import Worker
 from planning.errors import GroundStationError, InputError
 from planning.findings import Severity
 from planning.request import PlanRequest
@@ -49,14 +51,18 @@ class Desk(QObject):
     opened = Signal()
     autosaveFailed = Signal(str)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, application: QApplication, questions: Questions | None = None) -> None:
+    def __init__(
+        self, application: QApplication, questions: Questions | None = None, worker: Worker | None = None
+    ) -> None:
         super().__init__()
         self._application = application
         self._questions = Questions() if questions is None else questions
         self._settings, self._settings_problem = _read_settings()
         self._translations = Translations(application)
         self._garbage = GarbageCollector(self)
-        self._runner = JobRunner(in_background=True)
+        self._own_worker = Worker() if worker is None else None
+        self._worker = self._own_worker if worker is None else worker
+        self._runner = JobRunner(worker=self._worker)
         self.keeper = Keeper(self.autosaveFailed.emit)
         self.workspace = Workspace(Session(_first_document(self._settings)), self._runner, self)
         self.workspace.set_units(self._settings.units)
@@ -75,7 +81,7 @@ class Desk(QObject):
         self.menus = Menus(window, self.workspace, self)
         window.closing.connect(self._window_closing)
         window.stage.tilesChanged.connect(self._tiles_changed)
-        window.stage.sceneReady.connect(lambda _scene: self._garbage.settle())
+        window.stage.sceneReady.connect(lambda _scene: self._scene_is_ready())
         self._title_of(window)
         return window
 
@@ -86,6 +92,10 @@ class Desk(QObject):
         self.window.set_layout_text(self._settings.window_layouts.get(self._layout_key(), ""))
         self.window.show()
         QTimer.singleShot(0, self._after_first_paint)
+
+    def _scene_is_ready(self) -> None:
+        self._garbage.settle()
+        threading.Thread(target=self._worker.start, name="start-worker", daemon=True).start()
 
     def _after_first_paint(self) -> None:
         if self._settings_problem:
@@ -380,6 +390,8 @@ class Desk(QObject):
         QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
         self._translations.remove()
         self.keeper.close()
+        if self._own_worker is not None:
+            self._own_worker.close()
         self._runner.shutdown()
         self._garbage.close()
 

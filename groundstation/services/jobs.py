@@ -13,8 +13,6 @@ Exactly one of succeeded, failed and cancelled ends every job.
 from __future__ import annotations
 
 import itertools
-import os
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -23,6 +21,7 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import Any, Generic, TypeVar
 
+from groundstation.services.worker import Worker
 from planning.errors import OperationCancelled
 from planning.progress import Clock, QualityPoint, StopRequest, Trace
 
@@ -93,8 +92,8 @@ Listener = Callable[[JobEvent], None]
 class JobContext:
     """What work gets to report to: a monitor, a stop request ("good enough"), and a trace of its quality."""
 
-    def __init__(self, job: Job[Any], publish: Listener, clock: Clock) -> None:
-        self._job, self._publish, self._clock = job, publish, clock
+    def __init__(self, job: Job[Any], publish: Listener, clock: Clock, worker: Worker | None = None) -> None:
+        self._job, self._publish, self._clock, self._worker = job, publish, clock, worker
         self._start_s = clock()
         self._stage, self._stage_start_s, self._last_published_s = "", self._start_s, -1.0
         self.stop = job.stop_request
@@ -114,11 +113,20 @@ class JobContext:
         remaining = spent * (total - done) / done if done > 0 and total > done and spent > 0.2 else None
         self._publish(JobProgress(self._job.id, self._job.name, stage, done, total, now - self._start_s, remaining))
 
+    def apart(self, function: Callable[..., Result], *arguments: Any) -> Result:
+        """Call `function(*arguments, stop=, trace=, monitor=)` in a process of its own, where there is one for it."""
+        run = self._worker.run if self._worker is not None else _here
+        return run(function, *arguments, stop=self.stop, trace=self.trace, monitor=self)
+
     def _improved(self, point: QualityPoint) -> None:
         self._publish(JobImproved(self._job.id, self._job.name, point))
 
     def _bounded(self, bound: float) -> None:
         self._publish(JobBounded(self._job.id, self._job.name, bound))
+
+
+def _here(function: Callable[..., Result], *arguments: Any, **reporting: Any) -> Result:
+    return function(*arguments, **reporting)
 
 
 @dataclass(eq=False)
@@ -166,16 +174,6 @@ class Job(Generic[Result]):
         return self._result  # type: ignore[return-value]  # set whenever there is no error
 
 
-NICENESS = 10
-"""Of background jobs: half of the way to the least urgent. A thread that was idle then runs before them at once."""
-
-
-def _go_behind() -> None:
-    """Make this thread, and those it starts, less urgent; only Linux has a priority for each thread."""
-    if sys.platform == "linux":
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
-
-
 class JobRunner:
     """Runs jobs one after the other on a worker thread and publishes their events to all listeners.
 
@@ -184,13 +182,13 @@ class JobRunner:
 
     Parameters
     ----------
-    in_background
-        Let everything else on the machine go first, as a window must answer while jobs use all processors.
+    worker
+        The process for `JobContext.apart`; without one that work, too, is done on the job's thread.
     """
 
-    def __init__(self, n_workers: int = 1, clock: Clock = time.perf_counter, *, in_background: bool = False) -> None:
-        begin = _go_behind if in_background else None
-        self._pool = ThreadPoolExecutor(n_workers, thread_name_prefix="job", initializer=begin)
+    def __init__(self, n_workers: int = 1, clock: Clock = time.perf_counter, *, worker: Worker | None = None) -> None:
+        self._pool = ThreadPoolExecutor(n_workers, thread_name_prefix="job")
+        self._worker = worker
         self._clock = clock
         self._ids = itertools.count(1)
         self._lock = threading.Lock()
@@ -229,7 +227,7 @@ class JobRunner:
             return
         self._publish(JobStateChanged(job.id, job.name, JobState.RUNNING))
         try:
-            result = work(JobContext(job, self._publish, self._clock))
+            result = work(JobContext(job, self._publish, self._clock, self._worker))
         except OperationCancelled as error:
             self._finish(job, JobState.CANCELLED, error=error)
         except BaseException as error:

@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.project_file import check_not_index
 from planning.catalogue import profile
 from planning.checks import check_plan
@@ -16,13 +17,12 @@ from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.json_file import check_output
 from planning.plan import Plan, Viewpoint
-from planning.plan_file import read_plan, write_plan
+from planning.plan_file import write_plan
 from planning.planner import Planned, plan_flight
 from planning.prepare import Prepared
 from planning.progress import QUIET, Monitor, Stop, Trace, never
 from planning.request import PlanRequest
 from planning.site import SiteModel
-from planning.site_file import read_site
 
 
 def plan_site(
@@ -46,7 +46,7 @@ def plan_site(
     if out is not None:
         check_not_index(out)
         check_output(out, [site_path])
-    planned = plan_document_site(read_site(site_path), request, stop=stop, trace=trace, monitor=monitor)
+    planned = plan_document_site(read_given_site(site_path), request, stop=stop, trace=trace, monitor=monitor)
     if out is not None:
         write_plan(out, planned.plan)
     return planned
@@ -81,6 +81,16 @@ def plan_document_site(
     return replace(planned, findings=(*planned.findings, *_shortfalls(request, planned.plan)))
 
 
+def reunited(planned: Planned, site_model: SiteModel, prepared: Prepared | None) -> Planned:
+    """What another process planned, with the site and the preparation of this one in place of their copies.
+
+    The window tells sites and preparations apart by being one object, which spares it comparing them.
+    """
+    if prepared is None or prepared.is_cut_short:
+        prepared = replace(planned.prepared, site_model=site_model)
+    return replace(planned, prepared=prepared)
+
+
 def locked_viewpoints(plan_path: Path) -> tuple[Viewpoint, ...]:
     """The locked viewpoints of a plan file.
 
@@ -89,7 +99,7 @@ def locked_viewpoints(plan_path: Path) -> tuple[Viewpoint, ...]:
     InputError
         The file cannot be read, or none of its viewpoints is locked.
     """
-    locked = tuple(viewpoint for viewpoint in read_plan(plan_path).viewpoints if viewpoint.locked)
+    locked = tuple(viewpoint for viewpoint in read_given_plan(plan_path).viewpoints if viewpoint.locked)
     if not locked:
         raise InputError(
             f'{plan_path}: none of the viewpoints is locked; expected some with "locked": true, which the Plan tab\'s '
@@ -120,7 +130,7 @@ def _shortfalls(request: PlanRequest, plan: Plan) -> Iterator[Finding]:
 
 def check_files(plan_path: Path, site_path: Path, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
     """All findings on a plan file and its site file."""
-    return check_plan(read_plan(plan_path), read_site(site_path), monitor)
+    return check_plan(read_given_plan(plan_path), read_given_site(site_path), monitor)
 
 
 def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,20 +83,31 @@ def waypoint_rows(plan: Plan, origin: Origin | None = None) -> tuple[WaypointRow
     `origin` is that of the site, for plans that do not say where they lie.
     """
     by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
-    rows: list[WaypointRow] = []
+    stops: list[_Stop] = []
     for number, sortie in enumerate(plan.sorties, 1):
-        rows += _sortie_rows(number, sortie, by_id, plan)
+        stops += _sortie_stops(number, sortie, by_id, plan)
     flown = {viewpoint_id for sortie in plan.sorties for viewpoint_id in sortie.viewpoint_ids}
-    rows += [WaypointRow(0, None, view, view.position_enu_m) for view in plan.viewpoints if view.id not in flown]
-    return _placed(rows, plan.origin or origin)
+    stops += [_Stop(0, None, view, view.position_enu_m) for view in plan.viewpoints if view.id not in flown]
+    return _placed(stops, plan.origin or origin)
 
 
-def _sortie_rows(number: int, sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Iterator[WaypointRow]:
+class _Stop(NamedTuple):
+    """The part of a row that needs no place on the globe."""
+
+    sortie: int
+    vertex: int | None
+    viewpoint: Viewpoint | None
+    position_enu_m: Vec3
+    leg_m: float | None = None
+    arrival_s: float | None = None
+
+
+def _sortie_stops(number: int, sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Iterator[_Stop]:
     views = [by_id[viewpoint_id] for viewpoint_id in sortie.viewpoint_ids]
     path, vertices = sortie.path_enu_m, photo_vertices(sortie, by_id)
     if vertices is None or len(path) < 2:
         # The path misses photos: they are listed all the same, for the findings name them.
-        yield from (WaypointRow(number, None, view, view.position_enu_m) for view in views)
+        yield from (_Stop(number, None, view, view.position_enu_m) for view in views)
         return
     at: list[list[Viewpoint]] = [[] for _ in path]
     for view, vertex in zip(views, vertices, strict=True):
@@ -104,7 +116,7 @@ def _sortie_rows(number: int, sortie: Sortie, by_id: dict[str, Viewpoint], plan:
     for vertex, (point, photos) in enumerate(zip(path, at, strict=True)):
         leg_m = math.dist(path[vertex - 1], point) if vertex else 0.0
         for nth, photo in enumerate(photos or [None]):
-            yield WaypointRow(number, vertex, photo, point, 0.0 if nth else leg_m, next(arrivals, None))
+            yield _Stop(number, vertex, photo, point, 0.0 if nth else leg_m, next(arrivals, None))
 
 
 def _arrivals_s(sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Sequence[float]:
@@ -117,32 +129,29 @@ def _arrivals_s(sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Sequ
     return () if flown is None else [float(t) for t in stopping_times_s(flown[0], limits)]
 
 
-def _placed(rows: Sequence[WaypointRow], origin: Origin | None) -> tuple[WaypointRow, ...]:
-    """Rows with their places on the globe and their heights."""
-    points = np.array([row.position_enu_m for row in rows], np.float64).reshape(-1, 3)
-    takeoff_row = {row.sortie: index for index, row in enumerate(rows) if row.vertex == 0}
+def _placed(stops: Sequence[_Stop], origin: Origin | None) -> tuple[WaypointRow, ...]:
+    """Rows: stops with their places on the globe and their heights."""
+    points = np.array([stop.position_enu_m for stop in stops], np.float64).reshape(-1, 3)
+    takeoff_row = {stop.sortie: index for index, stop in enumerate(stops) if stop.vertex == 0}
     if origin is None:
-        above = _above_takeoff_m(rows, points[:, 2], takeoff_row)
-        return tuple(replace(row, height_above_takeoff_m=m) for row, m in zip(rows, above, strict=True))
+        above = _above_takeoff_m(stops, points[:, 2], takeoff_row)
+        return tuple(
+            WaypointRow(*stop, height_above_takeoff_m=above_m) for stop, above_m in zip(stops, above, strict=True)
+        )
     from planning.geodesy.enu import geodetic_from_enu
     from planning.geodesy.geoid import amsl_from_ellipsoid_m
 
     lat, lon, height = geodetic_from_enu(origin, points)
     amsl = amsl_from_ellipsoid_m(lat, lon, height)
-    above = _above_takeoff_m(rows, height, takeoff_row)
-    placed = zip(rows, lat.tolist(), lon.tolist(), height.tolist(), amsl.tolist(), above, strict=True)
-    return tuple(
-        replace(
-            row, lat_deg=a, lon_deg=b, height_ellipsoid_m=h, altitude_amsl_m=altitude_m, height_above_takeoff_m=above_m
-        )
-        for row, a, b, h, altitude_m, above_m in placed
-    )
+    above = _above_takeoff_m(stops, height, takeoff_row)
+    placed = zip(lat.tolist(), lon.tolist(), height.tolist(), amsl.tolist(), above, strict=True)
+    return tuple(WaypointRow(*stop, *place) for stop, place in zip(stops, placed, strict=True))
 
 
 def _above_takeoff_m(
-    rows: Sequence[WaypointRow], heights_m: NDArray[np.float64], takeoff_row: dict[int, int]
+    stops: Sequence[_Stop], heights_m: NDArray[np.float64], takeoff_row: dict[int, int]
 ) -> list[float | None]:
     return [
-        float(height - heights_m[takeoff_row[row.sortie]]) if row.sortie in takeoff_row else None
-        for row, height in zip(rows, heights_m, strict=True)
+        float(height - heights_m[takeoff_row[stop.sortie]]) if stop.sortie in takeoff_row else None
+        for stop, height in zip(stops, heights_m, strict=True)
     ]

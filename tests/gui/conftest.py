@@ -28,3 +28,13 @@ def _garbage_stays_in_this_thread():
     gc.disable()
     yield
     gc.enable()
+
+
+@pytest.fixture(scope="session")
+def worker():
+    """The process in which the windows of all tests plan."""
+    from groundstation.services.worker import Worker
+
+    worker = Worker()
+    yield worker
+    worker.close()

@@ -25,14 +25,14 @@ def answers():
 
 
 @pytest.fixture
-def make_desk(application, answers, tmp_path, monkeypatch):
+def make_desk(application, worker, answers, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     from groundstation.gui.desk import Desk
 
     desks = []
 
     def make():
-        desk = Desk(application, answers)
+        desk = Desk(application, answers, worker)
         desk.show()
         turn_until(application, lambda: desk.window.stage.scene() is not None)
         desks.append(desk)

@@ -14,11 +14,11 @@ from tests.gui.driving import Answers, turn_until, turn_until_idle
 
 
 @pytest.fixture
-def desk(application, tmp_path, monkeypatch):
+def desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     from groundstation.gui.desk import Desk
 
-    desk = Desk(application, Answers())
+    desk = Desk(application, Answers(), worker)
     desk.show()
     desk.window.setGeometry(0, 0, 1280, 720)
     turn_until(application, lambda: desk.window.stage.scene() is not None)
@@ -184,7 +184,7 @@ def test_the_window_answers_within_50_ms_while_a_plan_runs(application, desk):
     timer.start(2)
     longest_ms = []
     for seed in range(6):
-        page.desk.set_request(PlanRequest(n_views=40, time_budget_s=3.0, seed=seed))
+        page.desk.set_request(PlanRequest(n_views=560, time_budget_s=4.0, seed=seed))
         ticks.clear()
         page.desk.plan()
         turn_until(application, lambda: not page.desk.is_planning)

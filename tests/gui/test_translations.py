@@ -131,11 +131,11 @@ def test_no_widget_gets_a_text_that_is_not_translated(path):
 
 
 @pytest.fixture
-def desk(application, tmp_path, monkeypatch):
+def desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
     from groundstation.gui.desk import Desk
 
-    desk = Desk(application, Answers())
+    desk = Desk(application, Answers(), worker)
     desk.show()
     turn_until(application, lambda: desk.window.stage.scene() is not None)
 

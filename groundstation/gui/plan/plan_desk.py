@@ -14,7 +14,7 @@ from groundstation.services.jobs import Job, JobContext, JobState
 from groundstation.services.places import item_of_place
 from groundstation.services.plan_bench import Bench, Groundwork, PlanInHand, take_in_hand
 from groundstation.services.plan_editing import KEEPING_METHODS, edit_effect, has_same_panels, with_edited_plan
-from groundstation.services.planning import plan_document_site
+from groundstation.services.planning import plan_document_site, reunited
 from planning import revision as edits
 from planning.errors import GroundStationError
 from planning.findings import Severity
@@ -95,9 +95,7 @@ class PlanDesk(QObject):
         prepared = self._bench.prepared_for(request, site)
 
         def work(context: JobContext) -> Planned:
-            return plan_document_site(
-                site, request, prepared=prepared, stop=context.stop, trace=context.trace, monitor=context
-            )
+            return reunited(context.apart(plan_document_site, site, request, prepared), site, prepared)
 
         def done(planned: Planned) -> None:
             self._planned(planned, request, site)
