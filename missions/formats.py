@@ -21,6 +21,8 @@ from planning.site import Origin
 HEAD_BYTES = 4096
 """Enough of a file to see what it is."""
 
+_Reader = Callable[[Path], tuple[ReadMission, ...]]
+
 
 def export(
     plan: Plan,
@@ -96,17 +98,35 @@ def read_missions(path: Path) -> tuple[ReadMission, ...]:
     return _reader(path)(path)
 
 
-def _reader(path: Path) -> Callable[[Path], tuple[ReadMission, ...]]:
+def is_mission(head: bytes) -> bool:
+    """Whether a file that begins like this is a mission file; JSON is not told from other JSON."""
+    text = _without_mark(head)
+    if text.startswith(b"<"):
+        return b"<kml" in head
+    return not text.startswith(b"{") and _reader_of(head) is not None
+
+
+def _reader(path: Path) -> _Reader:
     try:
         with path.open("rb") as file:
             head = file.read(HEAD_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    reader = _reader_of(head)
+    if reader is None:
+        raise InputError(
+            f"{path}: no mission file that is known; expected a DJI KMZ (or its unpacked folder), a QGroundControl "
+            ".plan, a QGC WPL .waypoints, or a KML or CSV that Reflight wrote"
+        )
+    return reader
+
+
+def _reader_of(head: bytes) -> _Reader | None:
     from missions.csv_table import is_csv_table, read_csv
     from missions.dji.read import read_dji
     from missions.kml_view import read_kml
 
-    text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    text = _without_mark(head)
     if head.startswith(b"PK") or b"/wpmz/" in head:
         return read_dji
     if text.startswith(b"<"):
@@ -115,12 +135,12 @@ def _reader(path: Path) -> Callable[[Path], tuple[ReadMission, ...]]:
         return _read_plan_json
     if text.startswith(b"QGC WPL"):
         return _read_wpl
-    if is_csv_table(head):
-        return read_csv
-    raise InputError(
-        f"{path}: no mission file that is known; expected a DJI KMZ (or its unpacked folder), a QGroundControl .plan, "
-        "a QGC WPL .waypoints, or a KML or CSV that Reflight wrote"
-    )
+    return read_csv if is_csv_table(head) else None
+
+
+def _without_mark(head: bytes) -> bytes:
+    """The beginning of a text file without the byte order mark that editors on Windows put in front."""
+    return head.removeprefix(b"\xef\xbb\xbf").lstrip()
 
 
 def _read_plan_json(path: Path) -> tuple[ReadMission, ...]:

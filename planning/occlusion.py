@@ -30,28 +30,39 @@ RAYS_PER_SECOND = 5e6
 """Rate assumed for the stated cost; 1 to 2 cores reach 10 to 30 million."""
 
 
-def line_of_sight(corners_enu_m: Array) -> LineOfSight:
-    """Fast line-of-sight test against triangles of shape (t, 3, 3)."""
-    from open3d.core import Tensor
-    from open3d.t.geometry import RaycastingScene
+class _TrianglesBetween:
+    """Line of sight past triangles; to another process go the triangles, which builds the scene anew."""
 
-    if len(corners_enu_m) == 0:
-        return lambda a, _b: np.ones(len(a), np.bool_)
-    centre = corners_enu_m.reshape(-1, 3).mean(axis=0)
-    scene = RaycastingScene()
-    vertices = (corners_enu_m.reshape(-1, 3) - centre).astype(np.float32)
-    scene.add_triangles(Tensor(vertices), Tensor(np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3)))
+    def __init__(self, corners_enu_m: Array) -> None:
+        from open3d.core import Tensor
+        from open3d.t.geometry import RaycastingScene
 
-    def sight(a_enu_m: Array, b_enu_m: Array) -> NDArray[np.bool_]:
+        self._corners_enu_m = corners_enu_m
+        self._centre = corners_enu_m.reshape(-1, 3).mean(axis=0)
+        self._tensor, self._scene = Tensor, RaycastingScene()
+        vertices = (corners_enu_m.reshape(-1, 3) - self._centre).astype(np.float32)
+        self._scene.add_triangles(Tensor(vertices), Tensor(np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3)))
+
+    def __reduce__(self) -> tuple[type[_TrianglesBetween], tuple[Array]]:
+        return _TrianglesBetween, (self._corners_enu_m,)
+
+    def __call__(self, a_enu_m: Array, b_enu_m: Array) -> NDArray[np.bool_]:
         free = np.empty(len(a_enu_m), np.bool_)
         for start, stop in chunks(len(a_enu_m), RAYS_PER_BATCH):
-            a, b = a_enu_m[start:stop] - centre, b_enu_m[start:stop] - centre
+            a, b = a_enu_m[start:stop] - self._centre, b_enu_m[start:stop] - self._centre
             # From the panel outwards: the short end at the pane is where float32 must be exact.
             rays = np.concatenate([b, a - b], axis=1).astype(np.float32)
-            free[start:stop] = ~scene.test_occlusions(Tensor(rays), 0.0, 1.0).numpy()
+            free[start:stop] = ~self._scene.test_occlusions(self._tensor(rays), 0.0, 1.0).numpy()
         return free
 
-    return sight
+
+def _nothing_between(a_enu_m: Array, _b_enu_m: Array) -> NDArray[np.bool_]:
+    return np.ones(len(a_enu_m), np.bool_)
+
+
+def line_of_sight(corners_enu_m: Array) -> LineOfSight:
+    """Fast line-of-sight test against triangles of shape (t, 3, 3)."""
+    return _TrianglesBetween(corners_enu_m) if len(corners_enu_m) else _nothing_between
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from groundstation.services.document import PlanEntry
+from groundstation.services.given_files import FileKind, kind_of, read_given_plan, read_given_site
+from groundstation.services.mission_files import missions_as_plan
+from planning.catalogue import profiles
 from planning.errors import InputError
+from planning.findings import Finding, Severity
 from planning.insight.comparison import Comparison, compare_plans
 from planning.plan import Plan
-from planning.plan_file import read_plan
 from planning.prepare import Prepared, prepare
 from planning.progress import QUIET, Monitor
 from planning.site import SiteModel
-from planning.site_file import read_site
 
 
 def compare(
@@ -60,19 +64,74 @@ def _check_same_place(plan: Plan, name: str, site_model: SiteModel) -> None:
 def compare_files(plan_paths: Sequence[Path], site_path: Path, monitor: Monitor = QUIET) -> Comparison:
     """Compare plan files; they are named by their file names, or by their paths where those are alike.
 
+    All but the first may be mission files: each is read as a plan for the aircraft and under the constraints of the
+    first, and what its reading found is among the notes.
+
     Raises
     ------
-    InputError, InfeasibleError
+    InputError, MissionError, InfeasibleError
         As `compare`, or a file cannot be read or is named twice.
     """
     for number, path in enumerate(plan_paths):
         if path.resolve() in [other.resolve() for other in plan_paths[:number]]:
             raise InputError(f"{path}: this plan is named twice; name each plan once")
-    names = [path.name.removesuffix(".json").removesuffix(".plan") or str(path) for path in plan_paths]
+    names = [_name_of(path) for path in plan_paths]
     if len(set(names)) < len(names):
         names = [str(path) for path in plan_paths]
-    site_model = read_site(site_path)
-    return compare(site_model, [read_plan(path) for path in plan_paths], names, monitor=monitor)
+    site_model, first = read_given_site(site_path), read_given_plan(plan_paths[0])
+    plans, notes = [first], []
+    for path, name in zip(plan_paths[1:], names[1:], strict=True):
+        if kind_of(path) is FileKind.MISSION:
+            plan, found = _plan_of_mission(path, site_model, first, monitor)
+            notes += [f"{name}: {finding.message}" for finding in found if finding.severity is not Severity.OK]
+        else:
+            plan = read_given_plan(path)
+        plans.append(plan)
+    comparison = compare(site_model, plans, names, monitor=monitor)
+    return replace(comparison, notes=(*comparison.notes, *notes))
+
+
+def _name_of(path: Path) -> str:
+    """What a file is called in the table: a mission keeps its ending, which tells it from the plan it was made of."""
+    return path.name.removesuffix(".json").removesuffix(".plan") or str(path) if path.suffix == ".json" else path.name
+
+
+def _plan_of_mission(
+    path: Path, site_model: SiteModel, first: Plan, monitor: Monitor
+) -> tuple[Plan, tuple[Finding, ...]]:
+    if first.profile not in profiles():
+        raise InputError(
+            f"{path}: expected a plan file, found a mission file, and the first plan does not name an aircraft of the "
+            "catalogue to read it for; make a plan of it first ('import' with --profile)"
+        )
+    return missions_as_plan((path,), site_model, first.profile, first.constraints, monitor)
+
+
+def told_apart(entries: Sequence[PlanEntry]) -> tuple[str, ...]:
+    """Titles of plans; alike ones with their method behind, and with a number where that is alike too."""
+    names = [entry.title for entry in entries]
+    names = [
+        f"{name}, {entry.plan.method}" if names.count(name) > 1 else name
+        for name, entry in zip(names, entries, strict=True)
+    ]
+    return tuple(
+        f"{name} ({names[: position + 1].count(name)})" if names.count(name) > 1 else name
+        for position, name in enumerate(names)
+    )
+
+
+def marked_as_best(texts: Sequence[str], best: Sequence[int]) -> tuple[bool, ...]:
+    """Which cells of a row get the star: all that read as the best value does; none where all read alike.
+
+    Parameters
+    ----------
+    texts
+        The values as they are shown, one a plan.
+    best
+        Numbers of the plans with the better value, as in `planning.insight.comparison.Row`.
+    """
+    best_texts = {texts[number] for number in best}
+    return tuple(text in best_texts and len(set(texts)) > 1 for text in texts)
 
 
 def comparison_summary(comparison: Comparison) -> dict[str, Any]:

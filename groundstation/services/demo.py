@@ -43,7 +43,7 @@ def demonstrate(
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: this folder cannot be made ({error.strerror or error})") from error
+        raise InputError(f"{folder}: this folder cannot be made ({error.strerror or error}); name another") from error
     site_path = write_scene(scene, folder)
     plan_path = folder / f"{scene}.plan.json"
     planned = plan_site(site_path, request, plan_path, monitor=monitor)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+from groundstation.services.given_files import FileKind, expecting
 from groundstation.services.project_file import check_not_index
 from missions.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot, encode
 from missions.formats import read_missions, sortie_path, write_files
@@ -170,7 +171,12 @@ def read_mission_files(paths: Sequence[Path]) -> tuple[ReadMission, ...]:
     for number, path in enumerate(paths):
         if resolved[number] in resolved[:number]:
             raise InputError(f"{path}: this mission file is named twice; name the file of each sortie once")
-    return tuple(mission for path in paths for mission in read_missions(path))
+    return tuple(mission for path in paths for mission in _read_given_missions(path))
+
+
+def _read_given_missions(path: Path) -> tuple[ReadMission, ...]:
+    with expecting(FileKind.MISSION, path):
+        return read_missions(path)
 
 
 def missions_as_plan(

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.mission_files import (
     MAVLINK_FORMATS,
     SUFFIXES,
@@ -23,7 +24,7 @@ from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.json_file import check_output
 from planning.plan import Constraints, Plan
-from planning.plan_file import read_plan, write_plan
+from planning.plan_file import write_plan
 from planning.progress import QUIET, Monitor
 from planning.site import SiteModel
 from planning.site_file import read_site
@@ -40,7 +41,7 @@ def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> Sit
         The site cannot be read, or the one named lies at another place than the plan.
     """
     if site_path is not None:
-        site_model = read_site(site_path)
+        site_model = read_given_site(site_path)
         if plan.origin is not None and plan.origin != site_model.site.origin:
             raise InputError(
                 f"{site_path}: the origin of '{site_model.site.name}' is not the one of the plan, which is for "
@@ -84,7 +85,7 @@ def export_plan(
     InputError, MissionError
         A file cannot be read or written, the site is another one, or an aircraft would refuse the mission.
     """
-    plan = read_plan(plan_path)
+    plan = read_given_plan(plan_path)
     site_path = _site_beside(plan, plan_path) if site_path is None else site_path
     sources = [path for path in (plan_path, site_path) if path is not None]
     check_not_index(out)
@@ -131,6 +132,6 @@ def import_missions(
     """
     check_not_index(out)
     check_output(out, [*paths, site_path])
-    plan, findings = missions_as_plan(paths, read_site(site_path), profile_id, constraints, monitor)
+    plan, findings = missions_as_plan(paths, read_given_site(site_path), profile_id, constraints, monitor)
     write_plan(out, plan)
     return plan, findings

@@ -116,6 +116,10 @@ def _shortfalls(request: PlanRequest, plan: Plan) -> Iterator[Finding]:
             "flown"
         )
         yield Finding(Severity.NOTE, "fewer-views", text, "", float(n_views), float(request.n_views), "views")
+    n_sorties, n_batteries = len(plan.sorties), request.n_batteries
+    if n_batteries is not None and n_sorties < n_batteries:
+        text = f"takes {n_sorties} of {n_batteries} batteries: more views would show nothing new or could not be flown"
+        yield Finding(Severity.NOTE, "fewer-sorties", text, "", float(n_sorties), float(n_batteries), "sorties")
     if request.share is None:
         return
     share = plan.coverage.covered / max(plan.coverage.reachable_upper_bound, 1)

@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 
 from groundstation.services.document import Document, PlanEntry
+from groundstation.services.given_files import read_given_plan
 from groundstation.services.project_file import PLANS_FOLDER, PlanRecord, ProjectRecord, json_bytes
 from groundstation.services.project_migration import free_name, title_of
 from groundstation.services.project_site import file_stem
@@ -120,7 +121,7 @@ def add_plans(document: Document, paths: Sequence[Path]) -> tuple[Document, tupl
     """
     notes = []
     for path in paths:
-        plan = read_plan(path)
+        plan = read_given_plan(path)
         same = next((entry for entry in document.plans if entry.plan == plan), None)
         if same is not None:
             raise InputError(f"{path}: the project holds this plan already, as '{same.title}'; leave it out")

@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from groundstation.services.document import Document
+from groundstation.services.given_files import read_given_site
 from planning.errors import InputError
 from planning.frames import Vec3
 from planning.mesh import MAX_COORDINATE_M
 from planning.progress import QUIET, Monitor
 from planning.scenes import SCENES
 from planning.site import Airspace, Facade, Panel, Site, SiteModel, panel_corners
-from planning.site_file import read_site, site_sha256
+from planning.site_file import site_sha256
 from planning.site_import.importer import CITYGML_SUFFIXES, CITYJSON_SUFFIXES, assemble, read_source
 from planning.site_import.options import ImportOptions, PanelGrid
 from planning.site_import.polygons import quad_areas
@@ -96,21 +97,10 @@ def open_site(path: Path, monitor: Monitor = QUIET) -> SiteModel:
     Raises
     ------
     InputError
-        As `planning.site_file.read_site`; a building model is told from a site file.
+        As `groundstation.services.given_files.read_given_site`: a building model is told from a site file.
     """
     monitor.report("reading the site", 0, 0)
-    if path.suffix.lower() in (".json", ".cityjson") and _is_cityjson(path):
-        raise InputError(f"{path}: this is a city model, not a site file; use Import")
-    return read_site(path)
-
-
-def _is_cityjson(path: Path) -> bool:
-    """Whether the first few kilobytes say so; a file that cannot be read is left to the reader to refuse."""
-    try:
-        with path.open("rb") as file:
-            return b'"CityJSON"' in file.read(4096)
-    except OSError:
-        return False
+    return read_given_site(path)
 
 
 def preview_import(path: Path, options: ImportOptions, monitor: Monitor = QUIET) -> ImportPreview:

@@ -16,16 +16,21 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from groundstation.services.given_files import (
+    TSPLIB_SUFFIXES,
+    FileKind,
+    expecting,
+    kind_of,
+    read_given_plan,
+    read_given_site,
+)
 from groundstation.services.missions import find_site
 from planning.errors import InfeasibleError, InputError
-from planning.json_file import read_json
-from planning.plan import PLAN_FORMAT, Plan
-from planning.plan_file import read_plan
+from planning.plan import Plan
 from planning.progress import QUIET, Monitor
 from planning.request import DEFAULT_VIEWS, PlanRequest
 from planning.routing.methods import TourMethod
-from planning.site import SITE_FORMAT, SiteModel
-from planning.site_file import read_site
+from planning.site import SiteModel
 from planning.sweep import sweep
 from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, GapAxis, Panel, draw
 from planning.tradeoff.plan_report import PlanReport, plan_panels, plan_report, plan_rows, plan_title
@@ -39,9 +44,7 @@ from planning.tradeoff.plan_runs import (
     settings,
 )
 from planning.tradeoff.tour_report import TourReport, tour_panel, tour_report, tour_rows, tour_title
-from planning.tradeoff.tour_runs import TOUR_METHODS, plan_case, run_tours, tsplib_case
-
-TSPLIB_SUFFIXES = (".tsp", ".atsp")
+from planning.tradeoff.tour_runs import TOUR_METHODS, TourCase, plan_case, run_tours, tsplib_case
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +141,7 @@ def route_tradeoff(
     tsplib_paths = [path for path in paths if path.suffix.lower() in TSPLIB_SUFFIXES]
     plans = _plans_with_sites([path for path in paths if path not in tsplib_paths])
     with output_folder(out) as folder:
-        cases = [tsplib_case(path, monitor) for path in tsplib_paths]
+        cases = [_tsplib_case(path, monitor) for path in tsplib_paths]
         cases += [plan_case(plan, model, monitor) for plan, model in plans]
         _check_names([case.name for case in cases])
         reports = tuple(tour_report(case, run_tours(case, seconds, methods, seed, monitor)) for case in cases)
@@ -165,8 +168,13 @@ class _NumberedRuns:
 
 def _timed_site(path: Path) -> tuple[SiteModel, float]:
     started = time.perf_counter()
-    model = read_site(path)
+    model = read_given_site(path)
     return model, time.perf_counter() - started
+
+
+def _tsplib_case(path: Path, monitor: Monitor) -> TourCase:
+    with expecting(FileKind.TSPLIB, path):
+        return tsplib_case(path, monitor)
 
 
 def _check_names(names: Sequence[str]) -> None:
@@ -179,14 +187,10 @@ def _plans_with_sites(paths: Sequence[Path]) -> list[tuple[Plan, SiteModel]]:
     """Plans among JSON files, each with its site."""
     sites, plans = [], []
     for path in paths:
-        content = read_json(path)
-        kind = content.get("format") if isinstance(content, dict) else None
-        if kind == PLAN_FORMAT:
-            plans.append((path, read_plan(path)))
-        elif kind == SITE_FORMAT:
-            sites.append(read_site(path))
+        if kind_of(path) is FileKind.SITE:
+            sites.append(read_given_site(path))
         else:
-            raise InputError(f"{path}: expected a TSPLIB file (.tsp, .atsp), a plan or a site, found format {kind!r}")
+            plans.append((path, read_given_plan(path)))
     if sites and not plans:
         raise InputError(f"{paths[0]}: a site alone has no viewpoints to fly to; name a plan as well")
     return [(plan, _site_for(plan, path, sites)) for path, plan in plans]
@@ -217,7 +221,8 @@ def output_folder(path: Path) -> Iterator[Path]:
         path.mkdir(parents=True, exist_ok=True)
         temporary = Path(tempfile.mkdtemp(prefix=".tradeoff-", dir=path))
     except OSError as error:
-        raise InputError(f"{path}: this folder cannot be made or written into ({error.strerror or error})") from error
+        text = f"{path}: this folder cannot be made or written into ({error.strerror or error}); name another"
+        raise InputError(text) from error
     try:
         yield temporary
         for file in sorted(temporary.iterdir()):

@@ -100,8 +100,9 @@ class _Child:
     def send(self, message: Any) -> None:
         """Send a message; raises `_LostError` where nobody reads it."""
         assert self._process.stdin is not None
+        pickled = pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
         try:
-            pickle.dump(message, self._process.stdin, pickle.HIGHEST_PROTOCOL)
+            self._process.stdin.write(pickled)
             self._process.stdin.flush()
         except OSError as error:
             raise _LostError from error
@@ -327,7 +328,11 @@ def _serve() -> None:
             _load_planning()
             continue
         telling = _Telling(out, orders.cancel)
-        telling.send(_outcome(call, telling, orders.stop))
+        outcome = _outcome(call, telling, orders.stop)
+        try:
+            telling.send(outcome)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:  # pickle cannot send the result
+            telling.send(_Ended(error=_sendable(error)))
 
 
 def _outcome(call: _Call, telling: _Telling, stop: threading.Event) -> _Ended:

@@ -94,9 +94,9 @@ def test_photos_plans_and_sites_are_no_missions(reflight, pane, shared_data, tmp
     photo = next((shared_data / "dji" / "photos").iterdir())
     assert "no mission file that is known" in reflight("import", photo, "--site", pane / "site.json", "-o", out).error
     error = reflight("import", pane / "plan.json", "--site", pane / "site.json", "-o", out).error
-    assert "this is a Reflight plan already" in error
+    assert "found a plan; it needs no import" in error
     assert (
-        "no QGroundControl plan"
+        "found a site; it goes behind --site"
         in reflight("import", pane / "site.json", "--site", pane / "site.json", "-o", out).error
     )
 

@@ -122,7 +122,7 @@ def test_a_site_with_characters_the_terminal_lacks_is_no_error(process, pane):
     done = process("check", pane / "plan.json", pane / "größe.json", env=environment)
     assert done.returncode == 1
     assert done.stderr.startswith("error: ")
-    assert "gr\\xf6\\xdfe.json: cannot be read" in done.stderr
+    assert "gr\\xf6\\xdfe.json: expected a site file" in done.stderr
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="/dev/full exists on Linux only")

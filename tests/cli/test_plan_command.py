@@ -179,7 +179,7 @@ def test_files_that_are_no_site_are_refused_and_nothing_is_written(reflight, bad
 
 def test_a_plan_instead_of_a_site_is_named_as_such(reflight, pane, tmp_path):
     error = reflight("plan", pane / "plan.json", "-o", tmp_path / "p.json").error
-    assert "expected 'reflight-site/1', got 'reflight-plan/1'" in error
+    assert "expected a site file (such as office.site.json), found a plan" in error
 
 
 @pytest.mark.parametrize(

@@ -44,5 +44,5 @@ def test_files_that_are_no_instance_are_refused(reflight, bad_file, shared_data,
     assert str(bad_file) in reflight("route", bad_file).error
     tour = shared_data / "routing" / "tsplib" / "berlin52.opt.tour"
     assert "expected TSP, ATSP or CVRP" in reflight("route", tour).error
-    assert "cannot be read" in reflight("route", tmp_path).error
-    assert "cannot be read" in reflight("route", tmp_path / "missing.tsp").error
+    assert "found a folder" in reflight("route", tmp_path).error
+    assert "found nothing of that name" in reflight("route", tmp_path / "missing.tsp").error

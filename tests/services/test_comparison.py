@@ -5,7 +5,14 @@ from dataclasses import replace
 
 import pytest
 
-from groundstation.services.comparison import compare, compare_files, comparison_summary
+from groundstation.services.comparison import (
+    compare,
+    compare_files,
+    comparison_summary,
+    marked_as_best,
+    told_apart,
+)
+from groundstation.services.document import PlanEntry
 from planning.errors import InputError
 from planning.plan_file import write_plan
 from planning.scenes import write_scene
@@ -70,3 +77,38 @@ def test_files_are_named_by_their_names_or_by_paths_where_those_are_alike(tmp_pa
     assert compare_files(paths[1:], site).names == (str(paths[1]), str(paths[2]))
     with pytest.raises(InputError, match="named twice"):
         compare_files([paths[0], paths[0]], site)
+
+
+def entries(*titles_and_methods):
+    return tuple(
+        PlanEntry(f"p{number}", title, replace(PLAN, method=method))
+        for number, (title, method) in enumerate(titles_and_methods)
+    )
+
+
+@pytest.mark.parametrize(
+    ("plans", "names"),
+    [
+        ((("north", "greedy"), ("south", "greedy")), ("north", "south")),
+        ((("north", "greedy"), ("north", "imported")), ("north, greedy", "north, imported")),
+        (
+            (("north", "pso"), ("south", "pso"), ("north", "pso"), ("north", "noto")),
+            ("north, pso (1)", "south", "north, pso (2)", "north, noto"),
+        ),
+    ],
+)
+def test_plans_of_the_same_title_are_told_apart(plans, names):
+    assert told_apart(entries(*plans)) == names
+
+
+@pytest.mark.parametrize(
+    ("texts", "best", "marked"),
+    [
+        (("11:53", "11:54"), (0,), (True, False)),
+        (("11:53", "11:53"), (1,), (False, False)),
+        (("11:53", "11:53", "11:54"), (1,), (True, True, False)),
+        (("3", "-"), (), (False, False)),
+    ],
+)
+def test_no_star_marks_a_difference_that_cannot_be_seen(texts, best, marked):
+    assert marked_as_best(texts, best) == marked

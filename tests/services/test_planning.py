@@ -60,6 +60,8 @@ def test_impossible_wishes_and_cancelled_work_write_nothing(site, tmp_path):
     [
         (PlanRequest(n_views=3, time_budget_s=5.0), []),
         (PlanRequest(n_views=2000, time_budget_s=5.0), ["fewer-views"]),
+        (PlanRequest(n_batteries=9, time_budget_s=5.0), ["fewer-sorties"]),
+        (PlanRequest(n_batteries=1, time_budget_s=5.0), []),
         (PlanRequest(share=0.5, time_budget_s=5.0), []),
         (PlanRequest(share=1.0, method="noto", time_budget_s=5.0), ["less-coverage"]),
     ],

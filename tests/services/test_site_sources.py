@@ -53,7 +53,7 @@ def test_unknown_bundled_site_is_refused_with_those_there_are():
 
 
 def test_city_models_are_not_taken_for_site_files(shared_data):
-    with pytest.raises(InputError, match="use Import"):
+    with pytest.raises(InputError, match="found a building model; import it first"):
         open_site(shared_data / "buildings" / "cityjson" / "delft_1b.json")
 
 

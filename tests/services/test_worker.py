@@ -1,6 +1,7 @@
 """Work in a process of its own: the same results, progress, stopping, cancelling, and every way it can end."""
 
 import os
+import pickle
 import signal
 import sys
 import threading
@@ -100,8 +101,9 @@ def test_the_work_is_done_in_one_other_process(worker):
     assert worker.run(where) == worker.run(where) != os.getpid()
 
 
-def test_a_plan_is_the_one_that_is_made_here(worker):
-    model, request = SCENES["roof"](), PlanRequest(n_views=5, time_budget_s=30.0)
+@pytest.mark.parametrize("scene", ["roof", "court"])
+def test_a_plan_is_the_one_that_is_made_here(worker, scene):
+    model, request = SCENES[scene](), PlanRequest(n_views=5, time_budget_s=60.0)
     here = plan_document_site(model, request)
     there = reunited(worker.run(plan_document_site, model, request), model, None)
     assert there.plan.viewpoints == here.plan.viewpoints
@@ -152,6 +154,17 @@ def test_an_error_that_cannot_be_sent_is_told_in_words(worker):
 
 def raise_unsendable(*, stop, trace, monitor):
     raise UnsendableError("a", "b")
+
+
+def return_unsendable(*, stop, trace, monitor):
+    return lambda: None
+
+
+def test_a_result_that_cannot_be_sent_is_an_error_and_not_the_end_of_the_process(worker):
+    process = worker.run(where)
+    with pytest.raises((AttributeError, TypeError, pickle.PicklingError), match="pickle"):
+        worker.run(return_unsendable)
+    assert worker.run(where) == process
 
 
 @pytest.mark.parametrize(("end", "words"), [(die, "exit status 7"), (die_of_memory, "memory")])

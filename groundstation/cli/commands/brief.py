@@ -36,13 +36,12 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_json, run_job
     from groundstation.services.brief_html import brief_html, brief_pictures, sources_in_page
     from groundstation.services.flight_brief import flight_brief
+    from groundstation.services.given_files import read_given_plan, read_given_site
     from groundstation.services.jobs import JobContext
     from groundstation.services.preflight import preflight
     from groundstation.services.units import UnitSystem
     from planning.errors import InputError
     from planning.json_file import check_output, write_atomically
-    from planning.plan_file import read_plan
-    from planning.site_file import read_site
 
     if options.out.suffix.lower() not in SUFFIXES:
         raise InputError(
@@ -50,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
             "or by printing the page in a browser"
         )
     check_output(options.out, [options.plan, options.site])
-    plan, site_model = read_plan(options.plan), read_site(options.site)
+    plan, site_model = read_given_plan(options.plan), read_given_site(options.site)
     units = UnitSystem(options.units)
 
     def work(context: JobContext) -> tuple[str, bool, int]:

@@ -10,10 +10,11 @@ if TYPE_CHECKING:
     from planning.insight.comparison import Comparison
 
 EPILOG = """A star marks the better value. Coverage of all plans is counted in one way: under the constraints
-of the first.
+of the first. Mission files are read as plans for its aircraft.
 
-example:
+examples:
   compare greedy.plan.json pso.plan.json --site office.site.json
+  compare greedy.plan.json flown.kmz --site office.site.json
 """
 
 
@@ -29,7 +30,7 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
     # The first on its own, so that one plan alone is wrong usage.
     parser.add_argument("first", type=Path, metavar="PLAN", help="plan file; its constraints hold for all")
-    parser.add_argument("others", type=Path, nargs="+", metavar="PLAN", help="plan files to compare it with")
+    parser.add_argument("others", type=Path, nargs="+", metavar="PLAN", help="plan or mission files to compare it with")
     parser.add_argument("--site", type=Path, required=True, metavar="SITE", help="site file of all plans")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -50,13 +51,14 @@ def run(options: argparse.Namespace) -> int:
 
 def table_lines(comparison: Comparison) -> list[str]:
     """The table as text, a column a plan."""
+    from groundstation.services.comparison import marked_as_best
+
     constraints = comparison.constraints
     lines = [["", *comparison.names]]
     for row in comparison.rows:
-        cells = (
-            _cell(value, row.unit) + ("*" if number in row.best else " ") for number, value in enumerate(row.values)
-        )
-        lines.append([row.label, *cells])
+        texts = [_cell(value, row.unit) for value in row.values]
+        stars = ("*" if is_best else " " for is_best in marked_as_best(texts, row.best))
+        lines.append([row.label, *(text + star for text, star in zip(texts, stars, strict=True))])
     widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
     text = [
         "  ".join([line[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(line[1:], widths[1:], strict=True))]).rstrip()

@@ -173,12 +173,12 @@ def run(options: argparse.Namespace) -> int:
 def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     """What a pilot wants to know, in a few lines on stdout."""
     from groundstation.cli.console import counted
+    from groundstation.services.units import per_cent
     from planning.coverage.sections import SectionGrid
 
     plan, coverage = planned.plan, planned.plan.coverage
     n_directions = SectionGrid(plan.constraints.section_step_deg).n_sections
-    # Rounded down: 100 % means that nothing is missing.
-    share = math.floor(10_000.0 * coverage.covered / max(coverage.reachable_upper_bound, 1)) / 100.0
+    share = per_cent(coverage.covered, coverage.reachable_upper_bound, 2)
     print(
         f"{out}: {counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')}, "
         f"{plan.duration_s / 60:.1f} min in the air"

@@ -48,10 +48,10 @@ def run_new(options: argparse.Namespace) -> int:
     """Make a project; returns the exit status."""
     from groundstation.cli.console import print_next
     from groundstation.services.document import Document
+    from groundstation.services.given_files import read_given_site
     from groundstation.services.project import create_project, open_project
-    from planning.site_file import read_site
 
-    create_project(options.folder, Document(read_site(options.site)), name=options.name, site_source=options.site)
+    create_project(options.folder, Document(read_given_site(options.site)), name=options.name, site_source=options.site)
     project = open_project(options.folder)
     _print(project)
     print_next("plan", options.folder / project.record.site, "-o", "plan.json")
@@ -66,7 +66,7 @@ def run_show(options: argparse.Namespace) -> int:
     from groundstation.services.project_migration import VERSION
     from groundstation.services.recovery import find_recovery
 
-    project = open_project(options.folder)
+    project = open_project(_folder_of_project(options.folder))
     recovery = find_recovery(project.folder)
     if options.json:
         content = _summary(project)
@@ -121,10 +121,12 @@ def run_migrate(options: argparse.Namespace) -> int:
 
 def _folder_of_project(path: Path) -> Path:
     """Folder of a project that can be read: nothing else gets a lock file."""
+    from groundstation.services.given_files import FileKind, expecting
     from groundstation.services.project_file import project_folder, read_index
 
-    folder = project_folder(path)
-    read_index(folder)
+    with expecting(FileKind.PROJECT, path):
+        folder = project_folder(path)
+        read_index(folder)
     return folder
 
 
@@ -159,7 +161,7 @@ def _summary(project: OpenedProject) -> dict[str, Any]:
 
 def _print(project: OpenedProject) -> None:
     from groundstation.cli.console import counted
-    from groundstation.services.units import minutes_text
+    from groundstation.services.units import minutes_text, per_cent
 
     content = _summary(project)
     print(f"project: {content['name']}")
@@ -171,7 +173,7 @@ def _print(project: OpenedProject) -> None:
     print(f"plans:   {len(content['plans'])}")
     for plan in content["plans"]:
         bound = plan["reachable_upper_bound"]
-        share = f", {100.0 * plan['covered'] / bound:.1f} % of what is possible" if bound else ""
+        share = f", {per_cent(plan['covered'], bound):.1f} % of what is possible" if bound else ""
         print(
             f"  {plan['title']}: {counted(plan['views'], 'view')}{share}, {counted(plan['sorties'], 'sortie')} in "
             f"{minutes_text(plan['duration_s'])} ({plan['method']}, {plan['file']})"

@@ -48,6 +48,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Read, solve, print."""
     begin = time.perf_counter()
+    from groundstation.services.given_files import FileKind, expecting
     from planning.errors import InputError
     from planning.progress import TimeLimit, Trace
     from planning.routing.methods import solve_tour
@@ -57,7 +58,8 @@ def run(options: argparse.Namespace) -> int:
     seed = checked_seed(options.seed)
     if options.time_budget <= 0.0:
         raise InputError(f"--time-budget: expected a positive number of seconds, got {options.time_budget:g}")
-    instance = read_instance(options.file)
+    with expecting(FileKind.TSPLIB, options.file):
+        instance = read_instance(options.file)
     if instance.kind == "CVRP":
         raise InputError(f"{options.file}: a CVRP needs several routes; expected a TSP or ATSP")
     if instance.kind == "ATSP" and options.method == "local-search":

@@ -109,6 +109,7 @@ def _triple(text: str) -> tuple[Number3, Number3, Number3]:
 def run(options: argparse.Namespace) -> int:
     """Import a site; returns the exit status."""
     from groundstation.cli.console import counted, named_like, print_json, print_next, run_job
+    from groundstation.services.given_files import FileKind, expecting
     from groundstation.services.project_file import check_not_index
     from planning.json_file import check_output
     from planning.site_import.importer import import_site
@@ -118,7 +119,8 @@ def run(options: argparse.Namespace) -> int:
     check_output(options.out, [options.file])
     started = time.perf_counter()
     import_options = _import_options(options)
-    imported = run_job("site import", lambda context: import_site(options.file, import_options, context))
+    with expecting(FileKind.BUILDING, options.file):
+        imported = run_job("site import", lambda context: import_site(options.file, import_options, context))
     model = write_imported_site(options.out, imported, options.file)
     seconds = time.perf_counter() - started
     site = model.site
