@@ -70,7 +70,7 @@ class Desk(QObject):
         self.window = self._make_window()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.autosave_now)
-        self.autosaveFailed.connect(lambda text: self.workspace.say(Severity.WARNING, text))
+        self.autosaveFailed.connect(self._warn)
         self.workspace.documentChanged.connect(lambda *_: self._show_title())
         self._start_timer()
 
@@ -102,7 +102,7 @@ class Desk(QObject):
             self.workspace.say(
                 Severity.WARNING,
                 self.tr("{0}. The settings of the first start are used; the file stays as it is.").format(
-                    self._settings_problem
+                    self.workspace.words(self._settings_problem)
                 ),
             )
         if self._settings.map_tiles:
@@ -183,7 +183,10 @@ class Desk(QObject):
         try:
             write_settings(settings_path(), self._settings)
         except InputError as error:
-            self.workspace.say(Severity.WARNING, self.tr("The settings could not be kept: {0}").format(error))
+            self.workspace.say(
+                Severity.WARNING,
+                self.tr("The settings could not be kept: {0}").format(self.workspace.words(str(error))),
+            )
 
     def _layout_key(self) -> str:
         size = self._application.primaryScreen().availableGeometry()
@@ -274,11 +277,11 @@ class Desk(QObject):
     def _opened(self, taken: TakenProject) -> None:
         project = taken.project
         if taken.problem:
-            self.workspace.say(Severity.WARNING, taken.problem)
+            self._warn(taken.problem)
         site_source = project.folder / project.record.site if project.record.site else None
         self._put_on_desk(replace(project.document, site_source=site_source), project.folder, taken.lock)
         for note in project.notes:
-            self.workspace.say(note.severity, note.message)
+            self.workspace.say(note.severity, self.workspace.words(note.message))
         self._remember(project.folder)
         site = project.document.site
         n_panels = 0 if site is None else site.site.n_panels
@@ -301,9 +304,13 @@ class Desk(QObject):
         try:
             action()
         except GroundStationError as error:
-            self.workspace.say(Severity.WARNING, str(error))
+            self._warn(str(error))
             return False
         return True
+
+    def _warn(self, text: str) -> None:
+        """Show what a part without Qt warns of."""
+        self.workspace.say(Severity.WARNING, self.workspace.words(text))
 
     def _remember(self, folder: Path) -> None:
         self._settings = self._settings.with_recent(folder)
@@ -329,11 +336,12 @@ class Desk(QObject):
     def _offer(self, found: Recovery) -> bool:
         """Ask whether unsaved work is wanted; True where it was taken over."""
         if found.problem:
-            self.workspace.say(Severity.WARNING, found.problem)
+            self._warn(found.problem)
             self._discard(found)
             return False
         when = "" if found.saved_at is None else f"{found.saved_at.astimezone():%Y-%m-%d %H:%M}"
-        answer = self._questions.recover(self.window, when, found.changes, found.is_of_saved_state)
+        changes = tuple(map(self.workspace.words, found.changes))
+        answer = self._questions.recover(self.window, when, changes, found.is_of_saved_state)
         if answer is Answer.YES:
             self._take_over(found)
             return True

@@ -75,7 +75,7 @@ class JobBar(QWidget):
         jobs = self._workspace.jobs()
         if not jobs or jobs[0].id != event.job_id or jobs[0].cancel_requested:
             return
-        self._label.setText(f"{event.name}: {event.stage}")
+        self._label.setText(f"{event.name}: {self._workspace.words(event.stage)}")
         self._label.setToolTip(self._label.text())
         self._bar.setRange(0, 1000 if event.total > 0 else 0)
         if event.total > 0:

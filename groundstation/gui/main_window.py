@@ -26,6 +26,7 @@ from groundstation.gui.loading import BackgroundImport
 from groundstation.gui.message_area import MessageArea
 from groundstation.gui.scrolling import scrolled
 from groundstation.gui.stage import Stage
+from groundstation.gui.tab_order import first_in, next_in_order
 from groundstation.gui.tabs import Place, Tab, TabSpec, find_tabs
 from groundstation.gui.workspace import Workspace
 
@@ -58,6 +59,7 @@ class MainWindow(QMainWindow):
         self._tabs: dict[str, Tab] = {}
         self._shown: TabSpec | None = None
         self._was_shown = False
+        self._quick_buttons: list[QWidget] = []
         self.stage = Stage(workspace)
         self.messages = MessageArea(workspace)
         self.job_bar = JobBar(workspace)
@@ -104,6 +106,7 @@ class MainWindow(QMainWindow):
             button = QToolButton()
             button.setDefaultAction(action)
             self._top.addWidget(button)
+            self._quick_buttons.append(button)
 
     def tab_names(self) -> tuple[str, ...]:
         """Names of all tabs, in order."""
@@ -131,10 +134,12 @@ class MainWindow(QMainWindow):
         return self._tabs[name]
 
     def show_tab(self, name: str) -> None:
-        """Bring a tab to the front."""
+        """Bring a tab to the front, and the keyboard to its first widget."""
         self._bar.setCurrentIndex(self.tab_names().index(name))
         if self._shown is None:
             self._tab_chosen(self._bar.currentIndex())
+        first = first_in(self._tabs[name].left)
+        (self._bar if first is None else first).setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def shown_tab(self) -> str:
         """Name of the tab at the front."""
@@ -162,6 +167,24 @@ class MainWindow(QMainWindow):
                 action.setEnabled(name == spec.name)
         tab.shown()
         self.tabShown.emit(spec.name)
+
+    def focusNextPrevChild(self, next: bool) -> bool:  # noqa: A002, N802
+        """Take Tab through the window as it is read: tabs, form, view, details, lists, messages, jobs."""
+        regions = (
+            self._bar,
+            *self._quick_buttons,
+            self._pages if self._pages.currentWidget() is not self._around else self._left,
+            self.stage,
+            self._right,
+            self._bottom,
+            self.messages,
+            self.job_bar,
+        )
+        following = next_in_order(regions, self.focusWidget(), forward=next)
+        if following is None:
+            return False
+        following.setFocus(Qt.FocusReason.TabFocusReason if next else Qt.FocusReason.BacktabFocusReason)
+        return True
 
     def layout_text(self) -> str:
         """Sizes of everything that can be resized, as text for the settings."""

@@ -33,6 +33,7 @@ from groundstation.gui.mission.map_paint import (
 from groundstation.gui.mission.map_pick import find_item, place_of
 from groundstation.gui.mission.tile_store import TileStore
 from groundstation.gui.mission.viewport import Viewport
+from groundstation.gui.own_words import own_words
 from groundstation.gui.theme import colours
 from groundstation.services.document import Document, Item
 from groundstation.services.map_shapes import PlanShapes, SiteShapes, plan_shapes, site_shapes
@@ -136,9 +137,9 @@ class MapView(MapCanvas):
         try:
             source = MapTiles(path)
         except InputError as error:
-            self._refusal = str(error)
+            self._refusal = own_words(str(error), self._units)
             self.update()
-            self.refused.emit(str(error))
+            self.refused.emit(self._refusal)
             return False
         self._refusal = ""
         self._tiles.set_source(source)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Protocol
 
 from PySide6.QtCore import QObject, Qt
@@ -199,9 +199,17 @@ class Menus(QObject):
 
     def show_shortcuts(self) -> None:
         """A box with all keys."""
-        rows = (line.split("\t") for line in self.shortcuts_text().splitlines())
-        text = "".join(f"<tr><td><b>{key}</b>&nbsp;&nbsp;</td><td>{words}</td></tr>" for key, words in rows)
-        self._box(self.tr("Shortcuts"), f"<table>{text}</table>")
+        rows = [tuple(line.split("\t")) for line in self.shortcuts_text().splitlines()]
+        rows += [
+            (self.tr("Arrow keys"), self.tr("3-D view: turn")),
+            ("+ -", self.tr("3-D view: nearer, farther")),
+            ("F", self.tr("3-D view: show everything")),
+            ("Esc", self.tr("Put a tool or a dialog away")),
+        ]
+        # In two columns: one is higher than small screens.
+        half = (len(rows) + 1) // 2
+        cells = "".join(f"<td>{_key_table(part)}</td>" for part in (rows[:half], rows[half:]))
+        self._box(self.tr("Shortcuts"), f"<table><tr>{cells}</tr></table>")
 
     def _show_about(self) -> None:
         from importlib.metadata import version
@@ -222,3 +230,10 @@ class Menus(QObject):
 
 def _plain(text: str) -> str:
     return text.replace("&", "")
+
+
+def _key_table(rows: Iterable[Sequence[str]]) -> str:
+    """Keys and what they do, each in one line."""
+    cell = '<td style="white-space: nowrap">'
+    lines = (f"<tr>{cell}<b>{key}</b>&nbsp;&nbsp;</td>{cell}{words}&nbsp;&nbsp;&nbsp;</td></tr>" for key, words in rows)
+    return f"<table>{''.join(lines)}</table>"

@@ -62,7 +62,7 @@ def take_screenshots(folder: Path, site: Path | None = None, sizes_px: tuple[tup
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder}: this folder cannot be made ({error.strerror or error})") from error
+        raise InputError(f"{folder}: this folder cannot be made ({error.strerror or error}); name another") from error
     if site is not None:
         open_site(site)
     application = QApplication.instance() or QApplication(["reflight"])

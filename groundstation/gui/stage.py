@@ -60,6 +60,7 @@ class Stage(QWidget):
         self._in_camera: tuple[SiteModel | None, Plan | None, str] = (None, None, "")
         self._camera: CameraPreview | None = None
         self._waiting: list[Callable[[SceneView], None]] = []
+        self._has_shown_plan = False
         self._pages = QStackedWidget()
         self._loading = QLabel(self.tr("The 3-D view is being prepared ..."))
         self._loading.setProperty("role", "muted")
@@ -176,6 +177,7 @@ class Stage(QWidget):
         self._show_selection(self._workspace.selection)
         if self.page() is StagePage.SCENE:
             self._pages.setCurrentWidget(scene)
+        self._bring_in_first_plan(scene, document)
         waiting, self._waiting = self._waiting, []
         for callback in waiting:
             callback(scene)
@@ -194,10 +196,19 @@ class Stage(QWidget):
         scene, plan = self._scene, _plan_of(after)
         if scene is not None:
             if before.site is not after.site:
-                scene.set_site(after.site, keep_camera=_is_same_building(before.site, after.site))
+                is_same_building = _is_same_building(before.site, after.site)
+                scene.set_site(after.site, keep_camera=is_same_building)
+                self._has_shown_plan = self._has_shown_plan and is_same_building
             if _plan_of(before) is not plan:
                 scene.set_plan(plan, _locked_in(after))
+            self._bring_in_first_plan(scene, after)
         self._update_pages()
+
+    def _bring_in_first_plan(self, scene: SceneView, document: Document) -> None:
+        """Let the first plan of a site be seen whole; afterwards the view is the user's."""
+        if not self._has_shown_plan and _plan_of(document) is not None:
+            self._has_shown_plan = True
+            scene.bring_in_viewpoints()
 
     def _update_pages(self) -> None:
         """Bring the page that is shown up to date; the others wait until they are."""

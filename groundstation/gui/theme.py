@@ -169,6 +169,8 @@ def _style_sheet(found: Colours) -> str:
         {{ background: {found.accent}; color: {found.accent_text}; border-color: {found.accent}; }}
     QPushButton[primary="true"]:disabled {{ background: {found.line}; color: {found.muted}; }}
     QPushButton:focus, QToolButton:focus {{ border: 2px solid {found.accent}; padding: 2px 7px; }}
+    QPushButton:checked:focus, QToolButton:checked:focus, QPushButton[primary="true"]:focus
+        {{ border: 3px solid {found.text}; padding: 1px 6px; }}
     QComboBox, QAbstractSpinBox, QLineEdit {{ min-height: {TOUCH_PX - 6}px; }}
     QComboBox QAbstractItemView::item, QMenu::item {{ min-height: {TOUCH_PX - 6}px; }}
     QMenu::item {{ padding: 2px 24px 2px 12px; }}
@@ -178,11 +180,15 @@ def _style_sheet(found: Colours) -> str:
     QTabBar::tab {{ min-height: {TOUCH_PX - 8}px; padding: 2px 12px; background: {found.window}; color: {found.text};
         border: none; border-bottom: 3px solid transparent; }}
     QTabBar::tab:selected {{ border-bottom: 3px solid {found.accent}; font-weight: bold; }}
+    QTabBar::tab:selected:focus {{ border: 2px solid {found.accent}; border-bottom-width: 3px; padding: 0px 10px; }}
     QTabBar::tab:disabled {{ color: {found.muted}; }}
     QHeaderView::section {{ min-height: {TOUCH_PX - 12}px; padding: 2px 6px; border: none;
         border-right: 1px solid {found.line}; border-bottom: 1px solid {found.line}; background: {found.window}; }}
     QTreeView, QTableView, QListView, QPlainTextEdit, QTextBrowser {{ border: 1px solid {found.line};
         background: {found.base}; }}
+    QTreeView:focus, QTableView:focus, QListView:focus, QPlainTextEdit:focus, QTextBrowser:focus
+        {{ border: 2px solid {found.accent}; }}
+    QCheckBox:focus, QRadioButton:focus {{ color: {found.accent}; text-decoration: underline; }}
     QTreeView::item, QListView::item {{ min-height: {TOUCH_PX - 8}px; }}
     QProgressBar {{ border: 1px solid {found.line}; border-radius: 4px; text-align: center; min-height: 20px; }}
     QProgressBar::chunk {{ background: {found.accent}; }}

@@ -13,6 +13,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.job_bridge import JobBridge
+from groundstation.gui.own_words import own_words
 from groundstation.services.document import Document, Item, exists
 from groundstation.services.jobs import ENDED, Job, JobContext, JobRunner, JobState, JobStateChanged
 from groundstation.services.session import Session
@@ -125,6 +126,10 @@ class Workspace(QObject):
         """Tell the user something."""
         self.messageShown.emit(Message(severity, text, item))
 
+    def words(self, text: str) -> str:
+        """What a part without Qt says, an error or a finding, in the user's language and units."""
+        return own_words(text, self._units)
+
     def start(
         self, name: str, work: Work, when_done: Done | None = None, when_failed: Failed | None = None
     ) -> Job[Any]:
@@ -184,7 +189,7 @@ class Workspace(QObject):
 
     def _say_error(self, name: str, error: BaseException) -> None:
         if isinstance(error, (GroundStationError, OSError)):
-            text = self.tr("{0}: {1}").format(name, error)
+            text = self.tr("{0}: {1}").format(name, self.words(str(error)))
         else:
             text = self.tr("{0}: Reflight failed where it should not ({1}: {2}); please report it").format(
                 name, type(error).__name__, error

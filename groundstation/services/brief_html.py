@@ -15,7 +15,7 @@ from groundstation.services.finding_texts import duration_text, measured_text
 from groundstation.services.flight_brief import FlightBrief
 from groundstation.services.map_shapes import plan_shapes, site_shapes
 from groundstation.services.profiles import height_limits, plan_profiles
-from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, speed_unit
+from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, speed_unit
 from missions.dji.write import LinkLoss
 from planning.findings import Severity
 from planning.plan import Plan
@@ -132,7 +132,7 @@ def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple
     yield say("Batteries needed"), str(brief.n_batteries)
     total_s = sum(sortie.duration_s for sortie in brief.sorties)
     yield say("Flight time, all sorties"), duration_text(total_s)
-    yield say("Coverage of what can be covered"), f"{100.0 * brief.covered_share:.1f} %"
+    yield say("Coverage of what can be covered"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
     yield say("Greatest height above ground"), length.text(brief.max_above_ground_m)
     near = [s.smallest_clearance_m for s in brief.sorties if s.smallest_clearance_m is not None]
     kept = say("{0} along the paths, {1} to be kept").format(

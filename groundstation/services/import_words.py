@@ -50,18 +50,20 @@ _OPTION = re.compile(
 )
 
 
-def in_window_words(text: str, labels: Mapping[str, str]) -> str:
+def in_window_words(text: str, labels: Mapping[str, str], quoted: str = "“{0}”") -> str:
     """A message with the label of a field in place of each option and of the placeholder behind it.
 
     Parameters
     ----------
     labels
         By field of `ImportOptions` or `PanelGrid`; an option without a label stays as it is.
+    quoted
+        A label as it stands in a sentence.
     """
 
     def replaced(found: re.Match[str]) -> str:
         label = labels.get(FIELDS.get(found["option"], ""))
-        return found[0] if label is None else f"“{label}”"
+        return found[0] if label is None else quoted.format(label)
 
     text = text.replace(HOW_TO_GET_PANELS, HOW_TO_PICK_PANELS).replace(HEIGHT_HINT, "")
     # The three options of a grid are one step in the window.

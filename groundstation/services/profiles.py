@@ -25,9 +25,11 @@ class ProfileCurves:
     sortie
         Number from 1.
     t_s, distance_m, height_m, speed_m_s
-        Shape (q,): since lift-off, flown, above take-off, along the path.
+        Shape (q,): since the aircraft hangs above home, ready to go, flown, above take-off, along the path.
     photo_t_s, photo_distance_m, photo_height_m
         Shape (p,), at `photo_ids`.
+    takeoff_landing_s
+        What the sortie's duration has on top of these times: motors, take-off checks, landing.
     """
 
     sortie: int
@@ -39,6 +41,7 @@ class ProfileCurves:
     photo_t_s: Floats
     photo_distance_m: Floats
     photo_height_m: Floats
+    takeoff_landing_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +77,7 @@ def plan_profiles(plan: Plan) -> tuple[ProfileCurves, ...]:
                 profile.photo_s,
                 photos.distance_m,
                 photos.positions_enu_m[:, 2] - takeoff_z,
+                plan.rules.takeoff_landing_s,
             )
         )
     return tuple(curves)

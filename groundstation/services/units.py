@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -73,6 +74,15 @@ def sampling_unit(system: UnitSystem) -> Unit:
 def area_unit(system: UnitSystem) -> Unit:
     """For square metres."""
     return _UNITS["area"][system is UnitSystem.IMPERIAL]
+
+
+def per_cent(part: float, whole: float, decimals: int = 1) -> float:
+    """A share in per cent, rounded down: 100 means that nothing is missing. 0 of nothing is 0."""
+    if not whole > 0.0:
+        return 0.0
+    # A share such as 0.29 is a little less than 29 hundredths in binary.
+    scale = float(10**decimals)
+    return math.floor(100.0 * scale * part / whole + 1e-6) / scale
 
 
 def minutes_text(duration_s: float) -> str:

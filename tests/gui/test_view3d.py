@@ -585,3 +585,56 @@ def test_a_real_building_is_drawn_and_every_panel_in_sight_can_be_picked(applica
             found.add(hit.item.id)
     own = {panel.id for panel in model.site.facades[0].panels}
     assert len(found & own) >= 0.5 * len(own)
+
+
+def all_in_picture(view):
+    pixels, _ = view._navigator.pinhole().project(view._plan.views.positions_enu_m)
+    size = view.canvas().width(), view.canvas().height()
+    return bool(((pixels >= 0.0) & (pixels <= size)).all())
+
+
+def test_viewpoints_that_are_cut_off_are_brought_in_from_where_the_view_stands(application, view, plan):
+    view.set_site(office())
+    settle(application)
+    view.set_orbit(view.orbit().zoomed(2.0).turned(20.0, 0.0))
+    view.set_plan(plan)
+    before = view.orbit()
+    assert not all_in_picture(view)
+    view.bring_in_viewpoints()
+    assert all_in_picture(view)
+    assert (view.orbit().heading_deg, view.orbit().pitch_deg) == (before.heading_deg, before.pitch_deg)
+
+
+def test_a_view_that_shows_all_viewpoints_stays_as_it_is(application, view, plan):
+    view.set_site(office())
+    view.set_plan(plan)
+    settle(application)
+    view.look_at_all()
+    view.set_orbit(view.orbit().zoomed(0.5))
+    before = view.orbit()
+    view.bring_in_viewpoints()
+    assert view.orbit() == before
+    view.set_plan(None)
+    view.bring_in_viewpoints()
+    assert view.orbit() == before
+
+
+def test_the_view_is_not_taken_out_of_the_users_hand(application, view, plan):
+    from groundstation.gui.view3d.gestures import Drag
+    from groundstation.gui.view3d.tools import HomeTool
+
+    view.set_site(office())
+    settle(application)
+    view.set_orbit(view.orbit().zoomed(3.0))
+    view.set_plan(plan)
+    before = view.orbit()
+    view._start_drag(QPointF(100.0, 100.0), Drag.TURN, Qt.KeyboardModifier.NoModifier)
+    view.bring_in_viewpoints()
+    assert view.orbit() == before, "while it is dragged"
+    view._end_drag(QPointF(100.0, 100.0), Qt.KeyboardModifier.NoModifier)
+    view.start_tool(HomeTool())
+    view.bring_in_viewpoints()
+    assert view.orbit() == before, "while a tool is in use"
+    view.cancel_tool()
+    view.bring_in_viewpoints()
+    assert view.orbit() != before

@@ -10,6 +10,7 @@ from groundstation.services.units import (
     distance_unit,
     length_unit,
     minutes_text,
+    per_cent,
     sampling_unit,
     speed_unit,
 )
@@ -45,3 +46,19 @@ def test_a_value_that_rounds_to_nothing_has_no_sign():
 )
 def test_durations_read_as_minutes(seconds, text):
     assert minutes_text(seconds) == text
+
+
+@given(st.integers(1, 10**7), st.data())
+def test_a_hundred_per_cent_is_said_only_of_all(whole, data):
+    part = data.draw(st.integers(0, whole))
+    shown = per_cent(part, whole)
+    assert (shown == 100.0) == (part == whole)
+    # Never above the share, and less than one step below it.
+    assert -1e-6 <= 100.0 * part / whole - shown < 0.1 + 1e-6
+
+
+def test_shares_that_are_whole_steps_lose_nothing_to_binary_fractions():
+    assert [per_cent(n, 1000) for n in range(1001)] == pytest.approx([n / 10.0 for n in range(1001)], abs=1e-12)
+    assert per_cent(9288, 9292) == 99.9
+    assert per_cent(2, 3, 2) == 66.66
+    assert per_cent(0, 0) == 0.0

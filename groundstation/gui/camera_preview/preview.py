@@ -26,6 +26,7 @@ from groundstation.gui.camera_preview.seen_panels import (
     nearest_covered,
     site_sight,
 )
+from groundstation.gui.own_words import own_words
 from groundstation.gui.theme import colours
 from groundstation.gui.view3d.canvas import Canvas, image_array
 from groundstation.gui.view3d.layers import Drawable, Layer
@@ -361,7 +362,7 @@ class CameraPreview(QWidget):
         try:
             flight = camera_flight(plan, plan.sorties[number])
         except InfeasibleError as error:
-            return str(error)
+            return own_words(str(error), self._units)
         return flight if flight is not None else self.tr("The path of this sortie misses one of its viewpoints.")
 
     def _find_on_flight(self, viewpoint_id: str) -> None:

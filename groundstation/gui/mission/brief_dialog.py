@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QDate, QLocale
@@ -20,6 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
+from groundstation.gui.own_words import finding_in_own_words
 from groundstation.gui.workspace import Workspace
 from groundstation.services.brief_html import MAP, brief_html, brief_pictures
 from groundstation.services.flight_brief import flight_brief
@@ -55,7 +57,9 @@ class BriefDialog(QDialog):
         entry = workspace.document.current
         today = QLocale().toString(QDate.currentDate(), QLocale.FormatType.LongFormat)
         title = entry.title if entry is not None and entry.plan is plan else ""
-        self._brief = flight_brief(site_model, plan, findings, today, title)
+        found = flight_brief(site_model, plan, findings, today, title)
+        told = tuple(finding_in_own_words(finding, self._units) for finding in found.findings)
+        self._brief = replace(found, findings=told)
         self._page, self._paper = QTextBrowser(), QComboBox()
         # Paper is white in every theme.
         self._page.setStyleSheet("QTextBrowser { background: #ffffff; color: #000000; }")
@@ -97,7 +101,7 @@ class BriefDialog(QDialog):
         try:
             write_pdf(self._fresh(), path, bool(self._paper.currentData()))
         except InputError as error:
-            self._workspace.say(Severity.ERROR, str(error))
+            self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
             return False
         self._workspace.say(Severity.OK, self.tr("Written: {0}").format(path))
         return True
@@ -120,7 +124,7 @@ class BriefDialog(QDialog):
     def _when_drawn(self, result: tuple[dict[str, str | QImage], str]) -> None:
         self._pictures, objection = result
         if objection:
-            self._workspace.say(Severity.WARNING, objection)
+            self._workspace.say(Severity.WARNING, self._workspace.words(objection))
         self._lay_out()
 
     def _lay_out(self) -> None:
@@ -158,7 +162,7 @@ class BriefDialog(QDialog):
             try:
                 print_pages(self._fresh(), printer, printer.printerName())
             except InputError as error:
-                self._workspace.say(Severity.ERROR, str(error))
+                self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
 
 
 def is_letter_usual(units: UnitSystem) -> bool:

@@ -54,6 +54,7 @@ class ComparisonView(QWidget):
         self._table.sortByColumn(-1, Qt.SortOrder.AscendingOrder)
         self._table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self._table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self._table.setTabKeyNavigation(False)
         self._table.verticalHeader().hide()
         self._table.setAccessibleName(self.tr("Differences"))
         self.bar = self._all

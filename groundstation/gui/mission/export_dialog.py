@@ -191,4 +191,4 @@ class ExportDialog(QDialog):
         self.accept()
 
     def _when_failed(self, error: BaseException) -> None:
-        self._say("error", self.tr("Not written: {0}").format(error))
+        self._say("error", self.tr("Not written: {0}").format(self._workspace.words(str(error))))

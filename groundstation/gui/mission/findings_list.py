@@ -9,6 +9,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QStandardItem, QStandar
 from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 
 from groundstation.gui.mission.severity_icon import SIZE_PX, severity_icon
+from groundstation.gui.own_words import own_words
 from groundstation.gui.theme import colours
 from groundstation.services.finding_texts import SEVERITIES, by_severity, measured_text
 from groundstation.services.units import UnitSystem
@@ -114,12 +115,15 @@ class FindingsList(QListView):
         title = self.tr("{0} ({1})").format(self.severity_word(finding.severity), finding.code)
         facts = []
         if finding.value is not None:
-            facts.append(self.tr("measured {0}").format(measured_text(finding.value, finding.unit, self._units)))
+            facts.append(self.tr("measured {0}").format(self._measured(finding.value, finding.unit)))
         if finding.limit is not None:
-            facts.append(self.tr("limit {0}").format(measured_text(finding.limit, finding.unit, self._units)))
+            facts.append(self.tr("limit {0}").format(self._measured(finding.limit, finding.unit)))
         if finding.place:
-            facts.append(self.tr("at {0}").format(finding.place))
-        return "\n".join([title, finding.message, *([" · ".join(facts)] if facts else [])])
+            facts.append(self.tr("at {0}").format(own_words(finding.place, self._units)))
+        return "\n".join([title, own_words(finding.message, self._units), *([" · ".join(facts)] if facts else [])])
+
+    def _measured(self, value: float, unit: str) -> str:
+        return own_words(measured_text(value, unit, self._units), self._units)
 
     def _row_picked(self, index: QModelIndex) -> None:
         place = index.data(PLACE_ROLE)

@@ -115,6 +115,8 @@ class MissionDesk(QObject):
         told = {found.message: found for found in reversed(findings) if found.severity is not Severity.OK}
         for found in list(reversed(told.values()))[:MAX_SAID]:
             item = item_of_place(found.place, self._workspace.document)
-            self._workspace.say(found.severity, self.tr("{0}: {1}").format(names, found.message), item)
+            self._workspace.say(
+                found.severity, self.tr("{0}: {1}").format(names, self._workspace.words(found.message)), item
+            )
         if len(told) > MAX_SAID:
             self._workspace.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(told) - MAX_SAID))

@@ -269,7 +269,9 @@ class MissionPage(QObject):
     def _go_to(self, place: str) -> None:
         item = item_of_place(place, self._workspace.document)
         if item is None:
-            self._workspace.say(Severity.NOTE, self.tr("{0} is not shown in the view").format(place))
+            self._workspace.say(
+                Severity.NOTE, self.tr("{0} is not shown in the view").format(self._workspace.words(place))
+            )
         else:
             self._workspace.jump_to(item)
 

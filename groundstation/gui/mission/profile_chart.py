@@ -43,6 +43,7 @@ class ProfileChart(QWidget):
         self._over.addItem(self.tr("over distance"), DISTANCE)
         self._hover.setProperty("role", "muted")
         self._charts = pg.GraphicsLayoutWidget()
+        self._charts.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._charts.setAccessibleName(self.tr("Height and speed"))
         self._height = self._charts.addPlot(row=0, col=0)
         # Side by side: below the shared view there is width, not height.
@@ -136,6 +137,10 @@ class ProfileChart(QWidget):
         over = self.tr("Time [min]") if self._is_over_time() else self.tr("Distance [{0}]").format(length.symbol)
         for plot in (self._height, self._speed):
             plot.setLabel("bottom", over)
+        if curve is not None and self._is_over_time() and curve.takeoff_landing_s > 0.0:
+            # Only under the wider chart is there room for it.
+            text = self.tr("Time [min]; take-off and landing add {0:.0f} s").format(curve.takeoff_landing_s)
+            self._height.setLabel("bottom", text)
         self._hover.setText("" if curve else self.tr("No sortie to show: plan a flight first."))
         self._marks: list[pg.InfiniteLine] = []
         if curve is not None:

@@ -32,6 +32,7 @@ class SortieTable(QTableView):
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setTabKeyNavigation(False)
         self.verticalHeader().hide()
         # Large type leaves no room for columns of equal width.
         self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
@@ -60,6 +61,10 @@ class SortieTable(QTableView):
             self.tr("Used"),
         ]
         self._rows.setHorizontalHeaderLabels(titles)
+        if self._plan is not None:
+            extra_s = self._plan.rules.takeoff_landing_s
+            text = self.tr("With {0:.0f} s for take-off and landing, which the height profile does not show")
+            self._rows.horizontalHeaderItem(2).setToolTip(text.format(extra_s))
         self._rows.horizontalHeaderItem(3).setToolTip(self.tr("Length of the flight"))
         self._rows.horizontalHeaderItem(4).setToolTip(self.tr("Part of the battery's endurance that the sortie takes"))
         plan = self._plan

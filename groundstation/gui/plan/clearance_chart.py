@@ -38,6 +38,7 @@ class ClearanceChart(QWidget):
         self._words = QLabel()
         self._words.setWordWrap(True)
         self._plot = pg.PlotWidget()
+        self._plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._plot.setMenuEnabled(False)
         self._plot.setMouseEnabled(x=True, y=False)
         self._plot.hideButtons()

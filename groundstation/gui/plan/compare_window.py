@@ -23,7 +23,7 @@ from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, ValueKind
 from groundstation.gui.view3d.scene_view import SceneView
 from groundstation.gui.workspace import Workspace
-from groundstation.services.comparison import compare
+from groundstation.services.comparison import compare, marked_as_best, told_apart
 from groundstation.services.document import PlanEntry
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit
 from planning.insight.comparison import Comparison, Row
@@ -50,8 +50,9 @@ class CompareWindow(QDialog):
         self._words.setWordWrap(True)
         self._table = QTableWidget()
         self._lay_out()
+        names = told_apart(entries)
         for number, (choice, scene) in enumerate(zip(self._choices, self._scenes, strict=True)):
-            choice.addItems([entry.title for entry in entries])
+            choice.addItems(names)
             choice.setCurrentIndex(number)
             scene.set_units(workspace.units)
             scene.set_site(site)
@@ -61,13 +62,12 @@ class CompareWindow(QDialog):
         second.orbitChanged.connect(first.set_orbit)
         self._paint.currentIndexChanged.connect(self._show_pictures)
         self._show_pictures()
-        names = tuple(entry.title for entry in entries)
         plans = tuple(entry.plan for entry in entries)
         self._job = workspace.start(
             self.tr("Compare plans"),
             lambda context: compare(site, plans, names, monitor=context),
             self._compared,
-            lambda error: self._words.setText(str(error)),
+            lambda error: self._words.setText(workspace.words(str(error))),
         )
 
     def _lay_out(self) -> None:
@@ -84,6 +84,7 @@ class CompareWindow(QDialog):
         above.addWidget(self._paint)
         above.addWidget(self._words, 1)
         self._table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self._table.setTabKeyNavigation(False)
         self._table.setAccessibleName(self.tr("Plans compared"))
         self._table.horizontalHeader().setStretchLastSection(True)
         whole = QSplitter(Qt.Orientation.Vertical)
@@ -119,7 +120,7 @@ class CompareWindow(QDialog):
             length_unit(self._workspace.units).text(constraints.min_distance_m),
             wishes[constraints.occlusion],
         )
-        self._words.setText(" ".join([words, *comparison.notes]))
+        self._words.setText(" ".join([words, *map(self._workspace.words, comparison.notes)]))
         self._fill_table(comparison)
         self._show_pictures()
 
@@ -132,9 +133,9 @@ class CompareWindow(QDialog):
         bold = QFont()
         bold.setBold(True)
         for number, row in enumerate(comparison.rows):
-            for column, value in enumerate(row.values):
-                is_best = column in row.best
-                cell = QTableWidgetItem(self._value_text(value, row.unit) + (" ★" if is_best else ""))
+            texts = [self._value_text(value, row.unit) for value in row.values]
+            for column, (text, is_best) in enumerate(zip(texts, marked_as_best(texts, row.best), strict=True)):
+                cell = QTableWidgetItem(text + (" ★" if is_best else ""))
                 cell.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
                 if is_best:
                     cell.setFont(bold)

@@ -6,7 +6,9 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from groundstation.gui.own_words import own_words
 from groundstation.services.effects import EffectChoice
+from groundstation.services.units import UnitSystem
 
 WISHES = ("auto", "on", "off")
 
@@ -34,9 +36,12 @@ class EffectsPanel(QWidget):
         self._layout.addWidget(self._empty)
         self._layout.addStretch(1)
         self._cards: dict[str, _EffectCard] = {}
+        self._choices: tuple[EffectChoice, ...] = ()
+        self._units = UnitSystem.METRIC
 
     def set_effects(self, choices: tuple[EffectChoice, ...]) -> None:
         """Show effects. Cards are kept for good: there are a few kinds of effects only."""
+        self._choices = choices
         for card in self._cards.values():
             card.setVisible(False)
         for number, choice in enumerate(choices):
@@ -45,9 +50,14 @@ class EffectsPanel(QWidget):
                 self._cards[name] = _EffectCard()
                 self._cards[name].wishChanged.connect(lambda wish, name=name: self.wishChanged.emit(name, wish))
                 self._layout.insertWidget(1 + number, self._cards[name])
-            self._cards[name].set_choice(choice)
+            self._cards[name].set_choice(choice, self._units)
             self._cards[name].setVisible(True)
         self._empty.setVisible(not choices)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self._units = units
+        self.set_effects(self._choices)
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
         """Somebody looks."""
@@ -85,18 +95,18 @@ class _EffectCard(QFrame):
         layout.addWidget(self._words)
         layout.addWidget(self._size)
 
-    def set_choice(self, choice: EffectChoice) -> None:
+    def set_choice(self, choice: EffectChoice, units: UnitSystem) -> None:
         """Show a decision."""
         found = choice.decision
-        self._name.setText(found.effect)
+        self._name.setText(own_words(found.effect, units))
         self._state.setText(self.tr("is on") if found.on else self.tr("is off"))
         self._state.setProperty("role", "ok" if found.on else "muted")
         self._state.style().polish(self._state)
         by = "" if found.decided_by == "scene" else self.tr(" (as you asked)")
-        self._words.setText(found.reason + by)
+        self._words.setText(own_words(found.reason, units) + by)
         self._size.setText(
             self.tr("Size {0:.3g} {1}, tolerance {2:.3g}; costs about {3:.1f} s").format(
-                found.size, found.unit, found.tolerance, found.cost_s
+                found.size, own_words(found.unit, units), found.tolerance, found.cost_s
             )
         )
         self.wish.setVisible(choice.wish is not None)

@@ -8,8 +8,10 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
+from groundstation.gui.plan.method_names import method_name
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind, PlanEntry
+from groundstation.services.given_files import read_given_plan
 from groundstation.services.jobs import Job, JobContext, JobState
 from groundstation.services.places import item_of_place
 from groundstation.services.plan_bench import Bench, Groundwork, PlanInHand, take_in_hand
@@ -19,7 +21,6 @@ from planning import revision as edits
 from planning.errors import GroundStationError
 from planning.findings import Severity
 from planning.plan import Plan, Viewpoint
-from planning.plan_file import read_plan
 from planning.planner import Planned
 from planning.request import PlanRequest
 from planning.revision import Revision
@@ -90,7 +91,9 @@ class PlanDesk(QObject):
         try:
             request = replace(document.request, locked=locked)
         except ValueError as error:
-            self.refused.emit(self.tr("{0}; release some, or ask for more views").format(error))
+            self.refused.emit(
+                self.tr("{0}; release some, or ask for more views").format(self._workspace.words(str(error)))
+            )
             return
         prepared = self._bench.prepared_for(request, site)
 
@@ -144,7 +147,7 @@ class PlanDesk(QObject):
             entry = PlanEntry(document.free_plan_id(), path.name.removesuffix(".json").removesuffix(".plan"), plan)
             self._workspace.change(self.tr("Open plan"), document.with_plan(entry))
 
-        self._workspace.start(self.tr("Open plan"), lambda _context: read_plan(path), opened)
+        self._workspace.start(self.tr("Open plan"), lambda _context: read_given_plan(path), opened)
 
     def set_viewpoint(self, viewpoint: Viewpoint) -> None:
         """Move, turn, lock or unlock the viewpoint with this identifier, as it differs."""
@@ -200,7 +203,7 @@ class PlanDesk(QObject):
         try:
             edited = in_hand.with_revision(edit(in_hand.revision))
         except (GroundStationError, ValueError) as error:
-            self.refused.emit(str(error))
+            self.refused.emit(self._workspace.words(str(error)))
             return False
         self._bench.keep(edited.plan, edited)
         done, effect = label.format(viewpoint_id), edit_effect(in_hand.revision, edited.revision)
@@ -211,7 +214,9 @@ class PlanDesk(QObject):
         self._workspace.say(Severity.NOTE, text)
         for finding in effect.problems:
             self._workspace.say(
-                finding.severity, finding.message, item_of_place(finding.place, self._workspace.document)
+                finding.severity,
+                self._workspace.words(finding.message),
+                item_of_place(finding.place, self._workspace.document),
             )
         return True
 
@@ -242,7 +247,7 @@ class PlanDesk(QObject):
             self._workspace.say(Severity.WARNING, text.format(site.site.name))
             return
         self._bench.keep_groundwork(Groundwork(planned.prepared))
-        title = self.tr("{0}, {1} views").format(plan.method, len(plan.viewpoints))
+        title = self.tr("{0}, {1} views").format(method_name(plan.method), len(plan.viewpoints))
         entry = PlanEntry(document.free_plan_id(), title, plan, request, planned.bound_for_views)
         self._workspace.change(self.tr("Plan"), document.with_plan(entry))
         coverage = plan.coverage
@@ -253,7 +258,7 @@ class PlanDesk(QObject):
             ),
         )
         for finding in planned.findings:
-            self._workspace.say(finding.severity, finding.message)
+            self._workspace.say(finding.severity, self._workspace.words(finding.message))
 
     def _planning_over(self) -> None:
         self._planning = None
@@ -293,7 +298,7 @@ class PlanDesk(QObject):
             self.tr("Look at the plan"),
             lambda context: take_in_hand(site, plan, groundwork, context),
             taken,
-            lambda error: self._give_up(str(error)) if self._is_current(plan) else None,
+            lambda error: self._give_up(self._workspace.words(str(error))) if self._is_current(plan) else None,
         )
 
     def _is_current(self, plan: Plan) -> bool:

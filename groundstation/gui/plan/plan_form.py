@@ -17,7 +17,9 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.inputs import LengthBox, NumberBox, QuantityBox, SpeedBox
+from groundstation.gui.own_words import own_words
 from groundstation.gui.plan.aircraft_box import AircraftBox
+from groundstation.gui.plan.method_names import method_name
 from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.catalogue import profile
 from planning.errors import GroundStationError
@@ -76,7 +78,7 @@ class PlanForm(QWidget):
         self.aircraft = AircraftBox()
         self._method = QComboBox()
         for method in METHODS:
-            self._method.addItem(self._method_text(method), method)
+            self._method.addItem(method_name(method), method)
         self._goal = QComboBox()
         self._goal.addItems([self.tr("coverage wanted"), self.tr("number of views"), self.tr("batteries at hand")])
         self._coverage = NumberBox(10.0, 100.0, 0.5, " %")
@@ -99,15 +101,6 @@ class PlanForm(QWidget):
         self._precision.addItem(self.tr("single (fast)"), "f32")
         self._precision.addItem(self.tr("double (slower)"), "f64")
         self._seed = _whole(0, 2**31 - 1)
-
-    def _method_text(self, method: str) -> str:
-        texts = {
-            "greedy": self.tr("Greedy with proof"),
-            "pso": self.tr("Particle swarm (paper)"),
-            "noto": self.tr("Nap-of-the-object grid"),
-            "orbit": self.tr("Orbits"),
-        }
-        return texts.get(method, method)
 
     def _first_rows(self) -> tuple[tuple[str, QWidget], ...]:
         return (
@@ -153,7 +146,7 @@ class PlanForm(QWidget):
         for box in (self._method, self._goal, self._step, self._precision):
             box.currentIndexChanged.connect(self._edited)
         self.aircraft.valueChanged.connect(self._edited)
-        self.aircraft.refused.connect(self._say_wrong)
+        self.aircraft.refused.connect(lambda text: self._say_wrong(own_words(text, self._units)))
         for spin in (
             self._coverage,
             self._views,
@@ -208,7 +201,7 @@ class PlanForm(QWidget):
         try:
             self.aircraft.setValue(request.profile_id)
         except GroundStationError as error:
-            return str(error)
+            return own_words(str(error), self._units)
         self._gsd.setValue(profile(request.profile_id).camera.gsd_m(furthest_m))
         return ""
 

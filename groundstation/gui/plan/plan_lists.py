@@ -156,7 +156,7 @@ class PlanLists(QTabWidget):
         }[group.state]
         if group.rules:
             words = self.tr(" and ").join(self._rule_text(rule) for rule in group.rules)
-        example = "" if group.reason is None else str(group.reason)
+        example = "" if group.reason is None else self._workspace.words(str(group.reason))
         panel_id = insight.panel_ids[group.panel]
         return ReasonRow(words, group.n_sections, group.n_panels, example, panel_id, group.section)
 

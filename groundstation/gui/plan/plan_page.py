@@ -24,7 +24,7 @@ from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
 from groundstation.services.jobs import Job, JobBounded, JobImproved
 from groundstation.services.plan_bench import PlanInHand
-from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, sampling_unit
+from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
 from planning.findings import Severity, is_flyable
 from planning.plan import Plan
 from planning.progress import QualityPoint
@@ -178,7 +178,10 @@ class PlanPage(QObject):
             self._say_verdict(self.tr("Ready to fly; warnings: {0}").format(warned), "ok")
         else:
             self._say_verdict(
-                self.tr("NOT ready to fly; errors: {0}. {1}").format(len(wrong), wrong[0].message), "error"
+                self.tr("NOT ready to fly; errors: {0}. {1}").format(
+                    len(wrong), self._workspace.words(wrong[0].message)
+                ),
+                "error",
             )
         coverage, units = plan.coverage, self._workspace.units
         finest = in_hand.insight.sampling.best_m
@@ -187,7 +190,7 @@ class PlanPage(QObject):
             self.tr("{0} of {1} sections covered ({2:.1f} % of the {3} that any flight could cover)").format(
                 coverage.covered,
                 coverage.total,
-                100.0 * coverage.covered / max(coverage.reachable_upper_bound, 1),
+                per_cent(coverage.covered, coverage.reachable_upper_bound),
                 coverage.reachable_upper_bound,
             ),
             self.tr("Time in the air {0}, way flown {1}").format(
@@ -247,7 +250,7 @@ class PlanPage(QObject):
             self.desk.set_request(replace(request, constraints=replace(request.constraints, occlusion=wish)))
 
     def _show_units(self, units: UnitSystem) -> None:
-        for widget in (self.form, self.panel, self.lists):
+        for widget in (self.form, self.panel, self.lists, self.effects):
             widget.set_units(units)
         if self.desk.in_hand is not None:
             self._show_result(self.desk.in_hand)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QItemSelectionModel, Signal
 from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QInputDialog, QPushButton, QVBoxLayout, QWidget
 
+from groundstation.gui.plan.method_names import method_name
 from groundstation.gui.plan.table_view import Column, RowModel, table_of
 from groundstation.services.document import Document, PlanEntry
 from groundstation.services.units import UnitSystem, distance_unit, minutes_text
@@ -95,7 +96,7 @@ class PlansList(QWidget):
         return (
             Column("", lambda entry: "●" if entry.id == self._current else ""),
             Column(self.tr("Plan"), lambda entry: entry.title),
-            Column(self.tr("Method"), lambda entry: entry.plan.method),
+            Column(self.tr("Method"), lambda entry: method_name(entry.plan.method)),
             Column(self.tr("Views"), lambda entry: str(len(entry.plan.viewpoints)), is_number=True),
             Column(self.tr("Covered"), lambda entry: str(entry.plan.coverage.covered), is_number=True),
             Column(self.tr("of at most"), lambda entry: str(entry.plan.coverage.reachable_upper_bound), is_number=True),

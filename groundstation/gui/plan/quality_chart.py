@@ -7,6 +7,7 @@ from PySide6.QtCore import QEvent, Qt, QTimer
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.theme import colours
+from groundstation.services.units import per_cent
 from planning.progress import Clock, QualityPoint
 
 REDRAW_MS = 100
@@ -27,6 +28,7 @@ class QualityChart(QWidget):
         self._started_s: float | None = None
         self._budget_s = 0.0
         self._plot = pg.PlotWidget()
+        self._plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._plot.setMenuEnabled(False)
         self._plot.setMouseEnabled(x=False, y=False)
         self._plot.hideButtons()
@@ -134,11 +136,11 @@ class QualityChart(QWidget):
         elif elapsed_s is None and self._bound:
             # The plan may have been edited since.
             words = self.tr("The search found {0:.0f} sections, {1:.1f} % of the {2:.0f} that any flight could cover")
-            self._words.setText(words.format(values[-1], 100.0 * values[-1] / self._bound, self._bound))
+            self._words.setText(words.format(values[-1], per_cent(values[-1], self._bound), self._bound))
         elif self._bound:
             self._words.setText(
                 self.tr("{0:.0f} sections covered, {1:.1f} % of the {2:.0f} that any flight could cover").format(
-                    values[-1], 100.0 * values[-1] / self._bound, self._bound
+                    values[-1], per_cent(values[-1], self._bound), self._bound
                 )
             )
         else:

@@ -102,7 +102,7 @@ class ViewpointPage(QWidget):
         if in_hand is None or viewpoint is None or viewpoint.id not in in_hand.insight.view_ids:
             return
         wrong = [
-            finding.message
+            self._workspace.words(finding.message)
             for finding in in_hand.revision.findings
             if finding.severity is Severity.ERROR and viewpoint.id in finding.place
         ]

@@ -6,8 +6,10 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
+from groundstation.gui.own_words import own_words
 from groundstation.gui.theme import colours
 from groundstation.services.document import Item, ItemKind
+from groundstation.services.units import UnitSystem
 from planning.findings import Finding, Severity
 
 
@@ -37,6 +39,7 @@ class FindingsList(QWidget):
         self._list.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self._list.itemClicked.connect(self._choose)
         self._findings: tuple[Finding, ...] = ()
+        self._units = UnitSystem.METRIC
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._title)
@@ -45,7 +48,7 @@ class FindingsList(QWidget):
 
     def set_findings(self, findings: tuple[Finding, ...] | None) -> None:
         """Show findings; None while there are none of the site as it is."""
-        self._findings = findings or ()
+        self._shown, self._findings = findings, findings or ()
         self._list.clear()
         self._list.setVisible(bool(findings))
         worst = {finding.severity for finding in self._findings}
@@ -64,12 +67,18 @@ class FindingsList(QWidget):
         look = {Severity.ERROR: colours().error, Severity.WARNING: colours().warning}
         words = {Severity.ERROR: self.tr("Error"), Severity.WARNING: self.tr("Warning"), Severity.NOTE: self.tr("Note")}
         for finding in self._findings:
-            row = QListWidgetItem(f"{words.get(finding.severity, '')}: {finding.message}")
+            row = QListWidgetItem(f"{words.get(finding.severity, '')}: {own_words(finding.message, self._units)}")
             row.setForeground(QColor(look.get(finding.severity, colours().text)))
             row.setSizeHint(QSize(0, self._height(row.text())))
             self._list.addItem(row)
         # As tall as its rows: the column that it stands in scrolls.
         self._list.setFixedHeight(sum(self._list.item(k).sizeHint().height() for k in range(self._list.count())) + 6)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        if units is not self._units:
+            self._units = units
+            self.set_findings(self._shown)
 
     def findings(self) -> tuple[Finding, ...]:
         """What is shown."""

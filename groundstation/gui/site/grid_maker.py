@@ -107,11 +107,15 @@ class GridMaker(QObject):
     def _show_result(self, base: SiteModel, result: AddedGrid | InputError) -> None:
         if isinstance(result, InputError):
             self._added = None
-            self._form.show_error(result.field if isinstance(result, PanelGridError) else None, str(result))
+            self._form.show_error(
+                result.field if isinstance(result, PanelGridError) else None, self._workspace.words(str(result))
+            )
             self._show_site(base)
             return
         self._base, self._added = base, result
-        text = "\n".join(result.notes) or self.tr("The panels lie on the building and look outwards.")
+        text = "\n".join(map(self._workspace.words, result.notes)) or self.tr(
+            "The panels lie on the building and look outwards."
+        )
         self._form.show_state(text, is_good=True)
         self._show_site(result.model)
 

@@ -185,7 +185,7 @@ class ImportDialog(QDialog):
 
     def _show_progress(self, event: JobProgress) -> None:
         if self._job is not None and event.job_id == self._job.id:
-            self._say(self.tr("Reading {0}: {1} ...").format(self._path.name, event.stage))
+            self._say(self.tr("Reading {0}: {1} ...").format(self._path.name, self._workspace.words(event.stage)))
 
     def _show_result(self, result: ImportPreview | InputError) -> None:
         self._job = None
@@ -219,7 +219,8 @@ class ImportDialog(QDialog):
 
     def _words(self, text: str) -> str:
         """A message of the import in the words of this dialog, without the folder."""
-        return in_window_words(text.replace(f"{self._path}: ", ""), self.form.labels())
+        text = self._workspace.words(text.replace(f"{self._path}: ", ""))
+        return in_window_words(text, self.form.labels(), self.tr("“{0}”"))
 
     def _pick(self) -> None:
         wish = self.grid.value()
@@ -244,10 +245,10 @@ class ImportDialog(QDialog):
             if self._is_done or self.grid.value() != wish or self._preview is not preview:
                 return
             if isinstance(result, PanelGridError):
-                self.grid.show_error(result.field, str(result))
+                self.grid.show_error(result.field, self._workspace.words(str(result)))
             else:
                 good = self.tr("The panels lie on the building and look outwards.")
-                self.grid.show_state("\n".join(result) or good, is_good=True)
+                self.grid.show_state("\n".join(map(self._workspace.words, result)) or good, is_good=True)
 
         self._workspace.start(self.tr("Check the panel grid"), work, checked)
 

@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFormLayout, QWidget
 
 from groundstation.gui.inputs import LengthBox, NumberBox
+from groundstation.gui.own_words import own_words
 from groundstation.gui.site.value_boxes import DECIMALS, ErrorLine, muted
 from groundstation.services.site_edits import HeightReference, height_above_sea_m, origin_at
 from groundstation.services.units import UnitSystem
@@ -29,6 +30,7 @@ class OriginBox(QWidget):
 
     def __init__(self, units: UnitSystem, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._units = units
         self._value = Origin(0.0, 0.0, 0.0)
         self._lat = NumberBox(-90.0, 90.0, 0.0001, " °", DEGREE_DECIMALS)
         self._lon = NumberBox(-180.0, 180.0, 0.0001, " °", DEGREE_DECIMALS)
@@ -71,6 +73,7 @@ class OriginBox(QWidget):
 
     def set_units(self, units: UnitSystem) -> None:
         """Show the same heights in other units."""
+        self._units = units
         self._ellipsoid.set_units(units)
         self._sea.set_units(units)
 
@@ -91,7 +94,7 @@ class OriginBox(QWidget):
                 self._degrees(self._lat, "lat_deg"), self._degrees(self._lon, "lon_deg"), height_m, reference
             )
         except InputError as error:
-            self._error.show_error(str(error))
+            self._error.show_error(own_words(str(error), self._units))
             return
         self.setValue(origin)
         self.valueChanged.emit(origin)

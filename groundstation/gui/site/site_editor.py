@@ -58,7 +58,7 @@ class SiteEditor(QObject):
         try:
             model = edit(document.site)
         except InputError as error:
-            return str(error)
+            return self._workspace.words(str(error))
         if model is not document.site:
             self._workspace.change(label, replace(document, site=model))
         if select is not None:

@@ -138,6 +138,7 @@ class SiteDetail(QWidget):
         self.grid_maker = GridMaker(workspace, stage, self.editor, self.tools, self.grid_form)
         self.properties = PropertyPanel(workspace, self.editor)
         self.findings = FindingsList()
+        self.findings.set_units(workspace.units)
         self._empty = QLabel(self.tr("What is selected on the site is shown here."))
         self._empty.setProperty("role", "muted")
         self._empty.setWordWrap(True)
@@ -160,6 +161,7 @@ class SiteDetail(QWidget):
         side.tree.renameAsked.connect(self._rename)
         workspace.documentChanged.connect(self._document_changed)
         workspace.unitsChanged.connect(self.grid_form.set_units)
+        workspace.unitsChanged.connect(self.findings.set_units)
         self._show_site()
 
     def put_away(self) -> None:
@@ -194,6 +196,7 @@ class _Column(QScrollArea):
         super().__init__()
         self.setWidget(widget)
         self.setWidgetResizable(True)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         widget.installEventFilter(self)

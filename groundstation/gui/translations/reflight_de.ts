@@ -1170,6 +1170,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Die Optionen wurden geändert: „Neue Vorschau“ drücken.</translation>
     </message>
     <message>
+        <source>“{0}”</source>
+        <translation>„{0}“</translation>
+    </message>
+    <message>
         <source>Checking ...</source>
         <translation>Wird geprüft ...</translation>
     </message>
@@ -1571,6 +1575,26 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>noch keine</translation>
     </message>
     <message>
+        <source>Arrow keys</source>
+        <translation>Pfeiltasten</translation>
+    </message>
+    <message>
+        <source>3-D view: turn</source>
+        <translation>3D-Ansicht: drehen</translation>
+    </message>
+    <message>
+        <source>3-D view: nearer, farther</source>
+        <translation>3D-Ansicht: näher, weiter weg</translation>
+    </message>
+    <message>
+        <source>3-D view: show everything</source>
+        <translation>3D-Ansicht: alles zeigen</translation>
+    </message>
+    <message>
+        <source>Put a tool or a dialog away</source>
+        <translation>Werkzeug oder Dialog weglegen</translation>
+    </message>
+    <message>
         <source>Shortcuts</source>
         <translation>Tastenkürzel</translation>
     </message>
@@ -1612,6 +1636,25 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Done</source>
         <translation>Fertig</translation>
+    </message>
+</context>
+<context>
+    <name>MethodNames</name>
+    <message>
+        <source>Greedy with proof</source>
+        <translation>Greedy mit Beweis</translation>
+    </message>
+    <message>
+        <source>Particle swarm (paper)</source>
+        <translation>Schwarm (Paper)</translation>
+    </message>
+    <message>
+        <source>Nap-of-the-object grid</source>
+        <translation>Konturraster</translation>
+    </message>
+    <message>
+        <source>Orbits</source>
+        <translation>Umkreisungen</translation>
     </message>
 </context>
 <context>
@@ -2091,22 +2134,6 @@ Blickrichtung: {3}</translation>
         <translation>doppelt (langsamer)</translation>
     </message>
     <message>
-        <source>Greedy with proof</source>
-        <translation>Greedy mit Beweis</translation>
-    </message>
-    <message>
-        <source>Particle swarm (paper)</source>
-        <translation>Schwarm (Paper)</translation>
-    </message>
-    <message>
-        <source>Nap-of-the-object grid</source>
-        <translation>Konturraster</translation>
-    </message>
-    <message>
-        <source>Orbits</source>
-        <translation>Umkreisungen</translation>
-    </message>
-    <message>
         <source>Aircraft</source>
         <translation>Fluggerät</translation>
     </message>
@@ -2485,6 +2512,10 @@ Blickrichtung: {3}</translation>
         <translation>Flugweg [{0}]</translation>
     </message>
     <message>
+        <source>Time [min]; take-off and landing add {0:.0f} s</source>
+        <translation>Zeit [min]; Start und Landung kommen mit {0:.0f} s dazu</translation>
+    </message>
+    <message>
         <source>No sortie to show: plan a flight first.</source>
         <translation>Kein Einsatz zu zeigen: zuerst einen Flug planen.</translation>
     </message>
@@ -2657,6 +2688,2969 @@ Take it over?</source>
     <message>
         <source>Landing {0}</source>
         <translation>Landung {0}</translation>
+    </message>
+</context>
+<context>
+    <name>Sentences</name>
+    <message>
+        <source>the profile &apos;{0}&apos;</source>
+        <translation>das Profil &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>no profile</source>
+        <translation>kein Profil</translation>
+    </message>
+    <message>
+        <source>a DJI mission names its aircraft and camera, but the plan has {0}; expected one of {1}; plan with one of them, or export for MAVLink</source>
+        <translation>eine DJI-Mission nennt ihr Fluggerät und ihre Kamera, der Plan hat aber {0}; erwartet wurde eines von {1}; mit einem davon planen oder für MAVLink exportieren</translation>
+    </message>
+    <message>
+        <source>there is no template.kml; DJI Pilot 2 and FlightHub 2 do not open the mission without it</source>
+        <translation>es gibt keine template.kml; DJI Pilot 2 und FlightHub 2 öffnen die Mission ohne sie nicht</translation>
+    </message>
+    <message>
+        <source>WPML {0} is not known; expected 1.0.x</source>
+        <translation>WPML {0} ist nicht bekannt; erwartet wurde 1.0.x</translation>
+    </message>
+    <message>
+        <source>expected a number: {0}</source>
+        <translation>erwartet wurde eine Zahl: {0}</translation>
+    </message>
+    <message>
+        <source>the aircraft flies slanted to the first waypoint (pointToPoint): check that way for obstacles</source>
+        <translation>das Fluggerät fliegt schräg zum ersten Wegpunkt (pointToPoint): diesen Weg auf Hindernisse prüfen</translation>
+    </message>
+    <message>
+        <source>flyToWaylineMode is &apos;{0}&apos;; expected safely or pointToPoint</source>
+        <translation>flyToWaylineMode ist &apos;{0}&apos;; erwartet wurde safely oder pointToPoint</translation>
+    </message>
+    <message>
+        <source>at the end the aircraft flies straight to the first waypoint: check that way for obstacles</source>
+        <translation>am Ende fliegt das Fluggerät gerade zum ersten Wegpunkt: diesen Weg auf Hindernisse prüfen</translation>
+    </message>
+    <message>
+        <source>finishAction &apos;{0}&apos; is not known</source>
+        <translation>finishAction &apos;{0}&apos; ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>executeLostAction needs an executeRCLostAction</source>
+        <translation>executeLostAction braucht eine executeRCLostAction</translation>
+    </message>
+    <message>
+        <source>exitOnRCLost &apos;{0}&apos; is not known</source>
+        <translation>exitOnRCLost &apos;{0}&apos; ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>there is no takeOffSecurityHeight</source>
+        <translation>es gibt keine takeOffSecurityHeight</translation>
+    </message>
+    <message>
+        <source>takeOffSecurityHeight is out of range</source>
+        <translation>takeOffSecurityHeight liegt außerhalb des Erlaubten</translation>
+    </message>
+    <message>
+        <source>globalTransitionalSpeed must be above 0 and at most {0} m/s</source>
+        <translation>globalTransitionalSpeed muss über 0 und höchstens {0} m/s sein</translation>
+    </message>
+    <message>
+        <source>globalRTHHeight is missing: the remote controller&apos;s own setting holds</source>
+        <translation>globalRTHHeight fehlt: Es gilt die Einstellung der Fernsteuerung</translation>
+    </message>
+    <message>
+        <source>droneInfo or payloadInfo is missing</source>
+        <translation>droneInfo oder payloadInfo fehlt</translation>
+    </message>
+    <message>
+        <source>the aircraft {0}-{1} is not known here, so its cameras are not checked</source>
+        <translation>das Fluggerät {0}-{1} ist hier nicht bekannt, seine Kameras sind also nicht geprüft</translation>
+    </message>
+    <message>
+        <source>the aircraft {0}-{1} does not carry the camera {2}; expected one of {3}</source>
+        <translation>das Fluggerät {0}-{1} trägt die Kamera {2} nicht; erwartet wurde eine von {3}</translation>
+    </message>
+    <message>
+        <source>there is no wayline</source>
+        <translation>es gibt keine Wayline</translation>
+    </message>
+    <message>
+        <source>wayline {0:n}, </source>
+        <translation>Wayline {0:n}, </translation>
+    </message>
+    <message>
+        <source>waypointGimbalHeadingParam is missing</source>
+        <translation>waypointGimbalHeadingParam fehlt</translation>
+    </message>
+    <message>
+        <source>the wayline lasts longer than the aircraft flies on one battery; split it</source>
+        <translation>die Wayline dauert länger, als das Fluggerät mit einem Akku fliegt; sie teilen</translation>
+    </message>
+    <message>
+        <source>takeOffRefPoint {0},{1} is not on the globe and is not used</source>
+        <translation>takeOffRefPoint {0},{1} liegt nicht auf der Erde und wird nicht benutzt</translation>
+    </message>
+    <message>
+        <source>template and waylines name different aircraft: {0}, {1}</source>
+        <translation>template und waylines nennen verschiedene Fluggeräte: {0}, {1}</translation>
+    </message>
+    <message>
+        <source>template and waylines name different cameras</source>
+        <translation>template und waylines nennen verschiedene Kameras</translation>
+    </message>
+    <message>
+        <source>the template has {0} waypoints, the wayline {1}</source>
+        <translation>das Template hat {0} Wegpunkte, die Wayline {1}</translation>
+    </message>
+    <message>
+        <source>the template&apos;s heights are {0}, but the wayline is flown in {1}; the wayline counts here, while a program that starts from the template would fly elsewhere</source>
+        <translation>die Höhen des Templates sind {0}, die Wayline wird aber in {1} geflogen; hier zählt die Wayline, ein Programm, das vom Template ausgeht, flöge woanders</translation>
+    </message>
+    <message>
+        <source>template and wayline put the waypoint in different places</source>
+        <translation>Template und Wayline setzen den Wegpunkt an verschiedene Orte</translation>
+    </message>
+    <message>
+        <source>{0}start actions</source>
+        <translation>{0}Startaktionen</translation>
+    </message>
+    <message>
+        <source>{0}waypoint {1:n}, group {2}</source>
+        <translation>{0}Wegpunkt {1:n}, Gruppe {2}</translation>
+    </message>
+    <message>
+        <source>the actionGroupId occurs twice in one wayline; number the groups from 0</source>
+        <translation>die actionGroupId kommt in einer Wayline zweimal vor; die Gruppen von 0 an zählen</translation>
+    </message>
+    <message>
+        <source>the actionGroupId occurs in an earlier wayline, too</source>
+        <translation>die actionGroupId kommt auch in einer früheren Wayline vor</translation>
+    </message>
+    <message>
+        <source>the group lacks its id, actionGroupStartIndex or actionGroupEndIndex</source>
+        <translation>der Gruppe fehlt id, actionGroupStartIndex oder actionGroupEndIndex</translation>
+    </message>
+    <message>
+        <source>the group has an id or index of 65535, which means unset</source>
+        <translation>die Gruppe hat eine id oder einen Index von 65535, was „nicht gesetzt“ heißt</translation>
+    </message>
+    <message>
+        <source>the group acts from waypoint {0} to {1}, but there are waypoints 0 to {2} only</source>
+        <translation>die Gruppe wirkt von Wegpunkt {0} bis {1}, es gibt aber nur die Wegpunkte 0 bis {2}</translation>
+    </message>
+    <message>
+        <source>the trigger &apos;{0}&apos; is not one of {1}</source>
+        <translation>der Auslöser &apos;{0}&apos; ist keiner von {1}</translation>
+    </message>
+    <message>
+        <source>{0} needs an actionTriggerParam above 0</source>
+        <translation>{0} braucht einen actionTriggerParam über 0</translation>
+    </message>
+    <message>
+        <source>a trigger by time or distance that ends where it begins covers no leg; its photos are not counted</source>
+        <translation>ein Auslöser nach Zeit oder Strecke, der endet, wo er beginnt, umfasst keine Strecke; seine Fotos zählen nicht</translation>
+    </message>
+    <message>
+        <source>a reachPoint group should act at one waypoint only</source>
+        <translation>eine Gruppe mit reachPoint sollte nur an einem Wegpunkt wirken</translation>
+    </message>
+    <message>
+        <source>the group has no actions</source>
+        <translation>die Gruppe hat keine Aktionen</translation>
+    </message>
+    <message>
+        <source>{0}, action {1} ({2})</source>
+        <translation>{0}, Aktion {1} ({2})</translation>
+    </message>
+    <message>
+        <source>the action has no actionId</source>
+        <translation>die Aktion hat keine actionId</translation>
+    </message>
+    <message>
+        <source>the actionId occurs twice in its group; number from 0</source>
+        <translation>die actionId kommt in ihrer Gruppe zweimal vor; von 0 an zählen</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is not a documented action</source>
+        <translation>&apos;{0}&apos; ist keine dokumentierte Aktion</translation>
+    </message>
+    <message>
+        <source>the action is for the camera at position {0}, where payloadInfo names none</source>
+        <translation>die Aktion gilt der Kamera an Position {0}, wo payloadInfo keine nennt</translation>
+    </message>
+    <message>
+        <source>hover needs a hoverTime above 0</source>
+        <translation>hover braucht eine hoverTime über 0</translation>
+    </message>
+    <message>
+        <source>zoom needs a focalLength above 0</source>
+        <translation>zoom braucht eine focalLength über 0</translation>
+    </message>
+    <message>
+        <source>the time-lapse has no interval: how many photos it takes is unknown</source>
+        <translation>der Zeitraffer hat kein Intervall: Wie viele Fotos er macht, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>panoramas are not counted as photos</source>
+        <translation>Panoramen zählen nicht als Fotos</translation>
+    </message>
+    <message>
+        <source>; DJI spells it &apos;visable&apos;</source>
+        <translation>; DJI schreibt &apos;visable&apos;</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is not one of the lenses {1}</source>
+        <translation>&apos;{0}&apos; ist keine der Linsen {1}</translation>
+    </message>
+    <message>
+        <source>{0} is &apos;{1}&apos;, not an angle</source>
+        <translation>{0} ist &apos;{1}&apos;, kein Winkel</translation>
+    </message>
+    <message>
+        <source>aircraftHeading is not in [-180, 180]</source>
+        <translation>aircraftHeading liegt nicht in [-180, 180]</translation>
+    </message>
+    <message>
+        <source>rotateYaw has no aircraftHeading</source>
+        <translation>rotateYaw hat kein aircraftHeading</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is no pitch of any gimbal</source>
+        <translation>&apos;{0}&apos; ist keine Neigung eines Gimbals</translation>
+    </message>
+    <message>
+        <source>the camera turns from {0} to {1} deg only</source>
+        <translation>die Kamera dreht nur von {0} bis {1}°</translation>
+    </message>
+    <message>
+        <source>executeHeightMode is &apos;{0}&apos;; aircraft know {1}</source>
+        <translation>executeHeightMode ist &apos;{0}&apos;; Fluggeräte kennen {1}</translation>
+    </message>
+    <message>
+        <source>{0}waypoint {1:n}</source>
+        <translation>{0}Wegpunkt {1:n}</translation>
+    </message>
+    <message>
+        <source>the wayline has no waypoints</source>
+        <translation>die Wayline hat keine Wegpunkte</translation>
+    </message>
+    <message>
+        <source>the wayline has one waypoint; most aircraft want two</source>
+        <translation>die Wayline hat einen Wegpunkt; die meisten Fluggeräte wollen zwei</translation>
+    </message>
+    <message>
+        <source>the wayline has {0} waypoints; split it</source>
+        <translation>die Wayline hat {0} Wegpunkte; sie teilen</translation>
+    </message>
+    <message>
+        <source>expected indices 0 to {0} in order, found {1} in place {2}</source>
+        <translation>erwartet wurden die Indizes 0 bis {0} der Reihe nach, gefunden: {1} an Stelle {2}</translation>
+    </message>
+    <message>
+        <source>the waypoint has no coordinates (longitude,latitude)</source>
+        <translation>der Wegpunkt hat keine Koordinaten (Länge,Breite)</translation>
+    </message>
+    <message>
+        <source>latitude and longitude are swapped</source>
+        <translation>Breite und Länge sind vertauscht</translation>
+    </message>
+    <message>
+        <source>they look like projected metres, not degrees</source>
+        <translation>sie sehen nach projizierten Metern aus, nicht nach Grad</translation>
+    </message>
+    <message>
+        <source>coordinates {0},{1} are not on the globe; {2}</source>
+        <translation>die Koordinaten {0},{1} liegen nicht auf der Erde; {2}</translation>
+    </message>
+    <message>
+        <source>coordinates are 0,0, which means that they were never set</source>
+        <translation>die Koordinaten sind 0,0, was heißt, dass sie nie gesetzt wurden</translation>
+    </message>
+    <message>
+        <source>the waypoint has no executeHeight</source>
+        <translation>der Wegpunkt hat keine executeHeight</translation>
+    </message>
+    <message>
+        <source>the height is outside what aircraft accept</source>
+        <translation>die Höhe liegt außerhalb dessen, was Fluggeräte annehmen</translation>
+    </message>
+    <message>
+        <source>the height is close to or below the take-off point; make sure that this is meant</source>
+        <translation>die Höhe liegt nahe am Startpunkt oder darunter; sicherstellen, dass das so gemeint ist</translation>
+    </message>
+    <message>
+        <source>the height is above what the law allows in most countries without a permit</source>
+        <translation>die Höhe liegt über dem, was das Gesetz in den meisten Ländern ohne Genehmigung erlaubt</translation>
+    </message>
+    <message>
+        <source>neither the waypoint nor the wayline has a speed</source>
+        <translation>weder der Wegpunkt noch die Wayline hat eine Geschwindigkeit</translation>
+    </message>
+    <message>
+        <source>the speed must be above 0 and within the format&apos;s range</source>
+        <translation>die Geschwindigkeit muss über 0 und im Bereich des Formats liegen</translation>
+    </message>
+    <message>
+        <source>waypointHeadingMode is &apos;{0}&apos;; aircraft know {1}</source>
+        <translation>waypointHeadingMode ist &apos;{0}&apos;; Fluggeräte kennen {1}</translation>
+    </message>
+    <message>
+        <source>waypointHeadingAngle is not in [-180, 180]</source>
+        <translation>waypointHeadingAngle liegt nicht in [-180, 180]</translation>
+    </message>
+    <message>
+        <source>smoothTransition needs a waypointHeadingAngle</source>
+        <translation>smoothTransition braucht einen waypointHeadingAngle</translation>
+    </message>
+    <message>
+        <source>smoothTransition has waypointHeadingAngleEnable 0, so its angle may be ignored</source>
+        <translation>smoothTransition hat waypointHeadingAngleEnable 0, ihr Winkel bleibt also vielleicht unbeachtet</translation>
+    </message>
+    <message>
+        <source>towardPOI has no waypointPoiPoint to look at</source>
+        <translation>towardPOI hat keinen waypointPoiPoint zum Anblicken</translation>
+    </message>
+    <message>
+        <source>{0}leg {1:n}-{2}</source>
+        <translation>{0}Strecke {1:n}-{2}</translation>
+    </message>
+    <message>
+        <source>the leg is longer than aircraft accept; put a waypoint in between</source>
+        <translation>die Strecke ist länger, als Fluggeräte annehmen; einen Wegpunkt dazwischen setzen</translation>
+    </message>
+    <message>
+        <source>the leg is unusually long</source>
+        <translation>die Strecke ist ungewöhnlich lang</translation>
+    </message>
+    <message>
+        <source>the leg is shorter than documented; some aircraft refuse it</source>
+        <translation>die Strecke ist kürzer als dokumentiert; manche Fluggeräte lehnen sie ab</translation>
+    </message>
+    <message>
+        <source>the leg is vertical, so there is no course to follow; use fixed or smoothTransition</source>
+        <translation>die Strecke ist senkrecht, es gibt also keinen Kurs zum Folgen; fixed oder smoothTransition nehmen</translation>
+    </message>
+    <message>
+        <source>waypointTurnMode &apos;{0}&apos; is not known</source>
+        <translation>waypointTurnMode &apos;{0}&apos; ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>the first and the last waypoint must be of a stopping type</source>
+        <translation>am ersten und am letzten Wegpunkt muss gehalten werden</translation>
+    </message>
+    <message>
+        <source>{0} needs a waypointTurnDampingDist</source>
+        <translation>{0} braucht eine waypointTurnDampingDist</translation>
+    </message>
+    <message>
+        <source>{0} cuts the corner: the path is no polyline</source>
+        <translation>{0} schneidet die Ecke: Der Flugweg ist kein Linienzug</translation>
+    </message>
+    <message>
+        <source>waypointTurnDampingDist is ignored where the aircraft stops</source>
+        <translation>waypointTurnDampingDist bleibt unbeachtet, wo das Fluggerät hält</translation>
+    </message>
+    <message>
+        <source>the leg is shorter than the turns at its two ends</source>
+        <translation>die Strecke ist kürzer als die Kurven an ihren beiden Enden</translation>
+    </message>
+    <message>
+        <source>its distance is {0} m, but its waypoints are {1} m long: was it edited by hand?</source>
+        <translation>ihre Länge ist mit {0} m angegeben, ihre Wegpunkte ergeben {1} m: von Hand geändert?</translation>
+    </message>
+    <message>
+        <source>expected the {0} of an unpacked DJI mission, there is none</source>
+        <translation>erwartet wurde die {0} einer ausgepackten DJI-Mission, es gibt keine</translation>
+    </message>
+    <message>
+        <source>{0} at the top of the archive, where no DJI program looks; expected both in its folder wpmz; pack it again with that folder</source>
+        <translation>{0} oben im Archiv, wo kein DJI-Programm sucht; erwartet wurden beide in seinem Ordner wpmz; mit diesem Ordner neu packen</translation>
+    </message>
+    <message>
+        <source>has a template but no waylines, so what would be flown is not in it; open and save it in DJI Pilot 2</source>
+        <translation>hat ein Template, aber keine Waylines, was geflogen würde, steht also nicht darin; in DJI Pilot 2 öffnen und speichern</translation>
+    </message>
+    <message>
+        <source>has {0}; expected wpmz/{1} at the top of the archive; pack it again</source>
+        <translation>hat {0}; erwartet wurde wpmz/{1} oben im Archiv; neu packen</translation>
+    </message>
+    <message>
+        <source>no DJI mission; expected wpmz/{0}, found {1}</source>
+        <translation>keine DJI-Mission; erwartet wurde wpmz/{0}, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>aircraft would refuse this mission: {0}</source>
+        <translation>Fluggeräte würden diese Mission ablehnen: {0}</translation>
+    </message>
+    <message>
+        <source> ({0} times)</source>
+        <translation> ({0}-mal)</translation>
+    </message>
+    <message>
+        <source>; and {0} other kinds</source>
+        <translation>; und {0} weitere Arten</translation>
+    </message>
+    <message>
+        <source>the mission follows the ground as the aircraft senses it, so its heights are not in the file; save it with fixed heights</source>
+        <translation>die Mission folgt dem Boden, wie ihn das Fluggerät misst, ihre Höhen stehen also nicht in der Datei; sie mit festen Höhen speichern</translation>
+    </message>
+    <message>
+        <source>declares a DTD or entities, which no mission needs; refused as hostile</source>
+        <translation>erklärt eine DTD oder Entitäten, die keine Mission braucht; als feindlich abgelehnt</translation>
+    </message>
+    <message>
+        <source>not readable as XML ({0}); export the mission again</source>
+        <translation>nicht als XML lesbar ({0}); die Mission neu exportieren</translation>
+    </message>
+    <message>
+        <source>this is XML, but not a DJI mission; expected kml/Document with the namespace http://www.dji.com/wpmz/1.0.x, found &lt;{0}&gt;</source>
+        <translation>das ist XML, aber keine DJI-Mission; erwartet wurde kml/Document mit dem Namensraum http://www.dji.com/wpmz/1.0.x, gefunden: &lt;{0}&gt;</translation>
+    </message>
+    <message>
+        <source>{0} is &apos;{1}&apos;</source>
+        <translation>{0} ist &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>waypoint {0:n}</source>
+        <translation>Wegpunkt {0:n}</translation>
+    </message>
+    <message>
+        <source>minimum distance (m)</source>
+        <translation>Mindestabstand (m)</translation>
+    </message>
+    <message>
+        <source>section step (degrees)</source>
+        <translation>Sektorschritt (Grad)</translation>
+    </message>
+    <message>
+        <source>whole panels only</source>
+        <translation>nur ganze Scheiben</translation>
+    </message>
+    <message>
+        <source>largest distance (m)</source>
+        <translation>größter Abstand (m)</translation>
+    </message>
+    <message>
+        <source>{0} was made for other constraints ({1}); what it states may differ</source>
+        <translation>{0} wurde unter anderen Vorgaben gemacht ({1}); seine eigenen Angaben können abweichen</translation>
+    </message>
+    <message>
+        <source>the cameras differ: each plan is seen with its own, what can be covered is that of the first</source>
+        <translation>die Kameras unterscheiden sich: Jeder Plan wird mit seiner eigenen gesehen, erreichbar ist, was die erste erreicht</translation>
+    </message>
+    <message>
+        <source>inside {0}</source>
+        <translation>in {0}</translation>
+    </message>
+    <message>
+        <source>{0} m too close to {1}</source>
+        <translation>{0} m zu nah an {1}</translation>
+    </message>
+    <message>
+        <source>{0} degrees above what the camera sees with the gimbal at its limit</source>
+        <translation>{0}° über dem, was die Kamera mit dem Gimbal am Anschlag sieht</translation>
+    </message>
+    <message>
+        <source>{0} degrees below what the camera sees with the gimbal at its limit</source>
+        <translation>{0}° unter dem, was die Kamera mit dem Gimbal am Anschlag sieht</translation>
+    </message>
+    <message>
+        <source>{0} m below the floor of the airspace</source>
+        <translation>{0} m unter dem Boden des Luftraums</translation>
+    </message>
+    <message>
+        <source>{0} m above the ceiling of the airspace</source>
+        <translation>{0} m über der Decke des Luftraums</translation>
+    </message>
+    <message>
+        <source>{0} m beyond the sides of the airspace</source>
+        <translation>{0} m jenseits der Seiten des Luftraums</translation>
+    </message>
+    <message>
+        <source>{0} m too far away for the largest distance or pixel size allowed</source>
+        <translation>{0} m zu weit weg für den größten Abstand oder die gröbste Pixelgröße</translation>
+    </message>
+    <message>
+        <source>below the ground</source>
+        <translation>unter dem Boden</translation>
+    </message>
+    <message>
+        <source>hidden by {0}</source>
+        <translation>verdeckt von {0}</translation>
+    </message>
+    <message>
+        <source>no way to it was found from home</source>
+        <translation>vom Startplatz wurde kein Weg dorthin gefunden</translation>
+    </message>
+    <message>
+        <source>the building</source>
+        <translation>dem Gebäude</translation>
+    </message>
+    <message>
+        <source>no-fly volume</source>
+        <translation>Flugverbotszone</translation>
+    </message>
+    <message>
+        <source>expected two plans or more to compare, got {0}</source>
+        <translation>erwartet wurden zum Vergleichen mindestens zwei Pläne, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>this plan was made for site &apos;{0}&apos;, the site here is &apos;{1}&apos;; compare plans of one site</source>
+        <translation>dieser Plan wurde für den Standort &apos;{0}&apos; gemacht, der Standort hier ist &apos;{1}&apos;; Pläne eines Standorts vergleichen</translation>
+    </message>
+    <message>
+        <source>this plan was made for site &apos;{0}&apos;, the site here is &apos;{1}&apos; at another origin; compare plans of one site</source>
+        <translation>dieser Plan wurde für den Standort &apos;{0}&apos; gemacht, der Standort hier ist &apos;{1}&apos; mit anderem Nullpunkt; Pläne eines Standorts vergleichen</translation>
+    </message>
+    <message>
+        <source>this plan is named twice; name each plan once</source>
+        <translation>dieser Plan ist zweimal genannt; jeden Plan einmal nennen</translation>
+    </message>
+    <message>
+        <source>expected a plan file, found a mission file, and the first plan does not name an aircraft of the catalogue to read it for; make a plan of it first (&apos;import&apos; with --profile)</source>
+        <translation>erwartet wurde eine Plandatei, gefunden eine Missionsdatei, und der erste Plan nennt kein Fluggerät des Katalogs, für das sie zu lesen wäre; zuerst einen Plan daraus machen (&apos;import&apos; mit --profile)</translation>
+    </message>
+    <message>
+        <source>the plan has no {0}, so nothing can be placed on the globe; add --site SITE</source>
+        <translation>der Plan hat kein {0}, also lässt sich nichts auf der Erde verorten; den Standort dazu öffnen</translation>
+    </message>
+    <message>
+        <source>the plan was made for the {0} {1}, but the site says {2}; plan again</source>
+        <translation>der Plan wurde für {0} {1} gemacht, der Standort sagt aber {2}; neu planen</translation>
+    </message>
+    <message>
+        <source>the plan has no sorties, so there is nothing to export; plan the route first</source>
+        <translation>der Plan hat keine Einsätze, also gibt es nichts zu exportieren; zuerst die Route planen</translation>
+    </message>
+    <message>
+        <source>viewpoint &apos;{0}&apos; is in sortie {1} and again in sortie {2}; expected each viewpoint once</source>
+        <translation>Aufnahmepunkt &apos;{0}&apos; gehört zu Einsatz {1} und noch einmal zu Einsatz {2}; erwartet wurde jeder Aufnahmepunkt einmal</translation>
+    </message>
+    <message>
+        <source>{0} viewpoints are in no sortie (the first is &apos;{1}&apos;): their photos would be lost; plan the route again</source>
+        <translation>{0} Aufnahmepunkte gehören zu keinem Einsatz (der erste ist &apos;{1}&apos;): Ihre Fotos gingen verloren; die Route neu planen</translation>
+    </message>
+    <message>
+        <source>viewpoint &apos;{0}&apos; needs a gimbal pitch of {1} deg, but {2} turns from {3} to {4} deg and would be stopped there; plan with this camera&apos;s limits</source>
+        <translation>Aufnahmepunkt &apos;{0}&apos; braucht eine Gimbalneigung von {1}°, {2} dreht aber von {3} bis {4}° und bliebe dort stehen; mit den Grenzen dieser Kamera planen</translation>
+    </message>
+    <message>
+        <source>its path has {0} points; expected take-off, flight and landing</source>
+        <translation>sein Flugweg hat {0} Punkte; erwartet wurden Start, Flug und Landung</translation>
+    </message>
+    <message>
+        <source>its path {0} {1} m from home; expected it to start and end on the ground at home, where heights above take-off are counted from</source>
+        <translation>sein Flugweg {0} {1} m vom Startplatz entfernt; erwartet wurde, dass er am Boden am Startplatz beginnt und endet, von wo Höhen über Start zählen</translation>
+    </message>
+    <message>
+        <source>its path {0} with a slanted leg, but aircraft climb and land vertically and would leave the checked path; expected a vertex straight above home</source>
+        <translation>sein Flugweg {0} mit einer schrägen Strecke, Fluggeräte steigen und landen aber senkrecht und verließen den geprüften Weg; erwartet wurde eine Ecke genau über dem Startplatz</translation>
+    </message>
+    <message>
+        <source>viewpoint &apos;{0}&apos; is not on the path, or not in the order of viewpoint_ids, so its photo would be lost; plan the route again</source>
+        <translation>Aufnahmepunkt &apos;{0}&apos; liegt nicht auf dem Flugweg oder nicht in der Reihenfolge von viewpoint_ids, sein Foto ginge also verloren; die Route neu planen</translation>
+    </message>
+    <message>
+        <source>expected text in UTF-8, found other bytes at offset {0}</source>
+        <translation>erwartet wurde Text in UTF-8, an Stelle {0} stehen andere Bytes</translation>
+    </message>
+    <message>
+        <source>expected the column {0} in the first line; it is missing</source>
+        <translation>erwartet wurde die Spalte {0} in der ersten Zeile; sie fehlt</translation>
+    </message>
+    <message>
+        <source>{0}, line {1:n}</source>
+        <translation>{0}, Zeile {1:n}</translation>
+    </message>
+    <message>
+        <source>no table of photos ({0})</source>
+        <translation>keine Tabelle von Fotos ({0})</translation>
+    </message>
+    <message>
+        <source>the table has no rows, so there is nothing to fly</source>
+        <translation>die Tabelle hat keine Zeilen, also gibt es nichts zu fliegen</translation>
+    </message>
+    <message>
+        <source>a table of photos does not say which way was flown between them; the path is straight from one to the next</source>
+        <translation>eine Tabelle von Fotos sagt nicht, auf welchem Weg zwischen ihnen geflogen wurde; der Flugweg geht gerade von einem zum nächsten</translation>
+    </message>
+    <message>
+        <source>no photo ({0}); expected numbers with a decimal point</source>
+        <translation>kein Foto ({0}); erwartet wurden Zahlen mit Dezimalpunkt</translation>
+    </message>
+    <message>
+        <source>the return height clears the path only, because the site was not given; check that it clears everything</source>
+        <translation>die Rückkehrhöhe ist nur höher als der Flugweg, denn der Standort wurde nicht angegeben; prüfen, ob sie über allem liegt</translation>
+    </message>
+    <message>
+        <source>MAVLink has no heights above the ellipsoid; expected above-takeoff or amsl (its absolute altitude)</source>
+        <translation>MAVLink hat keine Höhen über dem Ellipsoid; erwartet wurde above-takeoff oder amsl (seine absolute Höhe)</translation>
+    </message>
+    <message>
+        <source> (and {0} more errors)</source>
+        <translation> (und {0} weitere Fehler)</translation>
+    </message>
+    <message>
+        <source>the mission would be refused: {0}</source>
+        <translation>die Mission würde abgelehnt: {0}</translation>
+    </message>
+    <message>
+        <source>no mission file that is known; expected a DJI KMZ (or its unpacked folder), a QGroundControl .plan, a QGC WPL .waypoints, or a KML or CSV that Reflight wrote</source>
+        <translation>keine bekannte Missionsdatei; erwartet wurde ein DJI-KMZ (oder sein ausgepackter Ordner), ein .plan von QGroundControl, ein .waypoints im Format QGC WPL oder KML oder CSV, das Reflight schrieb</translation>
+    </message>
+    <message>
+        <source>not readable as XML ({0})</source>
+        <translation>nicht als XML lesbar ({0})</translation>
+    </message>
+    <message>
+        <source>a KML of another program; it shows places but does not say where photos are taken and with which angles; import the mission file itself</source>
+        <translation>ein KML eines anderen Programms; es zeigt Orte, sagt aber nicht, wo mit welchen Winkeln Fotos gemacht werden; die Missionsdatei selbst importieren</translation>
+    </message>
+    <message>
+        <source>damaged: a sortie lacks what Reflight writes ({0}); export it again</source>
+        <translation>beschädigt: Einem Einsatz fehlt, was Reflight schreibt ({0}); neu exportieren</translation>
+    </message>
+    <message>
+        <source>a camera trigger every {0} would take {1} photos on one leg</source>
+        <translation>ein Kameraauslöser alle {0} würde auf einer Strecke {1} Fotos machen</translation>
+    </message>
+    <message>
+        <source>item {0:n}</source>
+        <translation>Element {0:n}</translation>
+    </message>
+    <message>
+        <source>the mission has {0} items, {1} keeps {2}; plan it with shorter sorties</source>
+        <translation>die Mission hat {0} Elemente, {1} behält {2}; mit kürzeren Einsätzen planen</translation>
+    </message>
+    <message>
+        <source>item {0:n} (command {1})</source>
+        <translation>Element {0:n} (Befehl {1})</translation>
+    </message>
+    <message>
+        <source>the position {0}, {1} is not on the globe</source>
+        <translation>die Position {0}, {1} liegt nicht auf der Erde</translation>
+    </message>
+    <message>
+        <source>latitude and longitude are 0: ArduPilot takes that for the place where it is, PX4 for one off Africa</source>
+        <translation>Breite und Länge sind 0: ArduPilot hält das für den Ort, an dem es ist, PX4 für einen vor Afrika</translation>
+    </message>
+    <message>
+        <source>the altitude is no number</source>
+        <translation>die Höhe ist keine Zahl</translation>
+    </message>
+    <message>
+        <source>the hold time is out of range</source>
+        <translation>die Haltezeit liegt außerhalb des Erlaubten</translation>
+    </message>
+    <message>
+        <source>DO_DIGICAM_CONTROL releases the camera only where param 5 is 1: no photo here</source>
+        <translation>DO_DIGICAM_CONTROL löst die Kamera nur aus, wenn Parameter 5 gleich 1 ist: hier kein Foto</translation>
+    </message>
+    <message>
+        <source>param {0} is NaN, which ArduPilot refuses here</source>
+        <translation>Parameter {0} ist NaN, was ArduPilot hier ablehnt</translation>
+    </message>
+    <message>
+        <source>ArduPilot stores whole seconds: the hold of {0} s becomes {1} s</source>
+        <translation>ArduPilot speichert ganze Sekunden: Aus {0} s Halt werden {1} s</translation>
+    </message>
+    <message>
+        <source>ArduPilot ignores the yaw of a waypoint (param 4); use CONDITION_YAW before it</source>
+        <translation>ArduPilot lässt die Drehung eines Wegpunkts (Parameter 4) unbeachtet; davor CONDITION_YAW verwenden</translation>
+    </message>
+    <message>
+        <source>ArduPilot stores these angles in whole degrees; DO_MOUNT_CONTROL keeps the fraction</source>
+        <translation>ArduPilot speichert diese Winkel in ganzen Grad; DO_MOUNT_CONTROL behält die Nachkommastellen</translation>
+    </message>
+    <message>
+        <source>{0} refuses this command in missions</source>
+        <translation>{0} lehnt diesen Befehl in Missionen ab</translation>
+    </message>
+    <message>
+        <source>whether {0} takes this command in missions is not known</source>
+        <translation>ob {0} diesen Befehl in Missionen annimmt, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>{0} does not take the frame {1} here; expected one of {2}</source>
+        <translation>{0} nimmt den Bezug (frame) {1} hier nicht an; erwartet wurde einer von {2}</translation>
+    </message>
+    <message>
+        <source>the height counts from terrain: without terrain data ArduPilot does not arm</source>
+        <translation>die Höhe zählt ab Gelände: Ohne Geländedaten lässt sich ArduPilot nicht scharf schalten</translation>
+    </message>
+    <message>
+        <source>PX4 takes this command in frame 2 only, found frame {0}</source>
+        <translation>PX4 nimmt diesen Befehl nur im Bezug (frame) 2 an, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>the mission does not begin with a take-off: started on the ground it is refused</source>
+        <translation>die Mission beginnt nicht mit einem Start: Vom Boden aus wird sie abgelehnt</translation>
+    </message>
+    <message>
+        <source>some waypoints count their height from take-off, others from sea level</source>
+        <translation>manche Wegpunkte zählen ihre Höhe ab Start, andere ab Meeresspiegel</translation>
+    </message>
+    <message>
+        <source>the photo waits for a CONDITION while the aircraft flies on: it is taken on the way, and dropped without a word where the next waypoint is reached first; put the condition before the waypoint</source>
+        <translation>das Foto wartet auf eine CONDITION, während das Fluggerät weiterfliegt: Es entsteht unterwegs und entfällt ohne ein Wort, wo der nächste Wegpunkt früher erreicht ist; die Bedingung vor den Wegpunkt setzen</translation>
+    </message>
+    <message>
+        <source>a second photo follows at once; within 0.1 s ArduPilot drops it; put a NAV_DELAY between</source>
+        <translation>ein zweites Foto folgt sofort; innerhalb von 0,1 s lässt ArduPilot es fallen; ein NAV_DELAY dazwischen setzen</translation>
+    </message>
+    <message>
+        <source>the waypoint of this photo has no hold: the photo is taken in flight, about 1 m off</source>
+        <translation>der Wegpunkt dieses Fotos hat keinen Halt: Das Foto entsteht im Flug, etwa 1 m daneben</translation>
+    </message>
+    <message>
+        <source>the camera turns on in the instant of the photo; put a NAV_DELAY behind the trigger</source>
+        <translation>die Kamera dreht im Augenblick des Fotos weiter; hinter den Auslöser ein NAV_DELAY setzen</translation>
+    </message>
+    <message>
+        <source>on a gimbal without pan axis this turns the vehicle to param 3; put it before CONDITION_YAW</source>
+        <translation>bei einem Gimbal ohne Schwenkachse dreht das das Fluggerät auf Parameter 3; es vor CONDITION_YAW setzen</translation>
+    </message>
+    <message>
+        <source>the last {0} items follow the last navigation command and may never be done</source>
+        <translation>die letzten {0} Elemente folgen auf den letzten Navigationsbefehl und werden vielleicht nie ausgeführt</translation>
+    </message>
+    <message>
+        <source>the waypoints are closer together than the vehicle tells apart</source>
+        <translation>die Wegpunkte liegen näher beieinander, als das Fluggerät unterscheidet</translation>
+    </message>
+    <message>
+        <source>items {0:n} and {1:n}</source>
+        <translation>Elemente {0:n} und {1:n}</translation>
+    </message>
+    <message>
+        <source>the mission passes over or under this zone, and fences have no height: it is not in the file&apos;s fence</source>
+        <translation>die Mission führt über diese Zone oder unter ihr hindurch, und Zäune haben keine Höhe: Sie ist nicht im Zaun der Datei</translation>
+    </message>
+    <message>
+        <source>spline legs are taken as straight</source>
+        <translation>Splines gelten als gerade Strecken</translation>
+    </message>
+    <message>
+        <source>circles are taken as a stop at their centre</source>
+        <translation>Kreise gelten als Halt in ihrer Mitte</translation>
+    </message>
+    <message>
+        <source>jumps are not followed: each item counts once</source>
+        <translation>Sprüngen wird nicht gefolgt: Jedes Element zählt einmal</translation>
+    </message>
+    <message>
+        <source>{0}item {1:n}</source>
+        <translation>{0}Element {1:n}</translation>
+    </message>
+    <message>
+        <source>{0}heights above take-off and above sea level are mixed, and home is not known</source>
+        <translation>{0}Höhen über Start und über dem Meer sind gemischt, und der Startplatz ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>{0}item {1:n}: param {2} is {3}; expected an angle in deg</source>
+        <translation>{0}Element {1:n}: Parameter {2} ist {3}; erwartet wurde ein Winkel in Grad</translation>
+    </message>
+    <message>
+        <source>{0}item {1:n}: param 1 is {2}; expected an angle in deg</source>
+        <translation>{0}Element {1:n}: Parameter 1 ist {2}; erwartet wurde ein Winkel in Grad</translation>
+    </message>
+    <message>
+        <source>a region of interest of mode {0} is not followed</source>
+        <translation>einem Blickziel (region of interest) im Modus {0} wird nicht gefolgt</translation>
+    </message>
+    <message>
+        <source>a photo is taken before the first waypoint, so where is not known; it is left out</source>
+        <translation>ein Foto entsteht vor dem ersten Wegpunkt, wo, ist also nicht bekannt; es wird weggelassen</translation>
+    </message>
+    <message>
+        <source>its position means here, but nothing says where that is</source>
+        <translation>seine Position heißt „hier“, aber nichts sagt, wo das ist</translation>
+    </message>
+    <message>
+        <source>the position {0}, {1}, {2} m is not on the globe</source>
+        <translation>die Position {0}, {1}, {2} m liegt nicht auf der Erde</translation>
+    </message>
+    <message>
+        <source>its height counts from the terrain, which is not in the file; save the mission with heights above take-off or sea level</source>
+        <translation>seine Höhe zählt ab Gelände, das nicht in der Datei ist; die Mission mit Höhen über Start oder Meeresspiegel speichern</translation>
+    </message>
+    <message>
+        <source>frame {0} does not place it on the globe</source>
+        <translation>der Bezug (frame) {0} legt es nicht auf der Erde fest</translation>
+    </message>
+    <message>
+        <source>this is a Reflight plan already; it needs no import</source>
+        <translation>das ist schon ein Plan von Reflight; er braucht keinen Import</translation>
+    </message>
+    <message>
+        <source>no QGroundControl plan; expected a JSON object with fileType &apos;Plan&apos;</source>
+        <translation>kein Plan von QGroundControl; erwartet wurde ein JSON-Objekt mit fileType &apos;Plan&apos;</translation>
+    </message>
+    <message>
+        <source>the plan has no mission (it may hold a fence only); save it with its mission</source>
+        <translation>der Plan hat keine Mission (vielleicht nur einen Zaun); ihn mit seiner Mission speichern</translation>
+    </message>
+    <message>
+        <source>{0} is {1}; expected {2}; save it with a current QGroundControl</source>
+        <translation>{0} ist {1}; erwartet wurde {2}; mit einem aktuellen QGroundControl speichern</translation>
+    </message>
+    <message>
+        <source>mission.items, item {0}</source>
+        <translation>mission.items, Element {0}</translation>
+    </message>
+    <message>
+        <source>expected an object, got {0}</source>
+        <translation>erwartet wurde ein Objekt, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>the complex item &apos;{0}&apos; does not hold the items it generates, which only QGroundControl can make; turn it into simple items there</source>
+        <translation>das zusammengesetzte Element &apos;{0}&apos; enthält die Elemente nicht, die es erzeugt, und nur QGroundControl kann sie bilden; es dort in einfache Elemente umwandeln</translation>
+    </message>
+    <message>
+        <source>type is &apos;{0}&apos;; expected SimpleItem or ComplexItem</source>
+        <translation>type ist &apos;{0}&apos;; erwartet wurde SimpleItem oder ComplexItem</translation>
+    </message>
+    <message>
+        <source>expected numbers for command and frame, got {0} and {1}</source>
+        <translation>erwartet wurden Zahlen für command und frame, gefunden: {0} und {1}</translation>
+    </message>
+    <message>
+        <source>expected params to be 7 numbers or null, got {0}</source>
+        <translation>erwartet wurden für params 7 Zahlen oder null, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected a list, got {0}</source>
+        <translation>erwartet wurde eine Liste, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>plannedHomePosition {0}, {1} is not on the globe</source>
+        <translation>plannedHomePosition {0}, {1} liegt nicht auf der Erde</translation>
+    </message>
+    <message>
+        <source>the mission has no waypoint, so there is nothing to fly</source>
+        <translation>die Mission hat keinen Wegpunkt, also gibt es nichts zu fliegen</translation>
+    </message>
+    <message>
+        <source>the vehicle would refuse it: {0}</source>
+        <translation>das Fluggerät würde sie ablehnen: {0}</translation>
+    </message>
+    <message>
+        <source>expected text, found other bytes at offset {0}</source>
+        <translation>erwartet wurde Text, an Stelle {0} stehen andere Bytes</translation>
+    </message>
+    <message>
+        <source>expected &apos;QGC WPL 110&apos; in the first line, found &apos;{0}&apos;</source>
+        <translation>erwartet wurde &apos;QGC WPL 110&apos; in der ersten Zeile, gefunden: &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected the items numbered from 0 in order, found {0} in place {1}</source>
+        <translation>erwartet wurden die Elemente von 0 an der Reihe nach, gefunden: {0} an Stelle {1}</translation>
+    </message>
+    <message>
+        <source>expected {0} columns, found {1}</source>
+        <translation>erwartet wurden {0} Spalten, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>expected numbers with a decimal point ({0})</source>
+        <translation>erwartet wurden Zahlen mit Dezimalpunkt ({0})</translation>
+    </message>
+    <message>
+        <source>the home position {0}, {1}, {2} m is not on the globe</source>
+        <translation>der Startplatz {0}, {1}, {2} m liegt nicht auf der Erde</translation>
+    </message>
+    <message>
+        <source>expected a mission file, found something that is not a regular file</source>
+        <translation>erwartet wurde eine Missionsdatei, gefunden etwas, das keine gewöhnliche Datei ist</translation>
+    </message>
+    <message>
+        <source>the file has more than {0} MiB; expected a mission file</source>
+        <translation>die Datei hat mehr als {0} MiB; erwartet wurde eine Missionsdatei</translation>
+    </message>
+    <message>
+        <source>damaged or no zip archive ({0}); a KMZ is one; copy it again</source>
+        <translation>beschädigt oder kein Zip-Archiv ({0}); ein KMZ ist eines; noch einmal kopieren</translation>
+    </message>
+    <message>
+        <source>holds {0} files; expected at most {1}</source>
+        <translation>enthält {0} Dateien; erwartet wurden höchstens {1}</translation>
+    </message>
+    <message>
+        <source>holds the path &apos;{0}&apos;, which leads out of it; refused as hostile</source>
+        <translation>enthält den Pfad &apos;{0}&apos;, der aus ihr hinausführt; als feindlich abgelehnt</translation>
+    </message>
+    <message>
+        <source>holds &apos;{0}&apos; twice, so which one is meant is unknown; export it again</source>
+        <translation>enthält &apos;{0}&apos; zweimal, welche gemeint ist, ist also nicht bekannt; neu exportieren</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is encrypted; export it without a password</source>
+        <translation>&apos;{0}&apos; ist verschlüsselt; ohne Passwort exportieren</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is damaged ({1}); copy the file again</source>
+        <translation>&apos;{0}&apos; ist beschädigt ({1}); die Datei noch einmal kopieren</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; cannot be inflated ({1}); copy the file again</source>
+        <translation>&apos;{0}&apos; lässt sich nicht entpacken ({1}); die Datei noch einmal kopieren</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; inflates to more than {1} MiB; refused as hostile</source>
+        <translation>&apos;{0}&apos; wird entpackt größer als {1} MiB; als feindlich abgelehnt</translation>
+    </message>
+    <message>
+        <source>{0} photos are left out: the pilot turns the aircraft by hand there</source>
+        <translation>{0} Fotos sind weggelassen: Dort dreht der Pilot das Fluggerät von Hand</translation>
+    </message>
+    <message>
+        <source>{0} photos have no gimbal pitch in the file; a gimbal starts level: 0 deg assumed</source>
+        <translation>{0} Fotos haben in der Datei keine Gimbalneigung; ein Gimbal beginnt waagerecht: 0° angenommen</translation>
+    </message>
+    <message>
+        <source>the mission has no waypoints</source>
+        <translation>die Mission hat keine Wegpunkte</translation>
+    </message>
+    <message>
+        <source>the mission &apos;{0}&apos; is {1} km from the site&apos;s home; expected at most {2} km; is it the right site?</source>
+        <translation>die Mission &apos;{0}&apos; liegt {1} km vom Startplatz des Standorts; erwartet wurden höchstens {2} km; ist es der richtige Standort?</translation>
+    </message>
+    <message>
+        <source>the mission &apos;{0}&apos; reaches {1} km from the origin of the site; expected at most {2} km; a coordinate or a height in it is wrong</source>
+        <translation>die Mission &apos;{0}&apos; reicht {1} km vom Nullpunkt des Standorts weg; erwartet wurden höchstens {2} km; eine Koordinate oder Höhe darin ist falsch</translation>
+    </message>
+    <message>
+        <source>its heights are above take-off and were counted from the site&apos;s home</source>
+        <translation>ihre Höhen sind über Start und wurden ab dem Startplatz des Standorts gezählt</translation>
+    </message>
+    <message>
+        <source>its heights are above sea level and were brought to the ellipsoid with EGM96</source>
+        <translation>ihre Höhen sind über dem Meer und wurden mit EGM96 auf das Ellipsoid gebracht</translation>
+    </message>
+    <message>
+        <source>it was planned for a take-off {0} m from the site&apos;s home; the way there is not the planned one</source>
+        <translation>sie wurde für einen Start {0} m vom Startplatz des Standorts geplant; der Weg dorthin ist nicht der geplante</translation>
+    </message>
+    <message>
+        <source>its take-off point lies {0} m above the site&apos;s home, so counted from home all its heights are off by that</source>
+        <translation>ihr Startpunkt liegt {0} m über dem Startplatz des Standorts, ab diesem gezählt sind also alle ihre Höhen um so viel falsch</translation>
+    </message>
+    <message>
+        <source>its take-off point lies {0} m below the site&apos;s home, so counted from home all its heights are off by that</source>
+        <translation>ihr Startpunkt liegt {0} m unter dem Startplatz des Standorts, ab diesem gezählt sind also alle ihre Höhen um so viel falsch</translation>
+    </message>
+    <message>
+        <source>the mission ends hovering at its last waypoint; the way home is the pilot&apos;s and not in the path</source>
+        <translation>die Mission endet schwebend an ihrem letzten Wegpunkt; der Heimweg ist Sache des Piloten und nicht im Flugweg</translation>
+    </message>
+    <message>
+        <source>no mission can be made of this plan: {0}</source>
+        <translation>aus diesem Plan lässt sich keine Mission machen: {0}</translation>
+    </message>
+    <message>
+        <source>{0} planned photos and {1} in the file are too many to compare one by one; compare smaller plans</source>
+        <translation>{0} geplante Fotos und {1} in der Datei sind zu viele für einen Vergleich eins zu eins; kleinere Pläne vergleichen</translation>
+    </message>
+    <message>
+        <source>the site file of &apos;{0}&apos; has changed since this plan was made; what the mission takes from it (return height, fences) is as it is now</source>
+        <translation>die Standortdatei von &apos;{0}&apos; hat sich geändert, seit dieser Plan gemacht wurde; was die Mission daraus nimmt (Rückkehrhöhe, Zäune), ist wie jetzt</translation>
+    </message>
+    <message>
+        <source>this plan is not ready to fly ({0} findings of the pre-flight check, the first: {1})</source>
+        <translation>dieser Plan ist nicht flugbereit ({0} Befunde der Vorflugprüfung, der erste: {1})</translation>
+    </message>
+    <message>
+        <source>{0} keeps the items of about {1} photos, but a sortie of this plan has {2}; the same views were shared out among {3} sorties for these files</source>
+        <translation>{0} behält die Elemente von etwa {1} Fotos, ein Einsatz dieses Plans hat aber {2}; dieselben Aufnahmen wurden für diese Dateien auf {3} Einsätze verteilt</translation>
+    </message>
+    <message>
+        <source>this mission file is named twice; name the file of each sortie once</source>
+        <translation>diese Missionsdatei ist zweimal genannt; die Datei jedes Einsatzes einmal nennen</translation>
+    </message>
+    <message>
+        <source>the return height is below the highest point of the site: a returning aircraft may hit it; expected {0} m or more above take-off, got {1} m, and {2} m keep {3} m from everything</source>
+        <translation>die Rückkehrhöhe liegt unter dem höchsten Punkt des Standorts: Ein heimkehrendes Fluggerät kann dagegen fliegen; erwartet wurden mindestens {0} m über Start, gefunden: {1} m, und {2} m halten zu allem {3} m Abstand</translation>
+    </message>
+    <message>
+        <source>starts</source>
+        <translation>beginnt</translation>
+    </message>
+    <message>
+        <source>ends</source>
+        <translation>endet</translation>
+    </message>
+    <message>
+        <source>moved</source>
+        <translation>verschoben</translation>
+    </message>
+    <message>
+        <source>deleted</source>
+        <translation>gelöscht</translation>
+    </message>
+    <message>
+        <source>inside</source>
+        <translation>innen</translation>
+    </message>
+    <message>
+        <source>occlusion</source>
+        <translation>Verdeckung</translation>
+    </message>
+    <message>
+        <source>facade</source>
+        <translation>Fassade</translation>
+    </message>
+    <message>
+        <source>obstacle</source>
+        <translation>Hindernis</translation>
+    </message>
+    <message>
+        <source>panel</source>
+        <translation>Scheibe</translation>
+    </message>
+    <message>
+        <source>panels</source>
+        <translation>Scheiben</translation>
+    </message>
+    <message>
+        <source>zone</source>
+        <translation>Zone</translation>
+    </message>
+    <message>
+        <source>building</source>
+        <translation>Gebäude</translation>
+    </message>
+    <message>
+        <source>home</source>
+        <translation>Startplatz</translation>
+    </message>
+    <message>
+        <source>airspace</source>
+        <translation>Luftraum</translation>
+    </message>
+    <message>
+        <source>east</source>
+        <translation>Ost</translation>
+    </message>
+    <message>
+        <source>north</source>
+        <translation>Nord</translation>
+    </message>
+    <message>
+        <source>up</source>
+        <translation>Höhe</translation>
+    </message>
+    <message>
+        <source>obstacle &apos;{0}&apos;</source>
+        <translation>Hindernis &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>panel &apos;{0}&apos;</source>
+        <translation>Scheibe &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>no-fly volume &apos;{0}&apos;</source>
+        <translation>Flugverbotszone &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>the building &apos;{0}&apos;</source>
+        <translation>dem Gebäude &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>{0:n} deg</source>
+        <translation>{0:n}°</translation>
+    </message>
+    <message>
+        <source>{0:n} viewpoints</source>
+        <translation>{0:n} Aufnahmepunkte</translation>
+    </message>
+    <message>
+        <source>{0:n} views</source>
+        <translation>{0:n} Aufnahmen</translation>
+    </message>
+    <message>
+        <source>{0:n} sections</source>
+        <translation>{0:n} Sektoren</translation>
+    </message>
+    <message>
+        <source>{0:n} photos</source>
+        <translation>{0:n} Fotos</translation>
+    </message>
+    <message>
+        <source>{0:n} findings</source>
+        <translation>{0:n} Befunde</translation>
+    </message>
+    <message>
+        <source>minimum distance (m) {0} instead of {1}</source>
+        <translation>Mindestabstand (m) {0} statt {1}</translation>
+    </message>
+    <message>
+        <source>section step (degrees) {0} instead of {1}</source>
+        <translation>Sektorschritt (Grad) {0} statt {1}</translation>
+    </message>
+    <message>
+        <source>occlusion {0} instead of {1}</source>
+        <translation>Verdeckung {0} statt {1}</translation>
+    </message>
+    <message>
+        <source>whole panels only {0} instead of {1}</source>
+        <translation>nur ganze Scheiben {0} statt {1}</translation>
+    </message>
+    <message>
+        <source>largest distance (m) {0} instead of {1}</source>
+        <translation>größter Abstand (m) {0} statt {1}</translation>
+    </message>
+    <message>
+        <source>expected {0} of length {1}, got {2}</source>
+        <translation>erwartet wurde {0} der Länge {1}, gefunden: {2}</translation>
+    </message>
+    <message>
+        <source>missing required field &apos;{0}&apos;</source>
+        <translation>das verlangte Feld &apos;{0}&apos; fehlt</translation>
+    </message>
+    <message>
+        <source>object contains unknown field &apos;{0}&apos;</source>
+        <translation>das Feld &apos;{0}&apos; ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>invalid enum value {0}</source>
+        <translation>kein bekannter Wert: {0}</translation>
+    </message>
+    <message>
+        <source>number</source>
+        <translation>Zahl</translation>
+    </message>
+    <message>
+        <source>whole number</source>
+        <translation>ganze Zahl</translation>
+    </message>
+    <message>
+        <source>text</source>
+        <translation>Text</translation>
+    </message>
+    <message>
+        <source>list</source>
+        <translation>Liste</translation>
+    </message>
+    <message>
+        <source>object</source>
+        <translation>Objekt</translation>
+    </message>
+    <message>
+        <source>nothing</source>
+        <translation>nichts</translation>
+    </message>
+    <message>
+        <source>true/false</source>
+        <translation>true/false</translation>
+    </message>
+    <message>
+        <source>a .toml file</source>
+        <translation>eine .toml-Datei</translation>
+    </message>
+    <message>
+        <source>No such file or directory</source>
+        <translation>Datei oder Ordner nicht gefunden</translation>
+    </message>
+    <message>
+        <source>Permission denied</source>
+        <translation>Zugriff verweigert</translation>
+    </message>
+    <message>
+        <source>Is a directory</source>
+        <translation>ist ein Ordner</translation>
+    </message>
+    <message>
+        <source>Not a directory</source>
+        <translation>ist kein Ordner</translation>
+    </message>
+    <message>
+        <source>File exists</source>
+        <translation>Datei ist schon da</translation>
+    </message>
+    <message>
+        <source>File name too long</source>
+        <translation>Dateiname zu lang</translation>
+    </message>
+    <message>
+        <source>Invalid argument</source>
+        <translation>ungültige Angabe</translation>
+    </message>
+    <message>
+        <source>No space left on device</source>
+        <translation>kein Platz mehr auf dem Datenträger</translation>
+    </message>
+    <message>
+        <source>Read-only file system</source>
+        <translation>schreibgeschützter Datenträger</translation>
+    </message>
+    <message>
+        <source>Input/output error</source>
+        <translation>Fehler beim Lesen oder Schreiben</translation>
+    </message>
+    <message>
+        <source>Disk quota exceeded</source>
+        <translation>Speicherkontingent erschöpft</translation>
+    </message>
+    <message>
+        <source>[Errno {0:n}] {1}</source>
+        <translation>[Errno {0:n}] {1}</translation>
+    </message>
+    <message>
+        <source>Expecting value</source>
+        <translation>ein Wert wird erwartet</translation>
+    </message>
+    <message>
+        <source>Expecting property name enclosed in double quotes</source>
+        <translation>ein Name in Anführungszeichen wird erwartet</translation>
+    </message>
+    <message>
+        <source>Expecting &apos;,&apos; delimiter</source>
+        <translation>ein Komma wird erwartet</translation>
+    </message>
+    <message>
+        <source>Expecting &apos;:&apos; delimiter</source>
+        <translation>ein Doppelpunkt wird erwartet</translation>
+    </message>
+    <message>
+        <source>Extra data</source>
+        <translation>überzählige Zeichen</translation>
+    </message>
+    <message>
+        <source>template.kml and waylines.wpml</source>
+        <translation>template.kml und waylines.wpml</translation>
+    </message>
+    <message>
+        <source>views</source>
+        <translation>Aufnahmen</translation>
+    </message>
+    <message>
+        <source>batteries</source>
+        <translation>Akkus</translation>
+    </message>
+    <message>
+        <source>coverage</source>
+        <translation>Abdeckung</translation>
+    </message>
+    <message>
+        <source>seed</source>
+        <translation>Startwert</translation>
+    </message>
+    <message>
+        <source> and </source>
+        <translation> und </translation>
+    </message>
+    <message>
+        <source>sortie {0:n}</source>
+        <translation>Einsatz {0:n}</translation>
+    </message>
+    <message>
+        <source>{0}, at least {1}</source>
+        <translation>{0}, mindestens {1}</translation>
+    </message>
+    <message>
+        <source>{0}, at most {1}</source>
+        <translation>{0}, höchstens {1}</translation>
+    </message>
+    <message>
+        <source>the plan was made for this site file</source>
+        <translation>der Plan wurde für diese Standortdatei gemacht</translation>
+    </message>
+    <message>
+        <source>the plan was made for site &apos;{0}&apos;, this is &apos;{1}&apos;; take its own site file</source>
+        <translation>der Plan wurde für den Standort &apos;{0}&apos; gemacht, dies ist &apos;{1}&apos;; seine eigene Standortdatei nehmen</translation>
+    </message>
+    <message>
+        <source>the site file has changed since this plan was made; what follows is measured on the file as it is now</source>
+        <translation>die Standortdatei hat sich geändert, seit dieser Plan gemacht wurde; was folgt, ist an der jetzigen Datei gemessen</translation>
+    </message>
+    <message>
+        <source>the plan was made for a site of this name, &apos;{0}&apos;; it does not say for which state of its file</source>
+        <translation>der Plan wurde für einen Standort dieses Namens gemacht, &apos;{0}&apos;; für welchen Stand der Datei, sagt er nicht</translation>
+    </message>
+    <message>
+        <source>{0} viewpoints are not in exactly one sortie (the first is &apos;{1}&apos;); plan the route again</source>
+        <translation>{0} Aufnahmepunkte gehören nicht zu genau einem Einsatz (der erste ist &apos;{1}&apos;); die Route neu planen</translation>
+    </message>
+    <message>
+        <source>the plan has no sorties; plan the route first</source>
+        <translation>der Plan hat keine Einsätze; zuerst die Route planen</translation>
+    </message>
+    <message>
+        <source>{0} viewpoints, each in one of {1} sorties</source>
+        <translation>{0} Aufnahmepunkte, jeder in einem von {1} Einsätzen</translation>
+    </message>
+    <message>
+        <source>the path has {0} points; expected one from home to home</source>
+        <translation>der Flugweg hat {0} Punkte; erwartet wurde einer von Startplatz zu Startplatz</translation>
+    </message>
+    <message>
+        <source>not all viewpoints are vertices of the path, in order; plan the route again</source>
+        <translation>nicht alle Aufnahmepunkte sind der Reihe nach Ecken des Flugwegs; die Route neu planen</translation>
+    </message>
+    <message>
+        <source>the path {0} {1} m from home; expected it to run from take-off to landing at home</source>
+        <translation>der Flugweg {0} {1} m vom Startplatz entfernt; erwartet wurde ein Weg vom Start bis zur Landung am Startplatz</translation>
+    </message>
+    <message>
+        <source>the camera would stop at its limit and look elsewhere</source>
+        <translation>die Kamera bliebe an ihrem Anschlag stehen und blickte woandershin</translation>
+    </message>
+    <message>
+        <source>lowest gimbal pitch</source>
+        <translation>kleinste Gimbalneigung</translation>
+    </message>
+    <message>
+        <source>highest gimbal pitch</source>
+        <translation>größte Gimbalneigung</translation>
+    </message>
+    <message>
+        <source>viewpoints whose heading is not in (-180, 180]</source>
+        <translation>Aufnahmepunkte, deren Richtung nicht in (-180, 180] liegt</translation>
+    </message>
+    <message>
+        <source>mission files need it there</source>
+        <translation>Missionsdateien brauchen sie dort</translation>
+    </message>
+    <message>
+        <source>waypoints of {0}</source>
+        <translation>Wegpunkte von {0}</translation>
+    </message>
+    <message>
+        <source>split the flight into more sorties</source>
+        <translation>den Flug auf mehr Einsätze aufteilen</translation>
+    </message>
+    <message>
+        <source>expected wind</source>
+        <translation>erwarteter Wind</translation>
+    </message>
+    <message>
+        <source>duration with the battery reserve kept</source>
+        <translation>Dauer mit der einbehaltenen Akkureserve</translation>
+    </message>
+    <message>
+        <source>fly fewer views per sortie</source>
+        <translation>weniger Aufnahmen je Einsatz fliegen</translation>
+    </message>
+    <message>
+        <source>stated duration</source>
+        <translation>angegebene Dauer</translation>
+    </message>
+    <message>
+        <source>it is too optimistic for this path</source>
+        <translation>sie ist für diesen Flugweg zu knapp</translation>
+    </message>
+    <message>
+        <source>stated length off by</source>
+        <translation>Abweichung der angegebenen Länge</translation>
+    </message>
+    <message>
+        <source>shortest time between photos</source>
+        <translation>kürzeste Zeit zwischen zwei Fotos</translation>
+    </message>
+    <message>
+        <source>the camera would miss photos; hover longer before each</source>
+        <translation>die Kamera würde Fotos auslassen; vor jedem länger schweben</translation>
+    </message>
+    <message>
+        <source>hover before each photo</source>
+        <translation>Schweben vor jedem Foto</translation>
+    </message>
+    <message>
+        <source>1 to 2 s keep photos sharp</source>
+        <translation>1 bis 2 s halten Fotos scharf</translation>
+    </message>
+    <message>
+        <source>coarsest pixel on a covered panel: {0} mm</source>
+        <translation>gröbstes Pixel auf einer abgedeckten Scheibe: {0} mm</translation>
+    </message>
+    <message>
+        <source>{0}, no limit set</source>
+        <translation>{0}, keine Grenze gesetzt</translation>
+    </message>
+    <message>
+        <source>finest pixel on a panel, of the coarsest photo</source>
+        <translation>feinstes Pixel auf einer Scheibe, beim gröbsten Foto</translation>
+    </message>
+    <message>
+        <source>it covers nothing; take it closer or drop it</source>
+        <translation>es deckt nichts ab; näher heran oder weglassen</translation>
+    </message>
+    <message>
+        <source>no panel is seen from any viewpoint</source>
+        <translation>von keinem Aufnahmepunkt ist eine Scheibe zu sehen</translation>
+    </message>
+    <message>
+        <source>{0} of {1} sections are covered, as the plan states</source>
+        <translation>{0} von {1} Sektoren sind abgedeckt, wie der Plan angibt</translation>
+    </message>
+    <message>
+        <source>{0} of {1} sections are covered, but the plan states {2} of {3}</source>
+        <translation>{0} von {1} Sektoren sind abgedeckt, der Plan gibt aber {2} von {3} an</translation>
+    </message>
+    <message>
+        <source>viewpoints that repeat another</source>
+        <translation>Aufnahmepunkte, die einen anderen wiederholen</translation>
+    </message>
+    <message>
+        <source>they cost time and show nothing new</source>
+        <translation>sie kosten Zeit und zeigen nichts Neues</translation>
+    </message>
+    <message>
+        <source>move them inside or widen the airspace</source>
+        <translation>hineinschieben oder den Luftraum erweitern</translation>
+    </message>
+    <message>
+        <source>viewpoints outside the airspace by</source>
+        <translation>Aufnahmepunkte außerhalb des Luftraums um</translation>
+    </message>
+    <message>
+        <source>only the column above home may lie below the airspace</source>
+        <translation>nur die Säule über dem Startplatz darf unter dem Luftraum liegen</translation>
+    </message>
+    <message>
+        <source>paths outside the airspace by</source>
+        <translation>Flugwege außerhalb des Luftraums um</translation>
+    </message>
+    <message>
+        <source>smallest distance at a viewpoint (negative: inside a solid)</source>
+        <translation>kleinster Abstand an einem Aufnahmepunkt (negativ: im Inneren)</translation>
+    </message>
+    <message>
+        <source>move it away</source>
+        <translation>weiter weg schieben</translation>
+    </message>
+    <message>
+        <source>the path runs inside a solid</source>
+        <translation>der Flugweg führt durch etwas Festes</translation>
+    </message>
+    <message>
+        <source>plan the route again</source>
+        <translation>die Route neu planen</translation>
+    </message>
+    <message>
+        <source>{0}, leg {1:n}</source>
+        <translation>{0}, Strecke {1:n}</translation>
+    </message>
+    <message>
+        <source>smallest distance along the path</source>
+        <translation>kleinster Abstand entlang des Flugwegs</translation>
+    </message>
+    <message>
+        <source>the site has no no-fly volumes</source>
+        <translation>der Standort hat keine Flugverbotszonen</translation>
+    </message>
+    <message>
+        <source>smallest distance to a no-fly volume (negative: inside)</source>
+        <translation>kleinster Abstand zu einer Flugverbotszone (negativ: darin)</translation>
+    </message>
+    <message>
+        <source>the path enters a no-fly volume</source>
+        <translation>der Flugweg führt in eine Flugverbotszone</translation>
+    </message>
+    <message>
+        <source>most rules ask for a permit above it</source>
+        <translation>darüber verlangen die meisten Vorschriften eine Genehmigung</translation>
+    </message>
+    <message>
+        <source>greatest height above ground</source>
+        <translation>größte Höhe über Grund</translation>
+    </message>
+    <message>
+        <source>{0} legs are shorter than DJI firmware likes</source>
+        <translation>{0} Strecken sind kürzer, als DJI-Geräte mögen</translation>
+    </message>
+    <message>
+        <source>shortest leg</source>
+        <translation>kürzeste Strecke</translation>
+    </message>
+    <message>
+        <source>autopilots refuse it</source>
+        <translation>Autopiloten lehnen sie ab</translation>
+    </message>
+    <message>
+        <source>longest leg</source>
+        <translation>längste Strecke</translation>
+    </message>
+    <message>
+        <source>% of the lines of sight</source>
+        <translation>% der Sichtlinien</translation>
+    </message>
+    <message>
+        <source>nothing stands in front of any panel</source>
+        <translation>vor keiner Scheibe steht etwas</translation>
+    </message>
+    <message>
+        <source>there is no place to look from</source>
+        <translation>es gibt keinen Ort, von dem aus man schauen könnte</translation>
+    </message>
+    <message>
+        <source>no allowed place lies in front of a panel</source>
+        <translation>kein erlaubter Ort liegt vor einer Scheibe</translation>
+    </message>
+    <message>
+        <source>something stands in front of {0} % of the panels</source>
+        <translation>vor {0} % der Scheiben steht etwas</translation>
+    </message>
+    <message>
+        <source>no viewpoint that sees a panel can be reached and left again within {0} s of one battery</source>
+        <translation>kein Aufnahmepunkt, der eine Scheibe sieht, ist innerhalb von {0} s eines Akkus zu erreichen und wieder zu verlassen</translation>
+    </message>
+    <message>
+        <source>the {0} locked viewpoints alone take {1} batteries, but {2} are allowed; unlock some, or allow more batteries</source>
+        <translation>die {0} fixierten Aufnahmepunkte allein brauchen {1} Akkus, erlaubt sind {2}; einige freigeben oder mehr Akkus erlauben</translation>
+    </message>
+    <message>
+        <source>the {0} locked viewpoints alone need more batteries than are allowed; unlock some, or allow more</source>
+        <translation>die {0} fixierten Aufnahmepunkte allein brauchen mehr Akkus als erlaubt; einige freigeben oder mehr erlauben</translation>
+    </message>
+    <message>
+        <source>it looks {0} deg up, and the gimbal turns from {1} to {2} deg</source>
+        <translation>er blickt {0}° nach oben, und der Gimbal dreht von {1} bis {2}°</translation>
+    </message>
+    <message>
+        <source>viewpoint &apos;{0}&apos; is locked, but cannot be flown: {1}; unlock it, or move it first</source>
+        <translation>Aufnahmepunkt &apos;{0}&apos; ist fixiert, kann aber nicht geflogen werden: {1}; ihn freigeben oder zuerst verschieben</translation>
+    </message>
+    <message>
+        <source>it lies {0} m outside the airspace or on its border</source>
+        <translation>er liegt {0} m außerhalb des Luftraums oder auf dessen Rand</translation>
+    </message>
+    <message>
+        <source>inside a solid</source>
+        <translation>tief in etwas Festem</translation>
+    </message>
+    <message>
+        <source>from the building or an obstacle</source>
+        <translation>vom Gebäude oder von einem Hindernis</translation>
+    </message>
+    <message>
+        <source>it is {0} m {1}, and {2} m are required</source>
+        <translation>er liegt {0} m {1}, und {2} m sind verlangt</translation>
+    </message>
+    <message>
+        <source>it is in a no-fly volume or less than {0} m from one</source>
+        <translation>er liegt in einer Flugverbotszone oder näher als {0} m an einer</translation>
+    </message>
+    <message>
+        <source>no way from home to it was found</source>
+        <translation>vom Startplatz wurde kein Weg dorthin gefunden</translation>
+    </message>
+    <message>
+        <source>no allowed viewpoint sees any panel: the airspace may be empty or too close to the building, the panels&apos; corners clockwise (normals pointing inwards), or the minimum distance too large</source>
+        <translation>kein erlaubter Aufnahmepunkt sieht eine Scheibe: Der Luftraum kann leer oder zu nah am Gebäude sein, die Ecken der Scheiben können im Uhrzeigersinn stehen (Normalen nach innen), oder der Mindestabstand ist zu groß</translation>
+    </message>
+    <message>
+        <source>method &apos;{0}&apos; cannot plan for a number of batteries; &apos;greedy&apos; can</source>
+        <translation>das Verfahren &apos;{0}&apos; kann nicht für eine Anzahl von Akkus planen; „Greedy mit Beweis“ kann es</translation>
+    </message>
+    <message>
+        <source>method &apos;{0}&apos; cannot keep locked viewpoints; &apos;greedy&apos; can, or unlock them</source>
+        <translation>das Verfahren &apos;{0}&apos; kann fixierte Aufnahmepunkte nicht behalten; „Greedy mit Beweis“ kann es, oder sie freigeben</translation>
+    </message>
+    <message>
+        <source>method &apos;pso&apos; needs a number of views (--views N); it cannot look for the fewest</source>
+        <translation>das Verfahren &apos;pso&apos; braucht eine Anzahl von Aufnahmen; nach den wenigsten suchen kann es nicht</translation>
+    </message>
+    <message>
+        <source>airspace: no place in it keeps {0} m from the building and all obstacles; widen the airspace or lower the minimum distance</source>
+        <translation>Luftraum: An keinem Ort darin sind es {0} m zum Gebäude und allen Hindernissen; den Luftraum erweitern oder den Mindestabstand verkleinern</translation>
+    </message>
+    <message>
+        <source>panel &apos;{0}&apos; looks into a solid: its corners may be clockwise, or the mesh covers it</source>
+        <translation>Scheibe &apos;{0}&apos; blickt in etwas Festes: Ihre Ecken stehen vielleicht im Uhrzeigersinn, oder das Netz verdeckt sie</translation>
+    </message>
+    <message>
+        <source>no allowed viewpoint sees panel &apos;{0}&apos;</source>
+        <translation>kein erlaubter Aufnahmepunkt sieht die Scheibe &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>home stands {0} m from a no-fly volume; no more than that is kept from it</source>
+        <translation>der Startplatz liegt {0} m von einer Flugverbotszone; mehr wird von ihr nicht eingehalten</translation>
+    </message>
+    <message>
+        <source>expected at most one of a number of views, a share and a number of batteries</source>
+        <translation>erwartet wurde höchstens eines von Anzahl der Aufnahmen, Anteil und Anzahl der Akkus</translation>
+    </message>
+    <message>
+        <source>time budget: expected more than 0 s, got {0}</source>
+        <translation>Zeit zum Planen: erwartet wurden mehr als 0 s, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>viewpoint &apos;{0}&apos; is locked and stays as it is; unlock it before it is {1}</source>
+        <translation>Aufnahmepunkt &apos;{0}&apos; ist fixiert und bleibt, wie er ist; ihn freigeben, bevor er {1} wird</translation>
+    </message>
+    <message>
+        <source>the views cannot be shared out so that every sortie fits {0}&apos;s battery and waypoint limit; lower the reserve or the number of views</source>
+        <translation>die Aufnahmen lassen sich nicht so aufteilen, dass jeder Einsatz zu Akku und Wegpunktgrenze von {0} passt; die Reserve oder die Zahl der Aufnahmen verkleinern</translation>
+    </message>
+    <message>
+        <source>no way from ({0:m}) to ({1:m}) m was found that keeps {2} m from everything; leave the place out, widen the airspace or lower the minimum distance</source>
+        <translation>von ({0:m}) nach ({1:m}) m wurde kein Weg gefunden, der zu allem {2} m Abstand hält; den Ort weglassen, den Luftraum erweitern oder den Mindestabstand verkleinern</translation>
+    </message>
+    <message>
+        <source>home {0:m} is not below or inside the airspace box {1:m} to {2:m}; move home or widen the airspace</source>
+        <translation>der Startplatz {0:m} liegt weder unter noch in dem Luftraum {1:m} bis {2:m}; ihn verschieben oder den Luftraum erweitern</translation>
+    </message>
+    <message>
+        <source>home {0:m} lies inside a building or obstacle; move it outside</source>
+        <translation>der Startplatz {0:m} liegt in einem Gebäude oder Hindernis; ihn hinausschieben</translation>
+    </message>
+    <message>
+        <source>home {0:m} lies inside a no-fly volume; move it outside</source>
+        <translation>der Startplatz {0:m} liegt in einer Flugverbotszone; ihn hinausschieben</translation>
+    </message>
+    <message>
+        <source>the take-off column above home {0:m} comes within {1} m of the building or an obstacle, {2} m are required; move home away</source>
+        <translation>die Startsäule über dem Startplatz {0:m} kommt dem Gebäude oder einem Hindernis auf {1} m nahe, {2} m sind verlangt; den Startplatz wegrücken</translation>
+    </message>
+    <message>
+        <source>the take-off column above home {0:m} crosses a no-fly volume</source>
+        <translation>die Startsäule über dem Startplatz {0:m} kreuzt eine Flugverbotszone</translation>
+    </message>
+    <message>
+        <source>takes {0} of {1} batteries: more views would show nothing new or could not be flown</source>
+        <translation>braucht {0} von {1} Akkus: Mehr Aufnahmen würden nichts Neues zeigen oder wären nicht zu fliegen</translation>
+    </message>
+    <message>
+        <source>viewpoint {0}</source>
+        <translation>Aufnahmepunkt {0}</translation>
+    </message>
+    <message>
+        <source>expected 1 or more, got {0}</source>
+        <translation>erwartet wurde 1 oder mehr, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected 1 to 20000, got {0}</source>
+        <translation>erwartet wurden 1 bis 20000, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected at least the {0} locked ones, got {1}</source>
+        <translation>erwartet wurden mindestens die {0} fixierten, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>expected unique ids</source>
+        <translation>erwartet wurden eindeutige Kennungen</translation>
+    </message>
+    <message>
+        <source>expected more than 0 and at most 1, got {0}</source>
+        <translation>erwartet wurde mehr als 0 und höchstens 1, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected 1 to 100, got {0}</source>
+        <translation>erwartet wurden 1 bis 100, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected 0 to {0}, got {1}</source>
+        <translation>erwartet wurde 0 bis {0}, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source> ({0} more are too far as well)</source>
+        <translation> ({0} weitere sind ebenfalls zu weit weg)</translation>
+    </message>
+    <message>
+        <source>{0} cannot be reached from home and left again{1}; leave it out</source>
+        <translation>{0} ist vom Startplatz nicht zu erreichen und wieder zu verlassen{1}; weglassen</translation>
+    </message>
+    <message>
+        <source>{0} takes {1} s on a sortie of its own, but a battery allows {2} s{3}; move home closer, raise the speed, lower the reserve or leave it out</source>
+        <translation>{0} braucht auf einem eigenen Einsatz {1} s, ein Akku erlaubt aber {2} s{3}; den Startplatz näher legen, schneller fliegen, die Reserve verkleinern oder weglassen</translation>
+    </message>
+    <message>
+        <source>stop {0} has a load of {1}, above {2}</source>
+        <translation>Halt {0} hat eine Last von {1}, mehr als {2}</translation>
+    </message>
+    <message>
+        <source>every order needs a leg that does not exist</source>
+        <translation>jede Reihenfolge braucht eine Strecke, die es nicht gibt</translation>
+    </message>
+    <message>
+        <source>none was found</source>
+        <translation>es wurde keine gefunden</translation>
+    </message>
+    <message>
+        <source>no tour visits all {0} points by existing legs: {1}</source>
+        <translation>kein Rundweg besucht alle {0} Punkte über vorhandene Strecken: {1}</translation>
+    </message>
+    <message>
+        <source>no tour visits all {0} points: there is no way from point {1} to {2}</source>
+        <translation>kein Rundweg besucht alle {0} Punkte: Von Punkt {1} führt kein Weg zu {2}</translation>
+    </message>
+    <message>
+        <source>no tour visits all {0} points: there is only one leg at {1}</source>
+        <translation>kein Rundweg besucht alle {0} Punkte: Nur eine Strecke hat {1}</translation>
+    </message>
+    <message>
+        <source> and {0} more</source>
+        <translation> und {0} weitere</translation>
+    </message>
+    <message>
+        <source>points {0}</source>
+        <translation>Punkte {0}</translation>
+    </message>
+    <message>
+        <source>point {0}</source>
+        <translation>Punkt {0}</translation>
+    </message>
+    <message>
+        <source>speed through corners</source>
+        <translation>Tempo durch Ecken</translation>
+    </message>
+    <message>
+        <source>the aircraft stops at every vertex, where the closed form is exact</source>
+        <translation>das Fluggerät hält an jeder Ecke, wo die geschlossene Formel genau ist</translation>
+    </message>
+    <message>
+        <source>{0} of {1} vertices are flown through without a stop</source>
+        <translation>{0} von {1} Ecken werden ohne Halt durchflogen</translation>
+    </message>
+    <message>
+        <source>{0} may fly in wind below {1} m/s, but {2} m/s are expected; wait for less wind or take another aircraft</source>
+        <translation>{0} darf bei Wind unter {1} m/s fliegen, erwartet werden aber {2} m/s; auf weniger Wind warten oder ein anderes Fluggerät nehmen</translation>
+    </message>
+    <message>
+        <source>{0} flies {1} m/s and makes no headway against {2} m/s of wind; wait for less wind or take another aircraft</source>
+        <translation>{0} fliegt {1} m/s und kommt gegen {2} m/s Wind nicht voran; auf weniger Wind warten oder ein anderes Fluggerät nehmen</translation>
+    </message>
+    <message>
+        <source>a battery of {0} lasts {1} s; a reserve of {2} and {3} s for take-off and landing leave nothing; lower the reserve</source>
+        <translation>ein Akku von {0} hält {1} s; eine Reserve von {2} und {3} s für Start und Landung lassen nichts übrig; die Reserve verkleinern</translation>
+    </message>
+    <message>
+        <source>none of the viewpoints is locked; expected some with &quot;locked&quot;: true, which the Plan tab&apos;s lock sets</source>
+        <translation>keiner der Aufnahmepunkte ist fixiert; erwartet wurden einige mit &quot;locked&quot;: true, was das Fixieren im Reiter Planung setzt</translation>
+    </message>
+    <message>
+        <source>{0} views instead of the {1} asked for: more would show nothing new or could not be flown</source>
+        <translation>{0} Aufnahmen statt der verlangten {1}: Mehr würden nichts Neues zeigen oder wären nicht zu fliegen</translation>
+    </message>
+    <message>
+        <source>allow it more time</source>
+        <translation>ihm mehr Zeit geben</translation>
+    </message>
+    <message>
+        <source>the method flies a pattern of its own</source>
+        <translation>das Verfahren fliegt ein eigenes Muster</translation>
+    </message>
+    <message>
+        <source>covers {0} % of what is possible at most, {1} % were asked for; {2}</source>
+        <translation>deckt höchstens {0} % des Möglichen ab, verlangt waren {1} %; {2}</translation>
+    </message>
+    <message>
+        <source>the window is closing</source>
+        <translation>das Fenster wird geschlossen</translation>
+    </message>
+    <message>
+        <source>the system ended it, mostly because memory ran out</source>
+        <translation>das System beendete ihn, meist weil der Speicher ausging</translation>
+    </message>
+    <message>
+        <source>exit status {0}</source>
+        <translation>Endstatus {0}</translation>
+    </message>
+    <message>
+        <source>there is no planning method &apos;{0}&apos;; known are: {1}</source>
+        <translation>es gibt kein Verfahren &apos;{0}&apos;; bekannt sind: {1}</translation>
+    </message>
+    <message>
+        <source>the process that plans ended before the work was done ({0}); close other programs, or ask for less, and try again</source>
+        <translation>der Prozess, der plant, endete vor der Arbeit ({0}); andere Programme schließen oder weniger verlangen und noch einmal versuchen</translation>
+    </message>
+    <message>
+        <source>cancelled while {0}</source>
+        <translation>abgebrochen bei: {0}</translation>
+    </message>
+    <message>
+        <source>unsaved work could not be copied for after a crash: {0}. Nothing is lost while this window is open; make room or save the project in another folder</source>
+        <translation>ungesicherte Arbeit ließ sich nicht für den Fall eines Absturzes kopieren: {0}. Solange dieses Fenster offen ist, geht nichts verloren; Platz schaffen oder das Projekt in einem anderen Ordner speichern</translation>
+    </message>
+    <message>
+        <source>this folder cannot be made ({0})</source>
+        <translation>dieser Ordner lässt sich nicht anlegen ({0})</translation>
+    </message>
+    <message>
+        <source>a plan</source>
+        <translation>ein Plan</translation>
+    </message>
+    <message>
+        <source>a site</source>
+        <translation>ein Standort</translation>
+    </message>
+    <message>
+        <source>a project</source>
+        <translation>ein Projekt</translation>
+    </message>
+    <message>
+        <source>a mission file</source>
+        <translation>eine Missionsdatei</translation>
+    </message>
+    <message>
+        <source>a building model</source>
+        <translation>ein Gebäudemodell</translation>
+    </message>
+    <message>
+        <source>a TSPLIB instance</source>
+        <translation>eine TSPLIB-Aufgabe</translation>
+    </message>
+    <message>
+        <source>a folder</source>
+        <translation>ein Ordner</translation>
+    </message>
+    <message>
+        <source>an empty file</source>
+        <translation>eine leere Datei</translation>
+    </message>
+    <message>
+        <source>nothing of that name</source>
+        <translation>nichts dieses Namens</translation>
+    </message>
+    <message>
+        <source>a file of another kind</source>
+        <translation>eine Datei anderer Art</translation>
+    </message>
+    <message>
+        <source>a plan file (such as office.plan.json)</source>
+        <translation>eine Plandatei (etwa office.plan.json)</translation>
+    </message>
+    <message>
+        <source>a site file (such as office.site.json)</source>
+        <translation>eine Standortdatei (etwa office.site.json)</translation>
+    </message>
+    <message>
+        <source>the folder of a project or its {0}</source>
+        <translation>der Ordner eines Projekts oder dessen {0}</translation>
+    </message>
+    <message>
+        <source>a mission file (.kmz, .plan, .waypoints, .kml or .csv)</source>
+        <translation>eine Missionsdatei (.kmz, .plan, .waypoints, .kml oder .csv)</translation>
+    </message>
+    <message>
+        <source>a TSPLIB instance (.tsp or .atsp)</source>
+        <translation>eine TSPLIB-Aufgabe (.tsp oder .atsp)</translation>
+    </message>
+    <message>
+        <source>&apos;plan&apos; makes a plan of it</source>
+        <translation>&apos;plan&apos; macht daraus einen Plan</translation>
+    </message>
+    <message>
+        <source>name the site file that it was made for</source>
+        <translation>die Standortdatei nennen, für die er gemacht wurde</translation>
+    </message>
+    <message>
+        <source>it knows no building; name the site file that it is flown at</source>
+        <translation>sie kennt kein Gebäude; die Standortdatei nennen, an der sie geflogen wird</translation>
+    </message>
+    <message>
+        <source>&apos;project new&apos; makes a project of it</source>
+        <translation>&apos;project new&apos; macht daraus ein Projekt</translation>
+    </message>
+    <message>
+        <source>&apos;project add&apos; puts it into a project</source>
+        <translation>&apos;project add&apos; legt es in ein Projekt</translation>
+    </message>
+    <message>
+        <source>it needs no import; &apos;export&apos; makes a mission of it</source>
+        <translation>er braucht keinen Import; &apos;export&apos; macht daraus eine Mission</translation>
+    </message>
+    <message>
+        <source>it goes behind --site; name the mission file as well</source>
+        <translation>er gehört hinter --site; auch die Missionsdatei nennen</translation>
+    </message>
+    <message>
+        <source>it needs no import; &apos;plan&apos; takes it as it is</source>
+        <translation>er braucht keinen Import; &apos;plan&apos; nimmt ihn, wie er ist</translation>
+    </message>
+    <message>
+        <source>&apos;tradeoff route&apos; takes plans</source>
+        <translation>&apos;tradeoff route&apos; nimmt Pläne</translation>
+    </message>
+    <message>
+        <source>name a file in it</source>
+        <translation>eine Datei darin nennen</translation>
+    </message>
+    <message>
+        <source>check the path</source>
+        <translation>den Pfad prüfen</translation>
+    </message>
+    <message>
+        <source>expected {0}, found {1}; {2}</source>
+        <translation>erwartet wurde {0}, gefunden: {1}; {2}</translation>
+    </message>
+    <message>
+        <source>name another file</source>
+        <translation>eine andere Datei nennen</translation>
+    </message>
+    <message>
+        <source>its site is {0}</source>
+        <translation>sein Standort ist {0}</translation>
+    </message>
+    <message>
+        <source>name one of its plans: </source>
+        <translation>einen seiner Pläne nennen: </translation>
+    </message>
+    <message>
+        <source>it has no plan yet; &apos;plan {0} -o PLAN&apos; makes one</source>
+        <translation>es hat noch keinen Plan; &apos;plan {0} -o PLAN&apos; macht einen</translation>
+    </message>
+    <message>
+        <source>{0} was cancelled</source>
+        <translation>{0} wurde abgebrochen</translation>
+    </message>
+    <message>
+        <source>there is no such file; choose an MBTiles file</source>
+        <translation>es gibt keine solche Datei; eine MBTiles-Datei wählen</translation>
+    </message>
+    <message>
+        <source>the map has no tiles; export it again with the area of the site</source>
+        <translation>die Karte hat keine Kacheln; sie mit dem Gebiet des Standorts neu exportieren</translation>
+    </message>
+    <message>
+        <source>expected zoom levels from 0 to {0}, found {1} to {2}</source>
+        <translation>erwartet wurden Zoomstufen von 0 bis {0}, gefunden: {1} bis {2}</translation>
+    </message>
+    <message>
+        <source>the map holds vector tiles (pbf), which Reflight does not draw; export it with picture tiles (PNG, JPEG or WebP)</source>
+        <translation>die Karte enthält Vektorkacheln (pbf), die Reflight nicht zeichnet; sie mit Bildkacheln exportieren (PNG, JPEG oder WebP)</translation>
+    </message>
+    <message>
+        <source>expected tiles in PNG, JPEG or WebP, found something else (the file says {0}); export the map again</source>
+        <translation>erwartet wurden Kacheln in PNG, JPEG oder WebP, gefunden etwas anderes (die Datei sagt {0}); die Karte neu exportieren</translation>
+    </message>
+    <message>
+        <source>expected tiles in PNG, JPEG or WebP, found something else; export the map again</source>
+        <translation>erwartet wurden Kacheln in PNG, JPEG oder WebP, gefunden etwas anderes; die Karte neu exportieren</translation>
+    </message>
+    <message>
+        <source>looking a tile up takes more than {0} s; the index on tiles is missing or the file is damaged; export the map again</source>
+        <translation>eine Kachel nachzuschlagen dauert länger als {0} s; der Index der Kacheln fehlt, oder die Datei ist beschädigt; die Karte neu exportieren</translation>
+    </message>
+    <message>
+        <source>not a map in MBTiles format, or damaged ({0}); choose another file, or export the map again</source>
+        <translation>keine Karte im Format MBTiles oder beschädigt ({0}); eine andere Datei wählen oder die Karte neu exportieren</translation>
+    </message>
+    <message>
+        <source>this folder cannot be written; changes can only be saved as another project</source>
+        <translation>dieser Ordner ist nicht beschreibbar; Änderungen lassen sich nur als anderes Projekt speichern</translation>
+    </message>
+    <message>
+        <source>the next plan</source>
+        <translation>den nächsten Plan</translation>
+    </message>
+    <message>
+        <source>there is no {0} here, so &apos;{1}&apos; and the plans beside it (found: {2}) were taken as a project; saving makes it one, with copies of its own</source>
+        <translation>hier gibt es keine {0}, also gelten &apos;{1}&apos; und die Pläne daneben (gefunden: {2}) als Projekt; Speichern macht eines daraus, mit eigenen Kopien</translation>
+    </message>
+    <message>
+        <source>this project is in format &apos;{0}&apos;; saving brings it to &apos;{1}&apos; and keeps the old {2} beside it</source>
+        <translation>dieses Projekt hat das Format &apos;{0}&apos;; Speichern bringt es auf &apos;{1}&apos; und behält die alte {2} daneben</translation>
+    </message>
+    <message>
+        <source>{0}; a project cannot be opened without its site: put the file back from a copy, or make a new project with &apos;project new&apos; and add the plans to it</source>
+        <translation>{0}; ein Projekt lässt sich ohne seinen Standort nicht öffnen: Die Datei aus einer Kopie zurücklegen oder ein neues Projekt machen und die Pläne hineinlegen</translation>
+    </message>
+    <message>
+        <source>there is a project here already; open it, or name another folder</source>
+        <translation>hier ist schon ein Projekt; es öffnen oder einen anderen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>expected a folder for the project, found a file; name another folder</source>
+        <translation>erwartet wurde ein Ordner für das Projekt, gefunden eine Datei; einen anderen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>a file</source>
+        <translation>eine Datei</translation>
+    </message>
+    <message>
+        <source>expected the folder of a project or its {0}, found {1}</source>
+        <translation>erwartet wurde der Ordner eines Projekts oder dessen {0}, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>would replace what holds a project together; name another file</source>
+        <translation>würde ersetzen, was ein Projekt zusammenhält; eine andere Datei nennen</translation>
+    </message>
+    <message>
+        <source>a newer Reflight wrote this project (format &apos;{0}&apos;, this one knows up to &apos;{1}&apos;); open it with that one</source>
+        <translation>ein neueres Reflight schrieb dieses Projekt (Format &apos;{0}&apos;, dieses kennt sie bis &apos;{1}&apos;); mit jenem öffnen</translation>
+    </message>
+    <message>
+        <source>cannot be saved: a number in it is NaN or infinite ({0})</source>
+        <translation>nicht zu speichern: Eine Zahl darin ist NaN oder unendlich ({0})</translation>
+    </message>
+    <message>
+        <source>process {0} on {1} since {2}</source>
+        <translation>Prozess {0} auf {1} seit {2}</translation>
+    </message>
+    <message>
+        <source>this project is open in another Reflight ({0}); close it there first, or copy the folder</source>
+        <translation>dieses Projekt ist in einem anderen Reflight offen ({0}); es dort zuerst schließen oder den Ordner kopieren</translation>
+    </message>
+    <message>
+        <source>expected the folder of a project, found nothing of that name</source>
+        <translation>erwartet wurde der Ordner eines Projekts, gefunden: nichts dieses Namens</translation>
+    </message>
+    <message>
+        <source>this project cannot be locked for editing ({0}); it can be looked at, and saved as another project</source>
+        <translation>dieses Projekt lässt sich nicht zum Bearbeiten sperren ({0}); es lässt sich ansehen und als anderes Projekt speichern</translation>
+    </message>
+    <message>
+        <source>there is no project in this folder: expected project.json, or a site file with plans beside it; &apos;project new&apos; makes a project</source>
+        <translation>in diesem Ordner ist kein Projekt: erwartet wurde project.json oder eine Standortdatei mit Plänen daneben; einen Standort öffnen und als Projekt speichern</translation>
+    </message>
+    <message>
+        <source>expected one site file in a folder without project.json, found {0} ({1}); make a project of one with &apos;project new&apos;</source>
+        <translation>erwartet wurde eine Standortdatei in einem Ordner ohne project.json, gefunden: {0} ({1}); eine davon öffnen und als Projekt speichern</translation>
+    </message>
+    <message>
+        <source>plans: expected a list of file names</source>
+        <translation>plans: erwartet wurde eine Liste von Dateinamen</translation>
+    </message>
+    <message>
+        <source>{0}; the plan &apos;{1}&apos; was left out</source>
+        <translation>{0}; der Plan &apos;{1}&apos; wurde weggelassen</translation>
+    </message>
+    <message>
+        <source>another program has changed the plan &apos;{0}&apos; since the project was saved</source>
+        <translation>ein anderes Programm hat den Plan &apos;{0}&apos; geändert, seit das Projekt gespeichert wurde</translation>
+    </message>
+    <message>
+        <source>the plan &apos;{0}&apos;</source>
+        <translation>den Plan &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>{0}; what was asked of {1} was left out</source>
+        <translation>{0}; was an {1} verlangt war, wurde weggelassen</translation>
+    </message>
+    <message>
+        <source>plan &apos;{0}&apos;</source>
+        <translation>Plan &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>the project holds this plan already, as &apos;{0}&apos;; leave it out</source>
+        <translation>das Projekt enthält diesen Plan schon, als &apos;{0}&apos;; ihn weglassen</translation>
+    </message>
+    <message>
+        <source>this plan was made for another state of the site, or for another site (&apos;{0}&apos;)</source>
+        <translation>dieser Plan wurde für einen anderen Stand des Standorts oder für einen anderen Standort gemacht (&apos;{0}&apos;)</translation>
+    </message>
+    <message>
+        <source>site &apos;{0}&apos;: cannot be saved: a text in it is no valid Unicode ({1})</source>
+        <translation>Standort &apos;{0}&apos;: nicht zu speichern: Ein Text darin ist kein gültiges Unicode ({1})</translation>
+    </message>
+    <message>
+        <source>{0}; this copy of unsaved work is damaged and cannot be taken over</source>
+        <translation>{0}; diese Kopie ungesicherter Arbeit ist beschädigt und nicht zu übernehmen</translation>
+    </message>
+    <message>
+        <source>all of it: no project can be opened in its folder ({0})</source>
+        <translation>alles: In ihrem Ordner lässt sich kein Projekt öffnen ({0})</translation>
+    </message>
+    <message>
+        <source>the site</source>
+        <translation>der Standort</translation>
+    </message>
+    <message>
+        <source>plan &apos;{0}&apos; is new</source>
+        <translation>Plan &apos;{0}&apos; ist neu</translation>
+    </message>
+    <message>
+        <source>plan &apos;{0}&apos; was changed</source>
+        <translation>Plan &apos;{0}&apos; wurde geändert</translation>
+    </message>
+    <message>
+        <source>plan &apos;{0}&apos; was removed</source>
+        <translation>Plan &apos;{0}&apos; wurde entfernt</translation>
+    </message>
+    <message>
+        <source>what is asked of the next plan</source>
+        <translation>was vom nächsten Plan verlangt ist</translation>
+    </message>
+    <message>
+        <source>; is &apos;{0}&apos; meant?</source>
+        <translation>; ist &apos;{0}&apos; gemeint?</translation>
+    </message>
+    <message>
+        <source>expected one of {0}, found an unknown key{1}</source>
+        <translation>erwartet wurde eines von {0}, gefunden ein unbekannter Schlüssel{1}</translation>
+    </message>
+    <message>
+        <source>expected {0}, got {1}</source>
+        <translation>erwartet wurde {0}, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>a building model (.ifc, .gml, .xml, .json, .obj, .ply, .glb or .stl)</source>
+        <translation>ein Gebäudemodell (.ifc, .gml, .xml, .json, .obj, .ply, .glb oder .stl)</translation>
+    </message>
+    <message>
+        <source>import it first (&apos;import&apos;, or Mission &gt; Import mission files)</source>
+        <translation>zuerst importieren (Mission &gt; Missionsdateien importieren)</translation>
+    </message>
+    <message>
+        <source>import it first (&apos;site import&apos;, or Site &gt; Import), and plan a flight over that</source>
+        <translation>zuerst importieren (Standort &gt; Importieren) und darüber einen Flug planen</translation>
+    </message>
+    <message>
+        <source>import it first (&apos;site import&apos;, or Site &gt; Import)</source>
+        <translation>zuerst importieren (Standort &gt; Importieren)</translation>
+    </message>
+    <message>
+        <source>copy it again or make it anew</source>
+        <translation>noch einmal kopieren oder neu machen</translation>
+    </message>
+    <message>
+        <source>expected one table with an aircraft and its camera, got {0}</source>
+        <translation>Erwartet wurde eine Tabelle mit einem Fluggerät und seiner Kamera, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>there is no aircraft profile &apos;{0}&apos;; known are: {1}; your own can be a .toml file</source>
+        <translation>Es gibt kein Profil eines Fluggeräts &apos;{0}&apos;; bekannt sind: {1}; ein eigenes kann eine .toml-Datei sein</translation>
+    </message>
+    <message>
+        <source>the file has more than {0} MiB; expected a JSON file</source>
+        <translation>die Datei hat mehr als {0} MiB; erwartet wurde eine JSON-Datei</translation>
+    </message>
+    <message>
+        <source>cannot be read ({0})</source>
+        <translation>nicht lesbar ({0})</translation>
+    </message>
+    <message>
+        <source>expected JSON in UTF-8, found other bytes at offset {0}</source>
+        <translation>erwartet wurde JSON in UTF-8, an Stelle {0} stehen andere Bytes</translation>
+    </message>
+    <message>
+        <source>not valid JSON, line 1: the file is empty</source>
+        <translation>kein gültiges JSON, Zeile 1: Die Datei ist leer</translation>
+    </message>
+    <message>
+        <source>not valid JSON, line {0}, column {1}: {2}</source>
+        <translation>kein gültiges JSON, Zeile {0}, Spalte {1}: {2}</translation>
+    </message>
+    <message>
+        <source>nested too deeply for a file of ours</source>
+        <translation>zu tief verschachtelt für eine unserer Dateien</translation>
+    </message>
+    <message>
+        <source>holds a number with too many digits ({0})</source>
+        <translation>enthält eine Zahl mit zu vielen Stellen ({0})</translation>
+    </message>
+    <message>
+        <source>expected a finite number, got NaN or Infinity</source>
+        <translation>erwartet wurde eine endliche Zahl, gefunden: NaN oder unendlich</translation>
+    </message>
+    <message>
+        <source>format: expected &apos;{0}&apos;, got {1}; is it the right file?</source>
+        <translation>format: erwartet wurde &apos;{0}&apos;, gefunden: {1}; ist es die richtige Datei?</translation>
+    </message>
+    <message>
+        <source>not valid TOML ({0})</source>
+        <translation>kein gültiges TOML ({0})</translation>
+    </message>
+    <message>
+        <source>cannot be written: there is no folder &apos;{0}&apos;; make it first</source>
+        <translation>nicht zu schreiben: Es gibt keinen Ordner &apos;{0}&apos;; ihn zuerst anlegen</translation>
+    </message>
+    <message>
+        <source>cannot be written: this is a folder; name a file in it</source>
+        <translation>nicht zu schreiben: Das ist ein Ordner; eine Datei darin nennen</translation>
+    </message>
+    <message>
+        <source>cannot be written: the file is write-protected; name another one</source>
+        <translation>nicht zu schreiben: Die Datei ist schreibgeschützt; eine andere nennen</translation>
+    </message>
+    <message>
+        <source>would replace {0}, which it is made from; name another file</source>
+        <translation>würde {0} ersetzen, woraus es gemacht wird; eine andere Datei nennen</translation>
+    </message>
+    <message>
+        <source>cannot be written ({0})</source>
+        <translation>nicht zu schreiben ({0})</translation>
+    </message>
+    <message>
+        <source>expected a mesh file ({0}), got &apos;{1}&apos;</source>
+        <translation>erwartet wurde eine Netzdatei ({0}), gefunden: &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>there is no such mesh file</source>
+        <translation>es gibt keine solche Netzdatei</translation>
+    </message>
+    <message>
+        <source>this mesh cannot be read ({0})</source>
+        <translation>dieses Netz ist nicht lesbar ({0})</translation>
+    </message>
+    <message>
+        <source>the mesh has no triangles (a point cloud cannot serve as a building)</source>
+        <translation>das Netz hat keine Dreiecke (eine Punktwolke taugt nicht als Gebäude)</translation>
+    </message>
+    <message>
+        <source>the mesh has coordinates that are not finite numbers</source>
+        <translation>das Netz hat Koordinaten, die keine endlichen Zahlen sind</translation>
+    </message>
+    <message>
+        <source>the mesh has a coordinate of {0} m; local ENU metres near the site&apos;s origin are expected. Shift it (site import does) before using it</source>
+        <translation>das Netz hat eine Koordinate von {0} m; erwartet werden örtliche Meter (ENU) nahe dem Nullpunkt des Standorts. Vorher verschieben (der Import eines Standorts tut das)</translation>
+    </message>
+    <message>
+        <source>expected a positive number, got {0}</source>
+        <translation>erwartet wurde eine positive Zahl, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected [lowest, highest] within -180 to 90, got [{0}, {1}]</source>
+        <translation>erwartet wurde [kleinste, größte] zwischen -180 und 90, gefunden: [{0}, {1}]</translation>
+    </message>
+    <message>
+        <source>expected auto, on or off, got &apos;{0}&apos;</source>
+        <translation>erwartet wurde auto, on oder off, gefunden: &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected more than the minimum distance {0:m}, got {1:m}</source>
+        <translation>erwartet wurde mehr als der Mindestabstand {0:m}, gefunden: {1:m}</translation>
+    </message>
+    <message>
+        <source>expected a divisor of 90 from 1 to 90 degrees, got {0}</source>
+        <translation>erwartet wurde ein Teiler von 90 von 1 bis 90 Grad, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected 0 to below 1, got {0}</source>
+        <translation>erwartet wurde 0 bis unter 1, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected a positive speed, got {0}</source>
+        <translation>erwartet wurde eine positive Geschwindigkeit, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected a name, got an empty text</source>
+        <translation>erwartet wurde ein Name, gefunden: ein leerer Text</translation>
+    </message>
+    <message>
+        <source>expected (-180, 180], got {0}</source>
+        <translation>erwartet wurde (-180, 180], gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected -180 to 90, got {0}</source>
+        <translation>erwartet wurde -180 bis 90, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected 0 &lt;= covered &lt;= reachable_upper_bound &lt;= total, got {0}, {1}, {2}</source>
+        <translation>erwartet wurde 0 &lt;= covered &lt;= reachable_upper_bound &lt;= total, gefunden: {0}, {1}, {2}</translation>
+    </message>
+    <message>
+        <source>expected &apos;{0}&apos;, got &apos;{1}&apos;</source>
+        <translation>erwartet wurde &apos;{0}&apos;, gefunden: &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>expected unique ids, &apos;{0}&apos; occurs twice</source>
+        <translation>erwartet wurden eindeutige Kennungen, &apos;{0}&apos; kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>there is no viewpoint &apos;{0}&apos;</source>
+        <translation>es gibt keinen Aufnahmepunkt &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>expected -90 to 90, got {0}</source>
+        <translation>erwartet wurde -90 bis 90, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected -180 to 180, got {0}</source>
+        <translation>erwartet wurde -180 bis 180, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected -1000 to 10000, got {0}</source>
+        <translation>erwartet wurde -1000 bis 10000, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>panel &apos;{0}&apos; has an area of {1} m2, so it has no normal; expected four corners in order around the pane</source>
+        <translation>Scheibe &apos;{0}&apos; hat eine Fläche von {1} m2 und damit keine Normale; erwartet wurden vier Ecken der Reihe nach um die Scheibe</translation>
+    </message>
+    <message>
+        <source>panel &apos;{0}&apos; is not flat, a corner lies {1} m off its mean plane; split it</source>
+        <translation>Scheibe &apos;{0}&apos; ist nicht eben, eine Ecke liegt {1} m neben ihrer mittleren Ebene; sie teilen</translation>
+    </message>
+    <message>
+        <source>panel &apos;{0}&apos; is not convex or its corners are not in order around the pane</source>
+        <translation>Scheibe &apos;{0}&apos; ist nicht konvex, oder ihre Ecken stehen nicht der Reihe nach um die Scheibe</translation>
+    </message>
+    <message>
+        <source>obstacle &apos;{0}&apos; needs its minimum corner first, got {1:m} and {2:m}</source>
+        <translation>Hindernis &apos;{0}&apos; braucht zuerst seine kleinste Ecke, gefunden: {1:m} und {2:m}</translation>
+    </message>
+    <message>
+        <source>zone &apos;{0}&apos; needs at least 3 corners, got {1}</source>
+        <translation>Zone &apos;{0}&apos; braucht mindestens 3 Ecken, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>zone &apos;{0}&apos; needs a ceiling above its floor ({1} m)</source>
+        <translation>Zone &apos;{0}&apos; braucht eine Decke über ihrem Boden ({1} m)</translation>
+    </message>
+    <message>
+        <source>zone &apos;{0}&apos; crosses itself or has no area</source>
+        <translation>Zone &apos;{0}&apos; kreuzt sich selbst oder hat keine Fläche</translation>
+    </message>
+    <message>
+        <source>the airspace is empty, {0} runs from {1} to {2} m</source>
+        <translation>der Luftraum ist leer, {0} geht von {1} bis {2} m</translation>
+    </message>
+    <message>
+        <source>expected at least one panel, got none</source>
+        <translation>erwartet wurde mindestens eine Scheibe, gefunden: keine</translation>
+    </message>
+    <message>
+        <source>expected unique panel ids, &apos;{0}&apos; occurs twice</source>
+        <translation>erwartet wurden eindeutige Kennungen der Scheiben, &apos;{0}&apos; kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>expected 0 or more, got {0}</source>
+        <translation>erwartet wurde 0 oder mehr, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>there is no bundled site &apos;{0}&apos;; known are: {1}</source>
+        <translation>es gibt keinen mitgelieferten Standort &apos;{0}&apos;; bekannt sind: {1}</translation>
+    </message>
+    <message>
+        <source>expected finite metres, {0} is {1}</source>
+        <translation>erwartet wurden endliche Meter, {0} ist {1}</translation>
+    </message>
+    <message>
+        <source>expected local ENU metres within {0} m of the origin, {1} is {2:m} (projected coordinates such as UTM must be shifted to the site&apos;s origin first)</source>
+        <translation>erwartet wurden örtliche ENU-Koordinaten innerhalb von {0} m um den Nullpunkt, {1} ist {2:m} (projizierte Koordinaten wie UTM zuerst auf den Nullpunkt des Standorts verschieben)</translation>
+    </message>
+    <message>
+        <source>obstacle &apos;{0}&apos;: expected either mesh or box_enu_m, got both or neither</source>
+        <translation>Hindernis &apos;{0}&apos;: erwartet wurde mesh oder box_enu_m, gefunden: beides oder keins</translation>
+    </message>
+    <message>
+        <source>obstacle &apos;{0}&apos; is a mesh, not a box</source>
+        <translation>Hindernis &apos;{0}&apos; ist ein Netz, kein Quader</translation>
+    </message>
+    <message>
+        <source>expected {0} obstacle meshes, got {1}</source>
+        <translation>erwartet wurden {0} Hindernisnetze, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>{0}; mesh paths start from the folder of the site file</source>
+        <translation>{0}; Pfade von Netzen beginnen im Ordner der Standortdatei</translation>
+    </message>
+    <message>
+        <source>no-fly zone</source>
+        <translation>Flugverbotszone</translation>
+    </message>
+    <message>
+        <source>panels: a site needs at least one panel; add the new ones first, then remove these</source>
+        <translation>panels: Ein Standort braucht mindestens eine Scheibe; zuerst die neuen hinzufügen, dann diese entfernen</translation>
+    </message>
+    <message>
+        <source>sea level</source>
+        <translation>Meeresspiegel</translation>
+    </message>
+    <message>
+        <source>expected the first value below the second, got {0} m and {1} m</source>
+        <translation>erwartet wurde der erste Wert kleiner als der zweite, gefunden: {0} m und {1} m</translation>
+    </message>
+    <message>
+        <source>name: expected a name for the {0}, got an empty text</source>
+        <translation>Name: erwartet wurde ein Name, gefunden ein leerer Text ({0})</translation>
+    </message>
+    <message>
+        <source>name: there is a {0} &apos;{1}&apos; already; choose another name</source>
+        <translation>Name: es gibt diesen Namen schon ({0} &apos;{1}&apos;); einen anderen wählen</translation>
+    </message>
+    <message>
+        <source>the airspace begins at {0} m, below the ground at {1} m; raise its floor</source>
+        <translation>der Luftraum beginnt bei {0} m, unter dem Boden bei {1} m; seinen Boden anheben</translation>
+    </message>
+    <message>
+        <source>home lies at {0} m, below the ground at {1} m; put it on the ground</source>
+        <translation>der Startplatz liegt bei {0} m, unter dem Boden bei {1} m; ihn auf den Boden setzen</translation>
+    </message>
+    <message>
+        <source>no-fly zone &apos;{0}&apos; lies outside the airspace, so it changes nothing</source>
+        <translation>die Flugverbotszone &apos;{0}&apos; liegt außerhalb des Luftraums und ändert also nichts</translation>
+    </message>
+    <message>
+        <source>facade &apos;{0}&apos;: there is no free airspace {1} to {2} m in front of its panels ({3}) from which they are seen; turn it to the other side, widen the airspace, or remove it</source>
+        <translation>Fassade &apos;{0}&apos;: Es gibt {1} bis {2} m vor ihren Scheiben ({3}) keinen freien Luftraum, von dem aus sie zu sehen sind; sie auf die andere Seite drehen, den Luftraum erweitern oder sie entfernen</translation>
+    </message>
+    <message>
+        <source>which may be off by 1 m, in mountains by 2 m</source>
+        <translation>das um 1 m falsch sein kann, in Bergen um 2 m</translation>
+    </message>
+    <message>
+        <source>the point {0} has no position in {1}; is this the system the file is in?</source>
+        <translation>der Punkt {0} hat keine Lage in {1}; ist das wirklich das System der Datei?</translation>
+    </message>
+    <message>
+        <source>(east, north)</source>
+        <translation>(Ost, Nord)</translation>
+    </message>
+    <message>
+        <source>(north, east)</source>
+        <translation>(Nord, Ost)</translation>
+    </message>
+    <message>
+        <source>coordinates are read as {0}, as they fit; {1} itself lists {2}</source>
+        <translation>Koordinaten werden als {0} gelesen, denn so passen sie; {1} selbst nennt {2}</translation>
+    </message>
+    <message>
+        <source> and as </source>
+        <translation> und als </translation>
+    </message>
+    <message>
+        <source>the coordinates ({0}, {1}), read as {2}, lie far outside the area of use of {3}; name the right system with --crs</source>
+        <translation>die Koordinaten ({0}, {1}), gelesen als {2}, liegen weit außerhalb des Geltungsbereichs von {3}; das richtige System mit --crs nennen</translation>
+    </message>
+    <message>
+        <source>no transformation to WGS 84 of known accuracy is installed; convert the file to a system on WGS 84 or ETRS89 first (a UTM zone, say)</source>
+        <translation>keine Umrechnung nach WGS 84 mit bekannter Genauigkeit ist installiert; die Datei zuerst in ein System auf WGS 84 oder ETRS89 umrechnen (etwa eine UTM-Zone)</translation>
+    </message>
+    <message>
+        <source>coordinates are in {0}</source>
+        <translation>Koordinaten sind in {0}</translation>
+    </message>
+    <message>
+        <source>; &apos;{0}&apos; is accurate to about {1} m, by which the whole site may be displaced</source>
+        <translation>; &apos;{0}&apos; ist auf etwa {1} m genau, und um so viel kann der ganze Standort verschoben sein</translation>
+    </message>
+    <message>
+        <source> (a finer one, {0} m, needs the grid {1})</source>
+        <translation> (eine feinere, {0} m, braucht das Gitter {1})</translation>
+    </message>
+    <message>
+        <source>EGM96, here {0} m above the ellipsoid</source>
+        <translation>EGM96, hier {0} m über dem Ellipsoid</translation>
+    </message>
+    <message>
+        <source>{0}, stands in for the national geoid, {1}</source>
+        <translation>{0}, steht für das nationale Geoid, {1}</translation>
+    </message>
+    <message>
+        <source>heights are taken above the ellipsoid, as you asked, not as {0}</source>
+        <translation>Höhen zählen wie verlangt über dem Ellipsoid, nicht als {0}</translation>
+    </message>
+    <message>
+        <source>heights are above the geoid of {0}</source>
+        <translation>Höhen sind über dem Geoid von {0}</translation>
+    </message>
+    <message>
+        <source>heights are in the system &apos;{0}&apos;; {1}</source>
+        <translation>Höhen sind im System &apos;{0}&apos;; {1}</translation>
+    </message>
+    <message>
+        <source>heights are above the ellipsoid, as the system says</source>
+        <translation>Höhen sind über dem Ellipsoid, wie das System sagt</translation>
+    </message>
+    <message>
+        <source> in the unit of the other coordinates ({0})</source>
+        <translation> in der Einheit der übrigen Koordinaten ({0})</translation>
+    </message>
+    <message>
+        <source>heights are taken above the ellipsoid{0}, as you asked</source>
+        <translation>Höhen zählen über dem Ellipsoid{0}, wie verlangt</translation>
+    </message>
+    <message>
+        <source>as you asked</source>
+        <translation>wie verlangt</translation>
+    </message>
+    <message>
+        <source>as the system has none of its own (see --height-reference)</source>
+        <translation>denn das System hat keine eigenen (siehe --height-reference)</translation>
+    </message>
+    <message>
+        <source>heights are taken above sea level{0}, {1}; {2}</source>
+        <translation>Höhen zählen über dem Meeresspiegel{0}, {1}; {2}</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is not a coordinate reference system known here; expected a code such as EPSG:25832, EPSG:7415 or EPSG:25832+7837</source>
+        <translation>&apos;{0}&apos; ist kein hier bekanntes Koordinatensystem; erwartet wurde ein Code wie EPSG:25832, EPSG:7415 oder EPSG:25832+7837</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; is a {1}; expected a projected or geographic system</source>
+        <translation>&apos;{0}&apos; ist ein {1}; erwartet wurde ein projiziertes oder geographisches System</translation>
+    </message>
+    <message>
+        <source>there is no building with surfaces in this file</source>
+        <translation>in dieser Datei ist kein Gebäude mit Flächen</translation>
+    </message>
+    <message>
+        <source>no building in this file has windows; {0}</source>
+        <translation>kein Gebäude in dieser Datei hat Fenster; {0}</translation>
+    </message>
+    <message>
+        <source>other buildings in the file: {0} within reach of the airspace, kept as obstacles; {1} further away, left out</source>
+        <translation>weitere Gebäude in der Datei: {0} in Reichweite des Luftraums, als Hindernisse behalten; {1} weiter weg, weggelassen</translation>
+    </message>
+    <message>
+        <source>windows given as a shared prototype (implicit geometry), not read: {0}</source>
+        <translation>Fenster als gemeinsame Vorlage (implizite Geometrie), nicht gelesen: {0}</translation>
+    </message>
+    <message>
+        <source>there is no building &apos;{0}&apos;; there are {1}</source>
+        <translation>es gibt kein Gebäude &apos;{0}&apos;; es gibt {1}</translation>
+    </message>
+    <message>
+        <source>the panel grid is on building &apos;{0}&apos;</source>
+        <translation>das Scheibenraster liegt auf Gebäude &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>no building in the file has windows; &apos;{0}&apos; has the most surfaces</source>
+        <translation>kein Gebäude in der Datei hat Fenster; &apos;{0}&apos; hat die meisten Flächen</translation>
+    </message>
+    <message>
+        <source>the site is {0}</source>
+        <translation>der Standort ist {0}</translation>
+    </message>
+    <message>
+        <source>; {0} further away, to be imported with --building ID</source>
+        <translation>; {0} weiter weg, einzeln zu importieren mit --building ID</translation>
+    </message>
+    <message>
+        <source> (windows: {0})</source>
+        <translation> (Fenster: {0})</translation>
+    </message>
+    <message>
+        <source>expected a CityGML file (root element CityModel), found &apos;{0}&apos;</source>
+        <translation>erwartet wurde eine CityGML-Datei (Wurzelelement CityModel), gefunden: &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>building {0}</source>
+        <translation>Gebäude {0}</translation>
+    </message>
+    <message>
+        <source>the file has more than {0} MiB; cut out the buildings wanted</source>
+        <translation>die Datei hat mehr als {0} MiB; die gewünschten Gebäude ausschneiden</translation>
+    </message>
+    <message>
+        <source>the XML defines entities, which a CityGML file has no need of; refused</source>
+        <translation>das XML erklärt Entitäten, die eine CityGML-Datei nicht braucht; abgelehnt</translation>
+    </message>
+    <message>
+        <source>not valid XML ({0})</source>
+        <translation>kein gültiges XML ({0})</translation>
+    </message>
+    <message>
+        <source>nested too deeply for a CityGML file</source>
+        <translation>zu tief verschachtelt für eine CityGML-Datei</translation>
+    </message>
+    <message>
+        <source>ring &apos;{0}&apos; holds something that is not a number ({1})</source>
+        <translation>Ring &apos;{0}&apos; enthält etwas, das keine Zahl ist ({1})</translation>
+    </message>
+    <message>
+        <source>ring &apos;{0}&apos; has {1} numbers; expected three finite ones for each of its points, of which there are at least three</source>
+        <translation>Ring &apos;{0}&apos; hat {1} Zahlen; erwartet wurden drei endliche für jeden seiner Punkte, von denen es mindestens drei gibt</translation>
+    </message>
+    <message>
+        <source>expected a CityJSON file (with &quot;type&quot;: &quot;CityJSON&quot;)</source>
+        <translation>erwartet wurde eine CityJSON-Datei (mit &quot;type&quot;: &quot;CityJSON&quot;)</translation>
+    </message>
+    <message>
+        <source>expected CityJSON version {0}, got &apos;{1}&apos;</source>
+        <translation>erwartet wurde CityJSON in Version {0}, gefunden: &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>this CityJSON file is broken ({0}: {1})</source>
+        <translation>diese CityJSON-Datei ist beschädigt ({0}: {1})</translation>
+    </message>
+    <message>
+        <source>this IFC file cannot be read ({0}); IFC 2x3, IFC 4 and IFC 4.3 are read</source>
+        <translation>diese IFC-Datei ist nicht lesbar ({0}); gelesen werden IFC 2x3, IFC 4 und IFC 4.3</translation>
+    </message>
+    <message>
+        <source>this IFC file is broken ({0}: {1})</source>
+        <translation>diese IFC-Datei ist beschädigt ({0}: {1})</translation>
+    </message>
+    <message>
+        <source>windows: {0}; plates: {1}, of which glazed: {2}</source>
+        <translation>Fenster: {0}; Platten: {1}, davon verglast: {2}</translation>
+    </message>
+    <message>
+        <source>windows left out because they have no geometry: {0}</source>
+        <translation>Fenster weggelassen, weil sie keine Geometrie haben: {0}</translation>
+    </message>
+    <message>
+        <source>--deflection {0}: expected a positive length in metres</source>
+        <translation>--deflection {0}: erwartet wurde eine positive Länge in Metern</translation>
+    </message>
+    <message>
+        <source>no building element in this file has geometry</source>
+        <translation>kein Bauteil in dieser Datei hat Geometrie</translation>
+    </message>
+    <message>
+        <source>there is neither a window nor a glazed plate with geometry; {0}</source>
+        <translation>es gibt weder ein Fenster noch eine verglaste Platte mit Geometrie; {0}</translation>
+    </message>
+    <message>
+        <source>the file has more than {0} GiB; export the facade alone</source>
+        <translation>die Datei hat mehr als {0} GiB; die Fassade allein exportieren</translation>
+    </message>
+    <message>
+        <source>expected an IFC file (STEP text that begins with ISO-10303-21)</source>
+        <translation>erwartet wurde eine IFC-Datei (STEP-Text, der mit ISO-10303-21 beginnt)</translation>
+    </message>
+    <message>
+        <source>the file is cut off (END-ISO-10303-21 is missing); copy or export it again</source>
+        <translation>die Datei ist abgeschnitten (END-ISO-10303-21 fehlt); noch einmal kopieren oder exportieren</translation>
+    </message>
+    <message>
+        <source>the map conversion is left aside ({0})</source>
+        <translation>die Kartenabbildung bleibt unbeachtet ({0})</translation>
+    </message>
+    <message>
+        <source>the map conversion names no coordinate reference system; give it with --crs EPSG:CODE</source>
+        <translation>die Kartenabbildung nennt kein Koordinatensystem; es mit --crs EPSG:CODE angeben</translation>
+    </message>
+    <message>
+        <source>place and rotation from IfcMapConversion</source>
+        <translation>Ort und Drehung aus IfcMapConversion</translation>
+    </message>
+    <message>
+        <source>the scale of IfcMapConversion leaves out the change of units, which is put right</source>
+        <translation>der Maßstab von IfcMapConversion lässt den Wechsel der Einheit aus; das ist berichtigt</translation>
+    </message>
+    <message>
+        <source>IfcMapConversion has the scale {0}, which is neither near 1 nor the change of units ({1}); give the place with --origin</source>
+        <translation>IfcMapConversion hat den Maßstab {0}, der weder nahe 1 noch der Wechsel der Einheit ({1}) ist; den Ort mit --origin angeben</translation>
+    </message>
+    <message>
+        <source>place from latitude and longitude of IfcSite, which is often just the city that the BIM program assumes: check it, or give --origin</source>
+        <translation>Ort aus Breite und Länge von IfcSite, was oft nur die Stadt ist, die das BIM-Programm annimmt: prüfen oder --origin angeben</translation>
+    </message>
+    <message>
+        <source>elevation of IfcSite ({0} m) is above sea level; EGM96, here {1} m above the ellipsoid, makes it ellipsoidal, to about 1 m</source>
+        <translation>die Höhe von IfcSite ({0} m) ist über dem Meeresspiegel; EGM96, hier {1} m über dem Ellipsoid, macht sie ellipsoidisch, auf etwa 1 m</translation>
+    </message>
+    <message>
+        <source>true north is {0} degrees counter-clockwise from the model&apos;s y axis</source>
+        <translation>geografisch Nord liegt {0}° gegen den Uhrzeigersinn von der y-Achse des Modells</translation>
+    </message>
+    <message>
+        <source>IfcSite lies at latitude {0}, longitude {1}, which is nowhere on earth; give --origin</source>
+        <translation>IfcSite liegt bei Breite {0}, Länge {1}, also nirgends auf der Erde; --origin angeben</translation>
+    </message>
+    <message>
+        <source>the geometry kernel crashed on this IFC file (status {0}), so something in it goes in circles or beyond all bounds; open and export it again in a BIM program</source>
+        <translation>der Geometriekern stürzte an dieser IFC-Datei ab (Status {0}), also geht etwas darin im Kreis oder über alle Grenzen; sie in einem BIM-Programm öffnen und neu exportieren</translation>
+    </message>
+    <message>
+        <source>no window of {0} is a pane that faces the open</source>
+        <translation>kein Fenster von {0} ist eine Scheibe, die ins Freie blickt</translation>
+    </message>
+    <message>
+        <source>there are no windows</source>
+        <translation>es gibt keine Fenster</translation>
+    </message>
+    <message>
+        <source>expected a file ending in {0}, got &apos;{1}&apos;</source>
+        <translation>erwartet wurde eine Datei mit der Endung {0}, gefunden: &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>there is no such file</source>
+        <translation>es gibt keine solche Datei</translation>
+    </message>
+    <message>
+        <source>the building would be {0} km wide, at most {1} km are expected; the file holds stray points, or its unit is not what it says (--units for meshes)</source>
+        <translation>das Gebäude wäre {0} km breit, erwartet werden höchstens {1} km; die Datei enthält verirrte Punkte, oder ihre Einheit ist nicht, was sie sagt (--units bei Netzen)</translation>
+    </message>
+    <message>
+        <source>facades, by plane or smoothly curved surface: {0}, the one with most glass first (A: {1} panels, {2} m2)</source>
+        <translation>Fassaden, nach Ebene oder sanft gekrümmter Fläche: {0}, die mit dem meisten Glas zuerst (A: {1} Scheiben, {2} m2)</translation>
+    </message>
+    <message>
+        <source>; with one panel only: {0}</source>
+        <translation>; mit nur einer Scheibe: {0}</translation>
+    </message>
+    <message>
+        <source>{0} % of the building&apos;s surface does not close (gaps and overlaps in the model): the distance to it is kept all the same, but the space behind it does not count as solid</source>
+        <translation>{0} % der Gebäudeoberfläche schließen nicht (Lücken und Überlappungen im Modell): Der Abstand dazu wird trotzdem eingehalten, der Raum dahinter gilt aber nicht als fest</translation>
+    </message>
+    <message>
+        <source>a mesh does not tell windows from walls; state where the panels are, for example --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (lower left, lower right and upper left corner of a facade, seen from outside)</source>
+        <translation>ein Netz unterscheidet Fenster nicht von Wänden; angeben, wo die Scheiben sind, zum Beispiel --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (untere linke, untere rechte und obere linke Ecke einer Fassade, von außen gesehen)</translation>
+    </message>
+    <message>
+        <source>axes: {0} is up</source>
+        <translation>Achsen: {0} zeigt nach oben</translation>
+    </message>
+    <message>
+        <source> (glTF&apos;s rule)</source>
+        <translation> (Regel von glTF)</translation>
+    </message>
+    <message>
+        <source>lengths are in {0} (--units)</source>
+        <translation>Längen sind in {0} (--units)</translation>
+    </message>
+    <message>
+        <source>--units and --crs both say what the coordinates are in; the system of --crs has its own units</source>
+        <translation>--units und --crs sagen beide, worin die Koordinaten sind; das System von --crs hat seine eigenen Einheiten</translation>
+    </message>
+    <message>
+        <source>the file stores coordinates this far from zero in steps of {0} m (single precision), so the building&apos;s shape is that rough; export it again with a local offset</source>
+        <translation>die Datei hält Koordinaten so weit von null in Schritten von {0} m (einfache Genauigkeit), so grob ist also die Form des Gebäudes; mit örtlichem Versatz neu exportieren</translation>
+    </message>
+    <message>
+        <source>; check the corners, --units and --up, or allow more with --grid-tolerance</source>
+        <translation>; die Ecken, --units und --up prüfen oder mit --grid-tolerance mehr erlauben</translation>
+    </message>
+    <message>
+        <source>expected 1 to {0} panels in all, got {1} rows and {2} columns</source>
+        <translation>erwartet wurden 1 bis {0} Scheiben insgesamt, gefunden: {1} Zeilen und {2} Spalten</translation>
+    </message>
+    <message>
+        <source>the rectangle is {0} x {1} m, no facade; place its corners apart</source>
+        <translation>das Rechteck ist {0} x {1} m groß, das ist keine Fassade; seine Ecken weiter auseinander setzen</translation>
+    </message>
+    <message>
+        <source>the angle at the lower left corner is {0} degrees; expected a rectangle, given by its lower left, lower right and upper left corner as seen from outside</source>
+        <translation>der Winkel an der unteren linken Ecke ist {0}°; erwartet wurde ein Rechteck, gegeben durch untere linke, untere rechte und obere linke Ecke, von außen gesehen</translation>
+    </message>
+    <message>
+        <source>a gap of {0} m leaves no glass between the mullions: the grid&apos;s cells measure {1} x {2} m</source>
+        <translation>eine Fuge von {0} m lässt zwischen den Pfosten kein Glas: die Felder des Rasters messen {1} x {2} m</translation>
+    </message>
+    <message>
+        <source>its panels lie {0} m from the building (median; nearest {1} m, allowed {2} m). In local metres the grid&apos;s middle is {3} and the building reaches from {4} to {5}</source>
+        <translation>seine Scheiben liegen {0} m vom Gebäude (Median; nächste {1} m, erlaubt {2} m). In örtlichen Metern ist die Mitte des Rasters {3}, und das Gebäude reicht von {4} bis {5}</translation>
+    </message>
+    <message>
+        <source>{0} of {1} panels look into the building, and their backs look out; name the corners as seen from outside (lower left, lower right, upper left)</source>
+        <translation>{0} von {1} Scheiben blicken ins Gebäude, und ihre Rückseiten nach außen; die Ecken wie von außen gesehen nennen (untere linke, untere rechte, obere linke)</translation>
+    </message>
+    <message>
+        <source>{0} of {1} panels of the grid see nothing of the open, as the mesh covers them: move the grid outwards, or they cannot be photographed with occlusion on</source>
+        <translation>{0} von {1} Scheiben des Rasters sehen nichts vom Freien, denn das Netz verdeckt sie: Das Raster nach außen rücken, sonst sind sie mit Verdeckung nicht zu fotografieren</translation>
+    </message>
+    <message>
+        <source>windows left out as slivers or without area</source>
+        <translation>Fenster weggelassen als Splitter oder ohne Fläche</translation>
+    </message>
+    <message>
+        <source>windows left out as indoor ones, which see nothing of the open</source>
+        <translation>Fenster weggelassen als innenliegend; sie sehen nichts vom Freien</translation>
+    </message>
+    <message>
+        <source>windows left out because another one shows the same pane</source>
+        <translation>Fenster weggelassen, weil ein anderes dieselbe Scheibe zeigt</translation>
+    </message>
+    <message>
+        <source>windows that lie exactly on others, where both stay</source>
+        <translation>Fenster, die genau auf anderen liegen; beide bleiben</translation>
+    </message>
+    <message>
+        <source>windows that are no quads, for which a rectangle of the same area stands in</source>
+        <translation>Fenster, die keine Vierecke sind; ein Rechteck gleicher Fläche steht für sie</translation>
+    </message>
+    <message>
+        <source>windows open on both sides, taken to face away from the building</source>
+        <translation>Fenster, die nach beiden Seiten offen sind; angenommen ist, dass sie vom Gebäude weg blicken</translation>
+    </message>
+    <message>
+        <source>{0} m in front of the panels the building hides {1} % of the directions (worst panel {2} %); their own frames and reveals hide {3} % (worst {4} %)</source>
+        <translation>{0} m vor den Scheiben verdeckt das Gebäude {1} % der Richtungen (schlechteste Scheibe {2} %); ihre eigenen Rahmen und Laibungen verdecken {3} % (schlechteste {4} %)</translation>
+    </message>
+    <message>
+        <source>--origin and --crs both say where the file is; give one of them</source>
+        <translation>--origin und --crs sagen beide, wo die Datei liegt; eines davon angeben</translation>
+    </message>
+    <message>
+        <source>the file does not say where on earth it is; give --origin LAT,LON,HEIGHT (of its zero point) or --crs EPSG:CODE (of its coordinates)</source>
+        <translation>die Datei sagt nicht, wo auf der Erde sie liegt; --origin LAT,LON,HEIGHT (ihres Nullpunkts) oder --crs EPSG:CODE (ihrer Koordinaten) angeben</translation>
+    </message>
+    <message>
+        <source>the building lies {0} km from the point whose place the file gives, so its coordinates are projected ones; name their system with --crs EPSG:CODE</source>
+        <translation>das Gebäude liegt {0} km von dem Punkt, dessen Ort die Datei angibt, also sind ihre Koordinaten projiziert; ihr System mit --crs EPSG:CODE nennen</translation>
+    </message>
+    <message>
+        <source>the building would stand at an impossible place ({0}); check --crs and units</source>
+        <translation>das Gebäude stünde an einem unmöglichen Ort ({0}); --crs und die Einheit prüfen</translation>
+    </message>
+    <message>
+        <source>its height is above the ellipsoid (--height-reference orthometric for sea level)</source>
+        <translation>seine Höhe ist über dem Ellipsoid</translation>
+    </message>
+    <message>
+        <source>its height above sea level is {0} m above the ellipsoid (EGM96, good to about 1 m)</source>
+        <translation>seine Höhe über dem Meeresspiegel ist {0} m über dem Ellipsoid (EGM96, auf etwa 1 m genau)</translation>
+    </message>
+    <message>
+        <source>the file&apos;s zero point is at the origin you named</source>
+        <translation>der Nullpunkt der Datei liegt am genannten Ort</translation>
+    </message>
+    <message>
+        <source>the file&apos;s coordinates lie up to {0} km from zero, so the origin you named is taken as the middle of the building&apos;s footprint, on the ground; if they are projected coordinates, --crs converts them exactly (grid north is not true north)</source>
+        <translation>die Koordinaten der Datei liegen bis zu {0} km von null, daher gilt der genannte Ort als Mitte des Grundrisses am Boden; sind es projizierte Koordinaten, rechnet --crs sie genau um (Gitternord ist nicht geografisch Nord)</translation>
+    </message>
+    <message>
+        <source>panels come from the windows of a city model (level of detail 3), from IfcWindow and glazed IfcPlate of a BIM model, or from you: --panel-grid &apos;E,N,U E,N,U E,N,U&apos; (lower left, lower right and upper left corner of a facade seen from outside, in the file&apos;s coordinates) --rows N --columns N</source>
+        <translation>Scheiben kommen aus den Fenstern eines Stadtmodells (Detailgrad 3), aus IfcWindow und verglasten IfcPlate eines BIM-Modells oder von Hand: ein Rechteck auf einer Wand aufziehen mit --panel-grid</translation>
+    </message>
+    <message>
+        <source>there is no place for home inside the airspace that is at least {0} m from every wall; widen it with --airspace-margin, or name a place with --home E,N,U</source>
+        <translation>im Luftraum ist kein Platz für den Start, der mindestens {0} m von jeder Wand liegt; ihn mit --airspace-margin erweitern oder mit --home E,N,U einen Ort nennen</translation>
+    </message>
+    <message>
+        <source>--airspace-margin, --floor and --ceiling leave no airspace: {0}</source>
+        <translation>--airspace-margin, --floor und --ceiling lassen keinen Luftraum: {0}</translation>
+    </message>
+    <message>
+        <source>airspace: {0} m around the building, from {1} to {2} m (--airspace-margin, --floor, --ceiling); no-fly zones and obstacles on site are yours to add</source>
+        <translation>Luftraum: {0} m um das Gebäude, von {1} bis {2} m (--airspace-margin, --floor, --ceiling); Flugverbotszonen und Hindernisse vor Ort von Hand ergänzen</translation>
+    </message>
+    <message>
+        <source>home: {0:m}, {1:m}, {2} m, on the ground in front of the largest facade, {3} m from the nearest wall (--home)</source>
+        <translation>Startplatz: {0:m}, {1:m}, {2} m, am Boden vor der größten Fassade, {3} m von der nächsten Wand (--home)</translation>
+    </message>
+    <message>
+        <source>no place inside the airspace is {0} m from every wall, so home is tight: choose one with --home, or widen --airspace-margin</source>
+        <translation>kein Ort im Luftraum liegt {0} m von jeder Wand, der Startplatz ist also eng: einen mit --home wählen oder --airspace-margin erweitern</translation>
+    </message>
+    <message>
+        <source>checking</source>
+        <translation>Prüfung</translation>
+    </message>
+    <message>
+        <source>comparing plans</source>
+        <translation>Pläne werden verglichen</translation>
+    </message>
+    <message>
+        <source>finding what stands in the way</source>
+        <translation>Suche nach dem, was im Weg steht</translation>
+    </message>
+    <message>
+        <source>counting what each view covers</source>
+        <translation>Zählen, was jede Aufnahme abdeckt</translation>
+    </message>
+    <message>
+        <source>looking for ways to viewpoints</source>
+        <translation>Suche nach Wegen zu Aufnahmepunkten</translation>
+    </message>
+    <message>
+        <source>trying viewpoints</source>
+        <translation>Aufnahmepunkte werden probiert</translation>
+    </message>
+    <message>
+        <source>bounding the optimum</source>
+        <translation>Schranke für das Optimum</translation>
+    </message>
+    <message>
+        <source>choosing views</source>
+        <translation>Aufnahmen werden gewählt</translation>
+    </message>
+    <message>
+        <source>saving views</source>
+        <translation>Aufnahmen werden eingespart</translation>
+    </message>
+    <message>
+        <source>spending spare views</source>
+        <translation>übrige Aufnahmen werden verteilt</translation>
+    </message>
+    <message>
+        <source>improving views</source>
+        <translation>Aufnahmen werden verbessert</translation>
+    </message>
+    <message>
+        <source>laying the grid</source>
+        <translation>Raster wird gelegt</translation>
+    </message>
+    <message>
+        <source>laying the rings</source>
+        <translation>Ringe werden gelegt</translation>
+    </message>
+    <message>
+        <source>refining poses</source>
+        <translation>Aufnahmen werden nachgestellt</translation>
+    </message>
+    <message>
+        <source>reading the site</source>
+        <translation>Standort wird gelesen</translation>
+    </message>
+    <message>
+        <source>finding ways around</source>
+        <translation>Umwege werden gesucht</translation>
+    </message>
+    <message>
+        <source>looking for viewpoints</source>
+        <translation>Aufnahmepunkte werden gesucht</translation>
+    </message>
+    <message>
+        <source>proving what cannot be seen</source>
+        <translation>Beweis, was nicht zu sehen ist</translation>
+    </message>
+    <message>
+        <source>drawing legs</source>
+        <translation>Strecken werden gezogen</translation>
+    </message>
+    <message>
+        <source>checking legs</source>
+        <translation>Strecken werden geprüft</translation>
+    </message>
+    <message>
+        <source>lower bound</source>
+        <translation>untere Schranke</translation>
+    </message>
+    <message>
+        <source>orienteering</source>
+        <translation>Auswahl für die Akkus</translation>
+    </message>
+    <message>
+        <source>fewer sorties</source>
+        <translation>weniger Einsätze</translation>
+    </message>
+    <message>
+        <source>sorties</source>
+        <translation>Einsätze</translation>
+    </message>
+    <message>
+        <source>tour</source>
+        <translation>Rundweg</translation>
+    </message>
+    <message>
+        <source>neighbours</source>
+        <translation>Nachbarn</translation>
+    </message>
+    <message>
+        <source>surfaces</source>
+        <translation>Flächen</translation>
+    </message>
+    <message>
+        <source>reading buildings</source>
+        <translation>Gebäude werden gelesen</translation>
+    </message>
+    <message>
+        <source>building geometry</source>
+        <translation>Geometrie wird gebildet</translation>
+    </message>
+    <message>
+        <source>grouping facades</source>
+        <translation>Fassaden werden gebildet</translation>
+    </message>
+    <message>
+        <source>reading the mesh</source>
+        <translation>Netz wird gelesen</translation>
+    </message>
+    <message>
+        <source>fitting panels</source>
+        <translation>Scheiben werden eingepasst</translation>
+    </message>
+    <message>
+        <source>looking outdoors</source>
+        <translation>Blick ins Freie</translation>
+    </message>
+    <message>
+        <source>speed profile</source>
+        <translation>Geschwindigkeitsprofil</translation>
+    </message>
+    <message>
+        <source>reading the mission</source>
+        <translation>Mission wird gelesen</translation>
+    </message>
+    <message>
+        <source>measuring the plan</source>
+        <translation>Plan wird vermessen</translation>
+    </message>
+    <message>
+        <source>measuring</source>
+        <translation>Messung</translation>
+    </message>
+    <message>
+        <source>checking the site</source>
+        <translation>Standort wird geprüft</translation>
+    </message>
+    <message>
+        <source>starting</source>
+        <translation>wird gestartet</translation>
     </message>
 </context>
 <context>
@@ -2957,6 +5951,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Used</source>
         <translation>Akku</translation>
+    </message>
+    <message>
+        <source>With {0:.0f} s for take-off and landing, which the height profile does not show</source>
+        <translation>Mit {0:.0f} s für Start und Landung, die das Höhenprofil nicht zeigt</translation>
     </message>
     <message>
         <source>Part of the battery&apos;s endurance that the sortie takes</source>

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum, auto
 
 from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
-from PySide6.QtGui import QKeyEvent, QMouseEvent, QTouchEvent, QWheelEvent
+from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QTouchEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 CLICK_PX = 5.0
@@ -16,6 +16,9 @@ HOVER_MS = 15
 
 WHEEL_ZOOM = 1.15
 """Zoom for one notch of the wheel."""
+
+KEY_REASONS = (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason, Qt.FocusReason.ShortcutFocusReason)
+"""Ways in which the keyboard brings the focus."""
 
 
 class Drag(Enum):
@@ -66,6 +69,8 @@ class Gestures(QObject):
         Two fingers moved together by this much.
     keyed(QKeyEvent)
         Whoever uses it accepts it.
+    keysTaken(bool)
+        Keys go to the widget because the user came to it by key, or they no longer do.
     """
 
     hovered = Signal(QPointF, object)
@@ -78,6 +83,7 @@ class Gestures(QObject):
     zoomed = Signal(float, QPointF)
     shifted = Signal(QPointF)
     keyed = Signal(QKeyEvent)
+    keysTaken = Signal(bool)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(self, widget: QWidget) -> None:
         super().__init__(widget)
@@ -111,6 +117,8 @@ class Gestures(QObject):
             if kind is QEvent.Type.KeyPress:
                 self.keyed.emit(event)
             return True
+        if isinstance(event, QFocusEvent):
+            self.keysTaken.emit(event.gotFocus() and event.reason() in KEY_REASONS)
         if kind is QEvent.Type.Leave:
             self._hover = None
             self.left.emit()

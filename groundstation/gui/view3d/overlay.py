@@ -60,6 +60,7 @@ class Overlay(QWidget):
         self._legend: Sequence[tuple[str, str]] = ()
         self._hint = ""
         self._tip: Tip | None = None
+        self._has_frame = False
         self._units = UnitSystem.METRIC
 
     def set_view(self, view: Pinhole, focus_depth_m: float) -> None:
@@ -94,6 +95,11 @@ class Overlay(QWidget):
             self._tip = tip
             self.update()
 
+    def set_frame(self, is_shown: bool) -> None:
+        """A frame, as other widgets have one when keys go to them."""
+        self._has_frame = is_shown
+        self.update()
+
     def set_units(self, units: UnitSystem) -> None:
         """Units of the scale."""
         self._units = units
@@ -118,6 +124,10 @@ class Overlay(QWidget):
             self._paint_box(painter, self._hint, QPointF(width, MARGIN_PX), Qt.AlignmentFlag.AlignHCenter)
         if self._tip is not None:
             self._paint_tip(painter, self._tip)
+        if self._has_frame:
+            painter.setPen(QPen(QColor(colours().accent), 2.0))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(QRectF(self.rect()).adjusted(1.0, 1.0, -1.0, -1.0))
         painter.end()
 
     def _paint_labels(self, painter: QPainter, view: Pinhole) -> None:

@@ -209,6 +209,17 @@ class ScenePicture(QWidget):
         """Show the whole site and plan from the standard direction."""
         self.look_from(StandardView.ALL)
 
+    def bring_in_viewpoints(self) -> None:
+        """Show the whole site and plan from where the view stands, unless all viewpoints are in the picture already."""
+        points = self._extent()
+        if points is None or self._plan is None:
+            return
+        view = self._navigator.pinhole()
+        pixels, _ = view.project(self._plan.views.positions_enu_m)
+        # NaN, behind the eye, is in no picture either.
+        if not ((pixels >= 0.0) & (pixels <= (view.width_px, view.height_px))).all():
+            self._navigator.go(self._navigator.orbit.fitted(points, self._navigator.aspect))
+
     def look_from(self, view: StandardView) -> None:
         """Take a standard view."""
         points, normal = self._extent(), self._front()

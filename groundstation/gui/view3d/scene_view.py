@@ -57,6 +57,7 @@ class SceneView(ScenePicture):
         gestures.zoomed.connect(self._zoom)
         gestures.shifted.connect(self._navigator.drag_shift)
         gestures.keyed.connect(self._key)
+        gestures.keysTaken.connect(self._overlay.set_frame)
         tools.changed.connect(self._show_tool)
         tools.moved.connect(self.toolMoved)
         tools.finished.connect(self.toolFinished)
@@ -70,6 +71,11 @@ class SceneView(ScenePicture):
     def turn_by_hand(self, right_deg: float, up_deg: float) -> None:
         """Turn as a drag does, with a signal."""
         self._navigator.turn(right_deg, up_deg)
+
+    def bring_in_viewpoints(self) -> None:
+        """As the picture does, but not under the user's hand: while the view is dragged or a tool is in use."""
+        if self._drag is None and self._tools.tool is None:
+            super().bring_in_viewpoints()
 
     # Tools
 

@@ -404,6 +404,8 @@ def test_chart_draws_each_sortie_and_picks_the_nearest_photo(application):
     application.processEvents()
     chart.set_curves(plan_profiles(plan), height_limits(kiosk()))
     application.processEvents()
+    extra = f"take-off and landing add {plan.rules.takeoff_landing_s:.0f} s"
+    assert extra in chart.plots()[0].getAxis("bottom").labelText
     heard = []
     chart.picked.connect(heard.append)
     for viewpoint_id in ("v0008", "v0002"):
@@ -417,8 +419,26 @@ def test_chart_draws_each_sortie_and_picks_the_nearest_photo(application):
         assert heard.pop() == Item(ItemKind.VIEWPOINT, viewpoint_id)
     chart._over.setCurrentIndex(1)
     application.processEvents()
+    assert "take-off" not in chart.plots()[0].getAxis("bottom").labelText
     end = chart.plots()[0].vb.viewRange()[0][1]
     assert end == pytest.approx(plan.sorties[0].length_m, rel=0.02)
     chart.set_curves((), None)
     assert "plan a flight first" in chart.hover_text()
     chart.close()
+
+
+def test_times_of_sorties_say_that_take_off_and_landing_are_in_them(application):
+    from groundstation.gui.mission.sortie_table import SortieTable
+
+    table = SortieTable()
+    plan = example_plan()
+    table.set_plan(replace(plan, rules=replace(plan.rules, takeoff_landing_s=45.0)))
+    assert "With 45 s for take-off and landing" in table.model().headerData(2, _horizontal(), _tool_tip())
+    table.set_plan(None)
+    assert table.model().headerData(2, _horizontal(), _tool_tip()) is None
+
+
+def _tool_tip():
+    from PySide6.QtCore import Qt
+
+    return Qt.ItemDataRole.ToolTipRole

@@ -1,0 +1,47 @@
+"""Stages of jobs, as they stand behind the name of a job while it runs."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QT_TRANSLATE_NOOP
+
+SENTENCES = (
+    QT_TRANSLATE_NOOP("Sentences", "checking"),
+    QT_TRANSLATE_NOOP("Sentences", "comparing plans"),
+    QT_TRANSLATE_NOOP("Sentences", "finding what stands in the way"),
+    QT_TRANSLATE_NOOP("Sentences", "counting what each view covers"),
+    QT_TRANSLATE_NOOP("Sentences", "looking for ways to viewpoints"),
+    QT_TRANSLATE_NOOP("Sentences", "trying viewpoints"),
+    QT_TRANSLATE_NOOP("Sentences", "bounding the optimum"),
+    QT_TRANSLATE_NOOP("Sentences", "choosing views"),
+    QT_TRANSLATE_NOOP("Sentences", "saving views"),
+    QT_TRANSLATE_NOOP("Sentences", "spending spare views"),
+    QT_TRANSLATE_NOOP("Sentences", "improving views"),
+    QT_TRANSLATE_NOOP("Sentences", "laying the grid"),
+    QT_TRANSLATE_NOOP("Sentences", "laying the rings"),
+    QT_TRANSLATE_NOOP("Sentences", "refining poses"),
+    QT_TRANSLATE_NOOP("Sentences", "reading the site"),
+    QT_TRANSLATE_NOOP("Sentences", "finding ways around"),
+    QT_TRANSLATE_NOOP("Sentences", "looking for viewpoints"),
+    QT_TRANSLATE_NOOP("Sentences", "proving what cannot be seen"),
+    QT_TRANSLATE_NOOP("Sentences", "drawing legs"),
+    QT_TRANSLATE_NOOP("Sentences", "checking legs"),
+    QT_TRANSLATE_NOOP("Sentences", "lower bound"),
+    QT_TRANSLATE_NOOP("Sentences", "orienteering"),
+    QT_TRANSLATE_NOOP("Sentences", "fewer sorties"),
+    QT_TRANSLATE_NOOP("Sentences", "sorties"),
+    QT_TRANSLATE_NOOP("Sentences", "tour"),
+    QT_TRANSLATE_NOOP("Sentences", "neighbours"),
+    QT_TRANSLATE_NOOP("Sentences", "surfaces"),
+    QT_TRANSLATE_NOOP("Sentences", "reading buildings"),
+    QT_TRANSLATE_NOOP("Sentences", "building geometry"),
+    QT_TRANSLATE_NOOP("Sentences", "grouping facades"),
+    QT_TRANSLATE_NOOP("Sentences", "reading the mesh"),
+    QT_TRANSLATE_NOOP("Sentences", "fitting panels"),
+    QT_TRANSLATE_NOOP("Sentences", "looking outdoors"),
+    QT_TRANSLATE_NOOP("Sentences", "speed profile"),
+    QT_TRANSLATE_NOOP("Sentences", "reading the mission"),
+    QT_TRANSLATE_NOOP("Sentences", "measuring the plan"),
+    QT_TRANSLATE_NOOP("Sentences", "measuring"),
+    QT_TRANSLATE_NOOP("Sentences", "checking the site"),
+    QT_TRANSLATE_NOOP("Sentences", "starting"),
+)

@@ -1,0 +1,274 @@
+"""The window says what planning, missions and services say in the user's language and units."""
+
+import json
+import re
+from dataclasses import replace
+from functools import cache
+
+import pytest
+from PySide6.QtCore import QTranslator
+
+from groundstation.gui import sentences
+from groundstation.gui.languages import FOLDER
+from groundstation.gui.own_words import own_words, phrasebook
+from groundstation.gui.sentences import dji, insight, mission, parts, plan, project, site, site_import, stages
+from groundstation.services.sentences import Template
+from groundstation.services.site_findings import site_findings
+from groundstation.services.site_sources import preview_import
+from groundstation.services.units import UnitSystem
+from missions.formats import read_missions
+from planning.checks import check_plan
+from planning.errors import GroundStationError
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.scenes import write_scene
+from planning.site import Airspace
+from planning.site_file import read_site
+from planning.site_import.options import ImportOptions
+from tests.gui.source_sentences import collect, files_of_the_window
+from tests.planning.plan_cases import kiosk
+
+METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
+
+FROM_SOURCES = (dji, insight, mission, plan, project, site, site_import, stages)
+"""Tables of whole sentences; `parts` holds words and what Python says."""
+
+NOT_SHOWN = {
+    "planning/effects.py": "the decision as one line, for the command line; the window has a card",
+    "planning/geodesy/enu.py": "descriptions of transformations for PROJ",
+    "planning/optimise/pso.py": "names of parameter settings, for benchmarks",
+    "groundstation/services/brief_html.py": "has its own translations, in gui/brief_printer.py",
+    "groundstation/services/brief_pictures.py": "drawings; their words come from brief_html.py",
+    "groundstation/services/import_words.py": "patterns, and English for what the import says otherwise",
+    "missions/dji/xml_text.py": "file content",
+}
+"""Files that the window imports, but whose sentences nobody reads there, and why."""
+
+NO_SENTENCE = {
+    "labels of rows, which the comparison window has its own words for": (
+        *("time in the air", "way flown", "views found after", "sections covered", "of all sections"),
+        *("of what can be covered", "facade {0}, of what can be covered", "sections no other plan covers"),
+        *("covered at least {0} times", "finest pixel", "coarsest pixel", "finest pixel on the worst panel"),
+        *("smallest clearance", "findings: {0}"),
+    ),
+    "stands in `parts` with the words of each constraint": ("{0} {1} instead of {2}",),
+    "patterns that other messages are searched for": (
+        *(" - at `$", "^Object missing", "\\bsortie (\\d+), leg (\\d+)\\b", "sortie (\\d+)", "QGC WPL (\\d+)"),
+        " to WGS 84",
+    ),
+    "content of files": ("QGC WPL 110", '<?xml version="1.0" encoding="UTF-8"?>'),
+    "names of things, the same in every language": ("EPSG:{0} ({1})", "template.kml, imageFormat", "{0} min"),
+    "options, for which `import_words` puts the label of a field": (
+        *("--rows {0} --columns {1}", "--panel-grid {0}", "--gap {0}"),
+    ),
+}
+"""Texts that are none, and why."""
+
+CODE = re.compile(r"<\w+[ />]|\bSELECT\b|\bPRAGMA\b|tile_column|^# Settings")
+"""Markup, queries and files with comments."""
+
+
+@cache
+def sentences_of_sources():
+    """What has to be known, by where it stands."""
+    none = {text for texts in NO_SENTENCE.values() for text in texts}
+    shown = files_of_the_window() - set(NOT_SHOWN)
+    return {
+        text: f"{path}, line {line}"
+        for (path, line), texts in collect().items()
+        for text in texts
+        if path in shown and text not in none and not CODE.search(text)
+    }
+
+
+def unmarked(template):
+    """A template as the sources have it: without marks of metres and numbers."""
+    return re.sub(r"\{(\d+):[mn]\}", r"{\1}", template)
+
+
+def tables():
+    return [(table.__name__.rpartition(".")[2], table.SENTENCES) for table in (*FROM_SOURCES, parts)]
+
+
+@pytest.fixture
+def german(application):
+    translator = QTranslator()
+    assert translator.load(str(FOLDER / "reflight_de.qm"))
+    application.installTranslator(translator)
+    yield
+    application.removeTranslator(translator)
+
+
+def test_every_sentence_of_the_sources_is_known_to_the_window():
+    known = {unmarked(template) for _, table in tables() for template in table}
+    missing = {place: text for text, place in sentences_of_sources().items() if text not in known}
+    assert not missing, "add them to groundstation/gui/sentences, run `make translations` and translate them"
+
+
+def test_every_sentence_of_the_window_is_still_made_somewhere():
+    made = sentences_of_sources()
+    for name, table in tables():
+        if name != "parts":
+            assert not [text for text in table if unmarked(text) not in made], f"{sentences.__name__}.{name}"
+
+
+def test_nothing_is_left_out_that_is_not_there():
+    made = {text for texts in collect().values() for text in texts}
+    assert {text for texts in NO_SENTENCE.values() for text in texts} <= made
+    assert set(NOT_SHOWN) <= files_of_the_window()
+
+
+def test_no_sentence_stands_in_two_tables():
+    everything = [text for _, table in tables() for text in table]
+    assert len(everything) == len(set(everything))
+
+
+@pytest.mark.parametrize(("name", "table"), tables(), ids=[name for name, _ in tables()])
+def test_every_sentence_is_recognised_with_any_values_and_stays_as_it_is_in_english(application, name, table):
+    for template in table:
+        values = ["12.5" if mark == "n" else "3.5, -2" if mark == "m" else "Xy" for mark in Template.of(template).kinds]
+        text = filled(template, values)
+        found = phrasebook().find(text)
+        assert found is not None
+        assert filled(found[0].source, found[1]) == text
+        assert sum(map(len, found[0].literals)) >= len(re.sub(r"\{[^}]*\}", "", template)), found[0].source
+        assert own_words(text, METRIC) == text
+
+
+def filled(template, values):
+    return re.sub(r"\{(\d+)(?::[mn])?\}", lambda field: values[int(field[1])], template)
+
+
+ENGLISH = re.compile(r"\b(the|is|are|of|and|with|from|least|most|it|its|not|there|expected|which|has)\b")
+
+
+def in_german(text, units=METRIC):
+    """A text as the German window has it; nothing but names, paths and options may be left in English."""
+    told = own_words(text, units)
+    assert not ENGLISH.search(re.sub(r"'[^']*'|/\S+|--\S+", "", told)), f"{text!r} is {told!r}"
+    return told
+
+
+@pytest.fixture(scope="module")
+def planned():
+    """A site and a plan for it that breaks rules of many kinds."""
+    model = kiosk()
+    found = plan_flight(model, PlanRequest(n_views=6, method="orbit")).plan
+    first, *others = found.viewpoints
+    moved = replace(first, position_enu_m=(0.0, -1.0, 500.0), gimbal_pitch_deg=-90.0)
+    path = found.sorties[0].path_enu_m
+    bent = replace(found.sorties[0], path_enu_m=(*path[:2], (0.0, 0.0, 3.0), *path[2:-1]), length_m=1.0, duration_s=1.0)
+    rules = replace(found.rules, settle_s=0.1)
+    plan = replace(found, viewpoints=(moved, *others), sorties=(bent, *found.sorties[1:]), rules=rules)
+    return model, plan
+
+
+def test_all_findings_of_a_broken_plan_are_german_in_the_german_window(german, planned):
+    findings = check_plan(planned[1], planned[0])
+    assert len({finding.code for finding in findings}) >= 12
+    for finding in findings:
+        assert in_german(finding.message) != finding.message
+        if finding.place.startswith("sortie"):
+            assert own_words(finding.place, METRIC).startswith("Einsatz")
+
+
+def test_lengths_in_findings_are_in_feet_in_the_imperial_window(application, planned):
+    metric = [finding for finding in check_plan(planned[1], planned[0]) if finding.unit == "m"]
+    assert len(metric) >= 5
+    n_compared = 0
+    for finding in metric:
+        told = own_words(finding.message, IMPERIAL)
+        assert not re.search(r"\d m\b", told)
+        for found in re.finditer(r"(-?[\d.]+) ft", told):
+            shown_m = float(found[1]) * 0.3048
+            candidates = [float(number) for number in re.findall(r"(-?\d[\d.e+-]*) m\b", finding.message)]
+            assert min(abs(shown_m - number) for number in candidates) <= 0.05 * 0.3048 + 1e-9
+            n_compared += 1
+    assert n_compared >= 8
+
+
+def test_findings_on_a_site_are_german(german):
+    airspace = Airspace((-30.0, -30.0, -5.0), (30.0, 30.0, 40.0), ground_z_m=0.0)
+    model = kiosk(airspace=airspace, home_enu_m=(0.0, -25.0, -2.0))
+    found = site_findings(model)
+    assert {finding.code for finding in found} >= {"airspace-below-ground", "home-below-ground"}
+    for finding in found:
+        in_german(finding.message)
+
+
+def test_what_is_said_of_mission_files_of_others_is_german(german, shared_data):
+    n_said = 0
+    for path in sorted((shared_data / "missions").iterdir()):
+        if path.suffix == ".md":
+            continue
+        try:
+            findings = tuple(finding for mission in read_missions(path) for finding in mission.findings)
+        except GroundStationError as error:
+            in_german(str(error))
+            n_said += 1
+        else:
+            for finding in findings:
+                in_german(finding.message)
+                n_said += 1
+    assert n_said >= 10
+
+
+BROKEN_SITES = {
+    "number": {"home_enu_m": ["a", 0, 0]},
+    "length": {"home_enu_m": [0, 0]},
+    "far away": {"home_enu_m": [1e6, 0, 0]},
+    "no object": {"origin": "x"},
+    "latitude": {"origin": {"lat_deg": 200.0, "lon_deg": 0.0, "ellipsoid_height_m": 0.0}},
+    "missing": {"origin": {"lat_deg": 20.0}},
+    "no panels": {"facades": []},
+    "no mesh": {"building_mesh": "none.ply"},
+    "both or neither": {"obstacles": [{"id": "crane"}]},
+    "other format": {"format": "reflight-plan/1"},
+}
+
+
+@pytest.mark.parametrize("changes", BROKEN_SITES.values(), ids=BROKEN_SITES)
+def test_what_is_wrong_with_a_site_file_is_german(german, tmp_path, changes):
+    path = write_scene("single-panel", tmp_path)
+    path.write_text(json.dumps(json.loads(path.read_text("utf-8")) | changes), "utf-8")
+    with pytest.raises(GroundStationError) as caught:
+        read_site(path)
+    assert in_german(str(caught.value)) != str(caught.value)
+
+
+def test_the_notes_of_an_import_are_german_and_without_metres_in_the_imperial_window(german, shared_data):
+    files = ("buildings/cityjson/zurich_subset_lod2.json", "bim/curtain_wall_small.ifc")
+    previews = [preview_import(shared_data / name, ImportOptions()) for name in files]
+    notes = [note for preview in previews for note in preview.notes]
+    assert len(notes) >= 10
+    for note in notes:
+        assert in_german(note) != note
+        assert not re.search(r"\d k?m\b", own_words(note, IMPERIAL))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Umbau 5 m hoch.json",
+        "/home/the 5 m tower/it is 3 m.json",
+        "ValueError: nobody knows this sentence",
+        "5 m",
+        "",
+        ": ; , and  (",
+        "a, " * 3000,
+        "the path (" * 40 + ")" * 40,
+    ],
+)
+def test_what_is_not_known_stays_as_it_is(german, text):
+    for units in UnitSystem:
+        assert own_words(text, units) == text
+
+
+def test_paths_and_names_in_known_sentences_stay(german):
+    for name in ("the 5 m tower: all of it", "panel", "home and away", "a; b, c (d)"):
+        assert f"'{name}'" in own_words(
+            f"the plan was made for site '{name}', this is 'x'; take its own site file", IMPERIAL
+        )
+        assert own_words(f"/data/{name}.json: cannot be read (Permission denied)", IMPERIAL) == (
+            f"/data/{name}.json: nicht lesbar (Zugriff verweigert)"
+        )
