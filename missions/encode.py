@@ -117,11 +117,20 @@ def return_height(missions: Sequence[Mission], options: ExportOptions) -> tuple[
     if options.rth_height_m is None:
         return math.ceil(max(path_m, top_m + CLEARANCE_M)), []
     if options.rth_height_m < top_m:
-        text = "the return height is below the highest point of the site: a returning aircraft may hit it"
+        text = (
+            f"the return height is below the highest point of the site: a returning aircraft may hit it; expected "
+            f"{_metres_up(top_m)} m or more above take-off, got {options.rth_height_m:g} m, and "
+            f"{_metres_up(top_m + CLEARANCE_M)} m keep {CLEARANCE_M:g} m from everything"
+        )
         return options.rth_height_m, [
             Finding(Severity.ERROR, "return-height", text, "", options.rth_height_m, top_m, "m")
         ]
     return options.rth_height_m, []
+
+
+def _metres_up(height_m: float) -> str:
+    """A height that must be reached, rounded upwards to decimetres."""
+    return f"{math.ceil(round(10.0 * height_m, 6)) / 10.0:g}"
 
 
 def default_autopilot(profile_id: str) -> Autopilot:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -228,7 +229,6 @@ def site_model(tower_top_m: float = 45.0) -> SiteModel:
 class TestReturnHeight:
     def height(self, options: ExportOptions) -> float:
         import io
-        import re
         import zipfile
 
         content = encode(example_plan(), None, None, FileFormat.DJI_KMZ, options).contents[0]
@@ -247,6 +247,22 @@ class TestReturnHeight:
         low = replace(FIXED, site=site_model(), rth_height_m=40.0)
         with pytest.raises(MissionError, match="return height is below the highest point"):
             export(example_plan(), None, None, FileFormat.DJI_KMZ, tmp_path / "m.kmz", low)
+
+    @pytest.mark.parametrize("top_m", [45.0, 80.04, 120.0])
+    def test_the_refusal_of_a_low_return_height_names_the_lowest_that_is_taken(
+        self, tmp_path: Path, top_m: float
+    ) -> None:
+        low = replace(FIXED, site=site_model(top_m), rth_height_m=21.0)
+        with pytest.raises(MissionError, match="got 21 m") as refused:
+            export(example_plan(), None, None, FileFormat.DJI_KMZ, tmp_path / "m.kmz", low)
+        found = re.search(r"expected ([\d.]+) m or more above take-off.* and ([\d.]+) m keep 10 m", str(refused.value))
+        assert found is not None
+        least_m, clear_m = float(found[1]), float(found[2])
+        path = tmp_path / "m.kmz"
+        export(example_plan(), None, None, FileFormat.DJI_KMZ, path, replace(low, rth_height_m=least_m))
+        with pytest.raises(MissionError, match="return height"):
+            export(example_plan(), None, None, FileFormat.DJI_KMZ, path, replace(low, rth_height_m=least_m - 0.11))
+        assert self.height(replace(low, rth_height_m=None)) == math.ceil(clear_m)
 
     def test_without_the_site_a_warning_says_that_only_the_path_is_cleared(self) -> None:
         findings = encode(example_plan(), None, None, FileFormat.DJI_KMZ, FIXED).findings
