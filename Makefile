@@ -6,6 +6,8 @@ PY := $(VENV)/Scripts/python.exe
 else
 PY := $(VENV)/bin/python
 endif
+# Processes that share the tests; those with windows each have a virtual screen of their own.
+WORKERS ?= 2
 TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 
 .PHONY: setup demo test test-all check benchmark format translations pictures clean
@@ -22,6 +24,7 @@ $(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
 	$(PY) -m pip install --quiet --constraint constraints.txt torch
 	$(PY) -m pip install --quiet --constraint constraints.txt --editable '.[dev,cluster]'
 	$(PY) -m planning.warm_up
+	$(PY) -m missions.simulator.warm_up
 	touch $@
 
 demo: setup
@@ -34,10 +37,10 @@ check: setup
 	$(VENV)/bin/lint-imports
 
 test: check
-	$(PY) -m pytest
+	$(PY) -m pytest -n $(WORKERS)
 
 test-all: check
-	$(PY) -m pytest -m 'not benchmark'
+	$(PY) -m pytest -n $(WORKERS) -m 'not benchmark'
 
 benchmark: setup
 	$(PY) -m tests.benchmarks

@@ -42,6 +42,9 @@ MIN_DELAY_S = 1.0
 
 PX4_ACCEPTANCE_RADIUS_M = 0.5
 
+PX4_MIN_HOLD_S = 1.0
+"""PX4 counts the hold from the edge of that radius: with none the simulated vehicle took photos 0.5 m early, moving."""
+
 HOLD_HORIZON = float(mavlink.GIMBAL_MANAGER_FLAGS_ROLL_LOCK | mavlink.GIMBAL_MANAGER_FLAGS_PITCH_LOCK)
 """The gimbal keeps pitch and roll to the horizon and follows the nose sideways."""
 
@@ -165,7 +168,7 @@ class _Sequence:
             yield plain(mavlink.MAV_CMD_DO_DIGICAM_CONTROL, 0.0, 0.0, 0.0, 0.0, 1.0, viewpoint_id=photo.viewpoint_id)
         else:
             # PX4 counts the hold from when position and yaw are reached; it does not wait for the gimbal.
-            hold_s = round(self.mission.rules.settle_s + max(0.0, tilt_s - leg_s), 2)
+            hold_s = round(max(PX4_MIN_HOLD_S, self.mission.rules.settle_s) + max(0.0, tilt_s - leg_s), 2)
             yield plain(mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW, pitch_deg, 0.0, NAN, NAN, HOLD_HORIZON)
             yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, hold_s, PX4_ACCEPTANCE_RADIUS_M, 0.0, heading_deg)
             number = float(self.n_photos)

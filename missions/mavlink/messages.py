@@ -92,6 +92,29 @@ class Timesync(Message):
     ts1: int
 
 
+@dataclass(frozen=True, slots=True)
+class RadioStatus(Message):
+    """RADIO_STATUS (109), made by a telemetry radio itself: signal and noise here and there, buffer left in percent."""
+
+    rssi: int
+    remrssi: int
+    txbuf: int
+    noise: int
+    remnoise: int
+    rxerrors: int
+    fixed: int
+
+
+@dataclass(frozen=True, slots=True)
+class SetupSigning(Message):
+    """SETUP_SIGNING (256): gives the vehicle a key of 32 bytes; all zero ends signing."""
+
+    target_system: int
+    target_component: int
+    secret_key: tuple[int, ...]
+    initial_timestamp: int
+
+
 # Commands and parameters
 
 

@@ -1,0 +1,234 @@
+"""What all transfers share: between whom they go, how they may end, and how long they wait."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass, field
+from enum import Enum, IntEnum
+
+from missions.mavlink.messages import (
+    Address,
+    MissionAck,
+    MissionCount,
+    MissionItemInt,
+    MissionRequest,
+    MissionRequestInt,
+    Received,
+)
+
+TransferMessage = MissionAck | MissionCount | MissionItemInt | MissionRequest | MissionRequestInt
+
+
+class MissionType(IntEnum):
+    """MAV_MISSION_TYPE."""
+
+    MISSION = 0
+    FENCE = 1
+    RALLY = 2
+
+
+class Result(IntEnum):
+    """MAV_MISSION_RESULT."""
+
+    ACCEPTED = 0
+    ERROR = 1
+    UNSUPPORTED_FRAME = 2
+    UNSUPPORTED = 3
+    NO_SPACE = 4
+    INVALID = 5
+    INVALID_PARAM1 = 6
+    INVALID_PARAM2 = 7
+    INVALID_PARAM3 = 8
+    INVALID_PARAM4 = 9
+    INVALID_PARAM5_X = 10
+    INVALID_PARAM6_Y = 11
+    INVALID_PARAM7 = 12
+    INVALID_SEQUENCE = 13
+    DENIED = 14
+    OPERATION_CANCELLED = 15
+
+
+class Ending(Enum):
+    """How a transfer ended."""
+
+    DONE = "done"
+    """The vehicle acknowledged it (upload, clear), or all of it came (download)."""
+    UNCONFIRMED = "unconfirmed"
+    """Every item was sent, and no acknowledgement came: the vehicle may have all of it."""
+    REFUSED = "refused"
+    """The vehicle said no."""
+    SILENT = "silent"
+    """The vehicle stopped answering."""
+    STALLED = "stalled"
+    """The vehicle answered, but the transfer did not get on."""
+    OUT_OF_STEP = "out-of-step"
+    """The vehicle asked for items that there are not, or began anew again and again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """Between whom a transfer goes, and which list it is about."""
+
+    own: Address
+    vehicle: Address
+    mission_type: MissionType = MissionType.MISSION
+
+    def message_of(self, received: Received) -> TransferMessage | None:
+        """The message, where it is the vehicle's, about this list, and meant for us.
+
+        Another ground station may share the link, and another list may be on its way.
+        """
+        message = received.message
+        if received.source != self.vehicle or not isinstance(message, TransferMessage):
+            return None
+        is_for_us = message.target_system in (0, self.own.system) and message.target_component in (
+            0,
+            self.own.component,
+        )
+        return message if is_for_us and message.mission_type == self.mission_type else None
+
+    def ack(self, result: Result) -> MissionAck:
+        """Acknowledgement to the vehicle."""
+        return MissionAck(self.vehicle.system, self.vehicle.component, result, self.mission_type)
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """How long a transfer waits.
+
+    MAVLink suggests 250 ms an item and 5 repeats, which ends at once where 30 % of the frames are lost each way: half
+    of all questions stay without an answer there, and 5 in a row for every thirtieth item. So what ends a transfer
+    here is silence, not a number of repeats.
+
+    Parameters
+    ----------
+    first_wait_s
+        Wait for an answer before the link's own delay is known.
+    shortest_wait_s, longest_wait_s
+        Bounds of that wait afterwards.
+    wait_for_delay
+        That wait as a multiple of the delay measured.
+    growth, longest_pause_s
+        Each repeat waits longer by this factor, up to this: ArduPilot asks again every second by itself.
+    silence_s, silent_repeats
+        The vehicle is given up when nothing came for so long: more than the 8 s after which ArduPilot, and the 5 s
+        after which PX4, gives up a transfer itself and is free for a new one; and long enough for so many repeats.
+    stall_s
+        Given up when it answers, but no new item was asked for or came.
+    repeat_gap_s
+        A repeated question is not answered again within this, nor within the link's delay: two copies of one question
+        must not become two streams.
+    acknowledgement_repeats
+        The last item is sent again so often where no acknowledgement comes; then only reading back can tell.
+    busy_s
+        A vehicle that says it is busy, or in error, is asked again for so long: either may belong to a transfer before.
+    restarts
+        A transfer is begun anew at most so often.
+    """
+
+    first_wait_s: float = 0.5
+    shortest_wait_s: float = 0.1
+    longest_wait_s: float = 3.0
+    wait_for_delay: float = 1.5
+    growth: float = 1.25
+    longest_pause_s: float = 1.0
+    silence_s: float = 15.0
+    silent_repeats: int = 15
+    stall_s: float = 60.0
+    repeat_gap_s: float = 0.1
+    acknowledgement_repeats: int = 8
+    busy_s: float = 10.0
+    restarts: int = 5
+
+
+DEFAULT_TIMING = Timing()
+
+DELAYS_KEPT = 5
+
+
+@dataclass(slots=True)
+class Patience:
+    """When to repeat a question, and when to give up; learns the link's delay from questions that were not repeated."""
+
+    timing: Timing
+    repeats: int = 0
+    """Of the question that is open."""
+    _wait_s: float = field(init=False)
+    _delays_s: deque[float] = field(init=False, default_factory=lambda: deque(maxlen=DELAYS_KEPT))
+    _asked_s: float = field(init=False, default=-math.inf)
+    _is_new: bool = field(init=False, default=False)
+    _repeat_s: float = field(init=False, default=math.inf)
+    _heard_s: float = field(init=False, default=math.inf)
+    _advanced_s: float = field(init=False, default=math.inf)
+    _busy_since_s: float = field(init=False, default=math.inf)
+
+    def __post_init__(self) -> None:
+        self._wait_s = self.timing.first_wait_s
+
+    @property
+    def next_deadline_s(self) -> float:
+        """When to repeat or to give up."""
+        return min(self._repeat_s, self._heard_s + self._silence_s, self._advanced_s + self.timing.stall_s)
+
+    @property
+    def _silence_s(self) -> float:
+        return max(self.timing.silence_s, self.timing.silent_repeats * self._longest_pause_s)
+
+    @property
+    def _longest_pause_s(self) -> float:
+        return max(self._wait_s, self.timing.longest_pause_s)
+
+    @property
+    def repeat_gap_s(self) -> float:
+        """Within this a second copy of a question does not mean that the answer was lost."""
+        return max(self.timing.repeat_gap_s, 1.2 * min(self._delays_s, default=0.0))
+
+    def begin(self, now_s: float) -> None:
+        """A transfer begins: from now on silence counts."""
+        self._heard_s = self._advanced_s = now_s
+
+    def ask(self, now_s: float, *, is_new: bool = True) -> None:
+        """A new question is asked; not `is_new`: it went out before, so that its answer says nothing of the delay."""
+        self.repeats = 0
+        self._is_new = is_new
+        self._plan(now_s)
+
+    def repeat(self, now_s: float) -> None:
+        """The open question is asked again."""
+        self.repeats += 1
+        self._plan(now_s)
+
+    def _plan(self, now_s: float) -> None:
+        self._asked_s = now_s
+        # The exponent is bounded because a float's is.
+        pause_s = self._wait_s * self.timing.growth ** min(self.repeats, 30)
+        self._repeat_s = now_s + min(pause_s, self._longest_pause_s)
+
+    def asks_again(self, now_s: float) -> bool:
+        """Whether a vehicle that says it is busy should be asked again; plans that."""
+        self._busy_since_s = min(self._busy_since_s, now_s)
+        self._repeat_s = now_s + self.timing.longest_pause_s
+        return now_s < self._busy_since_s + self.timing.busy_s
+
+    def hear(self, now_s: float) -> None:
+        """The vehicle said something about this transfer."""
+        self._heard_s = now_s
+
+    def advance(self, now_s: float) -> None:
+        """The open question was answered, and the transfer got on."""
+        self._heard_s = self._advanced_s = now_s
+        if self.repeats == 0 and self._is_new:
+            # Of late ones the shortest: what a vehicle asks again by itself, after a loss, comes a second late.
+            self._delays_s.append(now_s - self._asked_s)
+            self._wait_s = self.timing.wait_for_delay * min(self._delays_s)
+        elif self.repeats > 0:
+            # Which copy was answered is not known (Karn and Partridge, 1987): perhaps the link has become slower.
+            self._wait_s *= self.timing.growth
+        self._wait_s = min(max(self._wait_s, self.timing.shortest_wait_s), self.timing.longest_wait_s)
+
+    def gave_up(self, now_s: float) -> Ending | None:
+        """The ending that it comes to now, if it does."""
+        if now_s >= self._heard_s + self._silence_s:
+            return Ending.SILENT
+        return Ending.STALLED if now_s >= self._advanced_s + self.timing.stall_s else None
