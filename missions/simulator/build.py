@@ -1,0 +1,172 @@
+"""The simulated aircraft of a plan: which effects its flight calls for, and the airframe that has just these."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from missions.simulator.effects.barometer import BarometerDrift, DriftingBarometer
+from missions.simulator.effects.battery import BatterySag, SaggingPack
+from missions.simulator.effects.facts import effect_facts
+from missions.simulator.effects.gimbal import GimbalLag, LaggingGimbal
+from missions.simulator.effects.gnss import GnssNoise, NoisyReceiver, fix_of
+from missions.simulator.effects.link_loss import LinkLoss
+from missions.simulator.effects.multipath import GlassSky, Multipath, ReflectedReceiver
+from missions.simulator.effects.shutter import PhotoTiming
+from missions.simulator.effects.wind import GustyAir, Wind
+from missions.simulator.multirotor import Multirotor
+from missions.simulator.parts import (
+    Air,
+    ExactReceiver,
+    Gimbal,
+    Pack,
+    Parts,
+    PositionError,
+    RateGimbal,
+    Receiver,
+    SteadyPack,
+)
+from missions.simulator.scene import Conditions, FlightScene, flight_scene
+from planning.effects import Decision, Effect, Wish, decide
+from planning.errors import InputError
+from planning.frames import Vec3
+from planning.plan import FlightRules, Plan, Sortie
+from planning.site import SiteModel
+from planning.timing import motion_limits
+
+EFFECTS: tuple[Effect[FlightScene], ...] = (
+    Wind(),
+    GnssNoise(),
+    Multipath(),
+    BarometerDrift(),
+    GimbalLag(),
+    PhotoTiming(),
+    BatterySag(),
+    LinkLoss(),
+)
+"""All effects, in the order in which they are shown. The place of each seeds its random numbers: add at the end."""
+
+
+def decide_effects(scene: FlightScene, wishes: Mapping[str, Wish] | None = None) -> tuple[Decision, ...]:
+    """Ask the scene about every effect; `wishes`, by name, overrule it.
+
+    Raises
+    ------
+    InputError
+        A wish names no effect.
+    """
+    wishes = wishes or {}
+    known = [effect.name for effect in EFFECTS]
+    for name in wishes:
+        if name not in known:
+            raise InputError(f"there is no effect '{name}' of the flight; known are: {', '.join(known)}")
+    return tuple(decide(effect, scene, wishes.get(effect.name, "auto")) for effect in EFFECTS)
+
+
+def effects_table(decisions: tuple[Decision, ...]) -> str:
+    """Decisions as lines of aligned columns, the costs last."""
+    rows = [
+        (
+            d.effect,
+            ("on" if d.on else "off") + ("" if d.decided_by == "scene" else ", asked for"),
+            f"{d.size:.3g} {d.unit}",
+            f"{d.tolerance:.3g}",
+            f"{d.cost_s:.1f} s",
+            d.reason,
+        )
+        for d in decisions
+    ]
+    rows.insert(0, ("effect", "state", "size", "tolerance", "cost", "why"))
+    widths = [max(len(row[i]) for row in rows) for i in range(6)]
+    return "\n".join("  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows)
+
+
+def make_airframe(
+    plan: Plan,
+    site_model: SiteModel,
+    sortie: Sortie | None = None,
+    *,
+    conditions: Conditions | None = None,
+    wishes: Mapping[str, Wish] | None = None,
+    home_enu_m: Vec3 | None = None,
+    seed: int = 0,
+) -> tuple[Multirotor, tuple[Decision, ...]]:
+    """Airframe at home, ready to fly a sortie of a plan, and what was decided about each effect.
+
+    Parameters
+    ----------
+    sortie
+        One of the plan's; None: effects are decided for all of them together.
+    conditions
+        None: as in `Conditions`, with the plan's wind.
+    wishes
+        `on`, `off` or `auto` by the effect's name.
+    home_enu_m
+        None: the plan's, else the site's.
+    seed
+        The same seed gives the same flight.
+
+    Raises
+    ------
+    InputError
+        A wish names no effect.
+    InfeasibleError
+        The wind carries the aircraft away.
+    """
+    conditions = Conditions(wind_m_s=plan.rules.wind_m_s) if conditions is None else conditions
+    scene = flight_scene(plan, site_model, conditions, sortie)
+    decisions = decide_effects(scene, wishes)
+    low, high = plan.camera.gimbal_pitch_deg
+    home = home_enu_m or plan.home_enu_m or site_model.site.home_enu_m
+    # The wind is simulated, and the mission says how fast to fly: only the aircraft's own limits count here.
+    limits = motion_limits(plan.aircraft, FlightRules())
+    pitches = math.radians(low), math.radians(high)
+    return Multirotor(limits, pitches, home, _parts(scene, decisions, seed)), decisions
+
+
+def _parts(scene: FlightScene, decisions: tuple[Decision, ...], seed: int) -> Parts:
+    """The parts of an aircraft: those of effects that are on, ideal ones for the others."""
+    on = {decision.effect for decision in decisions if decision.on}
+    place = {effect.name: i for i, effect in enumerate(EFFECTS)}
+    facts, conditions, aircraft = effect_facts(), scene.conditions, scene.aircraft
+    by_gnss = conditions.height_by_gnss
+
+    def rng(name: str) -> np.random.Generator:
+        return np.random.default_rng([seed, place[name]])
+
+    air: Air | None = None
+    if Wind.name in on:
+        air = GustyAir(conditions.wind_enu_m_s, scene.height_m, facts.wind, rng(Wind.name))
+    errors: list[PositionError] = []
+    own = facts.receivers[conditions.fix]
+    receiver: Receiver = ExactReceiver(fix_of(own))
+    if GnssNoise.name in on:
+        noisy = NoisyReceiver(own, gives_height=by_gnss, rng=rng(GnssNoise.name))
+        receiver = noisy
+        errors.append(noisy)
+    if Multipath.name in on:
+        sky = GlassSky(scene.site_model, facts.multipath)
+        mirrored = ReflectedReceiver(sky, conditions.fix, receiver, gives_height=by_gnss, rng=rng(Multipath.name))
+        receiver = mirrored
+        errors.append(mirrored)
+    if BarometerDrift.name in on:
+        errors.append(DriftingBarometer(facts.barometer, gives_height=not by_gnss, rng=rng(BarometerDrift.name)))
+    rate_rad_s = math.radians(aircraft.max_gimbal_rate_deg_s)
+    gimbal: Gimbal = RateGimbal(rate_rad_s)
+    if GimbalLag.name in on:
+        gimbal = LaggingGimbal(rate_rad_s, facts.gimbal.lag_s)
+    pack: Pack = SteadyPack(facts.battery.capacity_mah, facts.battery.nominal_v, aircraft.endurance_s)
+    if BatterySag.name in on:
+        pack = SaggingPack(facts.battery, aircraft.endurance_s)
+    opens = PhotoTiming.name in on
+    return Parts(
+        gimbal=gimbal,
+        pack=pack,
+        receiver=receiver,
+        air=air,
+        errors=tuple(errors),
+        latency_s=conditions.photo_latency_s if opens else 0.0,
+        exposure_s=conditions.exposure_s if opens else 0.0,
+    )

@@ -1,0 +1,45 @@
+"""Photo latency and exposure: a photo is taken a little late, and what moves while the shutter is open is blurred."""
+
+from __future__ import annotations
+
+import math
+
+from missions.simulator.effects.facts import effect_facts
+from missions.simulator.effects.wind import GustResponse
+from missions.simulator.scene import FlightScene
+from planning.effects import Assessment
+from planning.frames import Vec3
+
+
+def blur_px(
+    velocity_enu_m_s: Vec3, turn_rate_rad_s: float, exposure_s: float, distance_m: float, pixel_angle_rad: float
+) -> float:
+    """Length of the trail of a point at a distance, pixels at the image centre.
+
+    exposure * (speed / distance + rate of turn) / pixel angle: the worst direction of both.
+    """
+    angle_rad = exposure_s * (math.hypot(*velocity_enu_m_s) / distance_m + abs(turn_rate_rad_s))
+    return angle_rad / pixel_angle_rad
+
+
+class PhotoTiming:
+    """The effect: blur of the closest pane in any view."""
+
+    name = "photo latency and blur"
+    unit = "px of blur"
+    tolerance = 0.5
+    """Half a pixel is less than a lens blurs."""
+
+    def assess(self, scene: FlightScene) -> Assessment:
+        """Blur at the speed with which gusts move an aircraft that holds its place (1 sigma, all axes)."""
+        conditions = scene.conditions
+        speed_m_s = 0.0
+        if conditions.wind_m_s > 0.0:
+            spread = GustResponse(effect_facts().wind, conditions.wind_m_s, scene.height_m).spread()
+            speed_m_s = math.sqrt(float(spread[:, 2, 2].sum()))
+        blur = speed_m_s * conditions.exposure_s / scene.gsd_m
+        reason = (
+            f"photos are taken at rest, where gusts leave {speed_m_s:.2f} m/s; the shutter is open for "
+            f"{1000.0 * conditions.exposure_s:.3g} ms, a pixel is {1000.0 * scene.gsd_m:.1f} mm on the glass"
+        )
+        return Assessment(blur, reason, 0.0)

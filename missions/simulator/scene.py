@@ -1,0 +1,169 @@
+"""What effects look at: one sortie of a plan on its site, and the conditions it is flown in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.frames import Vec3
+from planning.geometry.bvh import build_bvh, nearest_d2
+from planning.plan import Aircraft, Camera, FlightRules, Plan, Sortie, viewpoint_arrays
+from planning.site import SiteModel, panel_corners, panel_triangles
+from planning.timing import photo_stop_s
+
+Floats = NDArray[np.float64]
+
+FixKind = Literal["rtk-fixed", "rtk-float", "single"]
+HeightSource = Literal["auto", "gnss", "barometer"]
+
+STEP_S = 0.02
+"""Step for which the cost of effects is stated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """What the weather, the camera and the links are like; nothing of it is in a plan but the wind.
+
+    Parameters
+    ----------
+    wind_m_s, wind_from_deg
+        Mean wind at the height of a mast (6 m), and where it comes from, clockwise from north.
+    fix
+        What the GNSS receiver reaches under open sky.
+    height_source
+        What the autopilot takes its height from; `auto` is the receiver with an RTK fix, as DJI does, else the
+        barometer. ArduPilot's default (EK3_SRC1_POSZ 1) is always the barometer.
+    exposure_s
+        1/500 s is what automatic exposure chooses on a bright day.
+    photo_latency_s
+        From the command to the opening of the shutter; a single-lens camera at the end of a cable takes 0.1 s, a camera
+        that has to focus first much longer.
+    message_loss
+        Share of the messages that the radio loses, each way.
+    outages_s
+        Begin and end of times in which it loses all, seconds of flight.
+    """
+
+    wind_m_s: float = 0.0
+    wind_from_deg: float = 270.0
+    fix: FixKind = "rtk-fixed"
+    height_source: HeightSource = "auto"
+    exposure_s: float = 0.002
+    photo_latency_s: float = 0.1
+    message_loss: float = 0.0
+    outages_s: tuple[tuple[float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        for field in ("wind_m_s", "exposure_s", "photo_latency_s"):
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value >= 0.0):
+                raise ValueError(f"{field}: expected 0 or more, got {value}")
+        if not math.isfinite(self.wind_from_deg):
+            raise ValueError(f"wind_from_deg: expected degrees clockwise from north, got {self.wind_from_deg}")
+        if self.fix not in ("rtk-fixed", "rtk-float", "single"):
+            raise ValueError(f"fix: expected rtk-fixed, rtk-float or single, got '{self.fix}'")
+        if self.height_source not in ("auto", "gnss", "barometer"):
+            raise ValueError(f"height_source: expected auto, gnss or barometer, got '{self.height_source}'")
+        if not 0.0 <= self.message_loss < 1.0:
+            raise ValueError(f"message_loss: expected 0 to below 1, got {self.message_loss}")
+        for begin_s, end_s in self.outages_s:
+            if not 0.0 <= begin_s < end_s:
+                raise ValueError(f"outages_s: expected begin before end, got {begin_s} and {end_s}")
+
+    @property
+    def height_by_gnss(self) -> bool:
+        """Whether heights come from the GNSS receiver."""
+        return self.height_source == "gnss" or (self.height_source == "auto" and self.fix == "rtk-fixed")
+
+    @property
+    def wind_enu_m_s(self) -> Vec3:
+        """Mean wind, towards where it blows."""
+        angle = math.radians(self.wind_from_deg)
+        return -self.wind_m_s * math.sin(angle), -self.wind_m_s * math.cos(angle), 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlightScene:
+    """One flight, as far as effects ask.
+
+    Parameters
+    ----------
+    duration_s, length_m
+        Of the flight, as planned.
+    views_enu_m, pitch_rad
+        Shape (n, 3) and (n,): where photos are taken, and how the camera is pitched, in order.
+    glass_distance_m
+        Shape (n,), from each view to the nearest pane.
+    """
+
+    camera: Camera
+    aircraft: Aircraft
+    rules: FlightRules
+    conditions: Conditions
+    site_model: SiteModel
+    duration_s: float
+    length_m: float
+    views_enu_m: Floats
+    pitch_rad: Floats
+    glass_distance_m: Floats
+
+    @property
+    def height_m(self) -> float:
+        """Mean height of the views above the ground; 10 m without views."""
+        if len(self.views_enu_m) == 0:
+            return 10.0
+        return max(1.0, float(self.views_enu_m[:, 2].mean()) - self.site_model.site.airspace.ground_z_m)
+
+    @property
+    def gsd_m(self) -> float:
+        """Of the closest pane in any view, metres per pixel."""
+        closest_m = float(self.glass_distance_m.min()) if len(self.glass_distance_m) else 10.0
+        return self.camera.gsd_m(max(closest_m, 0.1))
+
+    @property
+    def cruise_m_s(self) -> float:
+        """Mean speed between photos."""
+        flying_s = self.duration_s - len(self.views_enu_m) * photo_stop_s(self.aircraft, self.rules)
+        return min(self.aircraft.max_speed_m_s, self.length_m / max(flying_s, 1.0))
+
+    @property
+    def hover_share(self) -> float:
+        """Share of the flight that is hovered for photos."""
+        hovered_s = len(self.views_enu_m) * photo_stop_s(self.aircraft, self.rules)
+        return min(1.0, hovered_s / self.duration_s) if self.duration_s > 0.0 else 0.0
+
+    @property
+    def n_steps(self) -> float:
+        """Steps of the simulation, for stating costs."""
+        return self.duration_s / STEP_S
+
+
+def flight_scene(
+    plan: Plan, site_model: SiteModel, conditions: Conditions, sortie: Sortie | None = None
+) -> FlightScene:
+    """Scene of one sortie, or of all of a plan."""
+    wanted = set(sortie.viewpoint_ids) if sortie is not None else None
+    views = viewpoint_arrays(tuple(v for v in plan.viewpoints if wanted is None or v.id in wanted))
+    if sortie is not None and sortie.viewpoint_ids:
+        order = {viewpoint_id: i for i, viewpoint_id in enumerate(sortie.viewpoint_ids)}
+        by_id = {v.id: v for v in plan.viewpoints}
+        views = viewpoint_arrays(tuple(by_id[viewpoint_id] for viewpoint_id in order))
+    flown = plan.sorties if sortie is None else (sortie,)
+    glass = build_bvh(panel_triangles(panel_corners(site_model.site)))
+    distance_m = np.sqrt([nearest_d2(glass, position, math.inf) for position in views.positions_enu_m])
+    return FlightScene(
+        camera=plan.camera,
+        aircraft=plan.aircraft,
+        rules=plan.rules,
+        conditions=conditions,
+        site_model=site_model,
+        duration_s=sum(one.duration_s for one in flown),
+        length_m=sum(one.length_m for one in flown),
+        views_enu_m=views.positions_enu_m,
+        pitch_rad=views.pitch_rad,
+        glass_distance_m=np.asarray(distance_m, np.float64).reshape(-1),
+    )

@@ -1,0 +1,151 @@
+"""Ways to the simulated vehicle: within the program as fast as it goes, or over links at a multiple of real time.
+
+Here alone simulated time meets real time. A `DirectLink` knows only simulated time: to wait for a message is to fly on.
+`serve` lets simulated time follow the clock, `speedup` times as fast; while a mission is being uploaded both run alike,
+because the time-outs of the upload are the vehicle's and the ground station's answers are not sped up.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+
+from missions.mavlink.link import GROUND_STATION, FrameObserver, Link
+from missions.mavlink.messages import Address, Message, Received
+from missions.mavlink.wire import Encoder
+from missions.simulator.vehicle import SimulatedVehicle
+from planning.errors import LinkError
+from planning.progress import Clock, Stop, never
+
+MAX_SPEEDUP = 50.0
+LISTEN_S = 0.005
+"""How long each link is listened to before the vehicle flies on."""
+
+MAX_STEP_S = 0.1
+"""Of real time, flown in one go: a vehicle that cannot keep up, or was held up, gets slower instead of deaf."""
+
+
+class DirectLink:
+    """A link to a vehicle in the same process, without bytes and sockets: `receive` flies until there is a message.
+
+    Everything runs in simulated time: timeouts, `Received.time_s` and `clock`.
+    """
+
+    def __init__(self, vehicle: SimulatedVehicle, address: Address = GROUND_STATION) -> None:
+        self.vehicle, self.address = vehicle, address
+        self._waiting: deque[Received] = deque()
+        self._observers: list[FrameObserver] = []
+        self._encoders = {True: Encoder(address), False: Encoder(vehicle.address)}
+        self._lock = threading.Lock()
+        self._is_closed = False
+
+    def clock(self) -> float:
+        """Simulated time, seconds."""
+        return self.vehicle.now_s
+
+    def observe(self, observer: FrameObserver) -> None:
+        """Show every message as the frame that it would be on the wire, from now on."""
+        self._observers.append(observer)
+
+    def send(self, message: Message) -> None:
+        """Hand the vehicle a message; safe from any thread.
+
+        Raises
+        ------
+        LinkError
+            The link is closed.
+        """
+        with self._lock:
+            self._check_open()
+            self._show(message, is_sent=True)
+            self._take(self.vehicle.receive(Received(message, self.address, self.vehicle.now_s)))
+
+    def receive(self, timeout_s: float) -> Received | None:
+        """The next message; None where none came within `timeout_s` of simulated time.
+
+        Raises
+        ------
+        LinkError
+            The link is closed.
+        """
+        with self._lock:
+            self._check_open()
+            vehicle = self.vehicle
+            deadline_s = vehicle.now_s + timeout_s
+            # Less than half a step to go: one more step would end later than asked.
+            while not self._waiting and deadline_s - vehicle.now_s > 0.5 * vehicle.control_step_s:
+                self._take(vehicle.step(vehicle.control_step_s))
+            return self._waiting.popleft() if self._waiting else None
+
+    def close(self) -> None:
+        """Close it."""
+        self._is_closed = True
+
+    def _check_open(self) -> None:
+        if self._is_closed:
+            raise LinkError("the link to the simulated vehicle is closed")
+
+    def _take(self, messages: Iterable[Message]) -> None:
+        for message in messages:
+            self._show(message, is_sent=False)
+            self._waiting.append(Received(message, self.vehicle.address, self.vehicle.now_s))
+
+    def _show(self, message: Message, *, is_sent: bool) -> None:
+        if self._observers:
+            frame = self._encoders[is_sent].encode(message)
+            for observer in self._observers:
+                observer(frame, is_sent, self.vehicle.now_s)
+
+
+def serve(
+    vehicle: SimulatedVehicle,
+    links: Sequence[Link],
+    speedup: float = 1.0,
+    stop: Stop = never,
+    clock: Clock = time.perf_counter,
+) -> None:
+    """Fly a vehicle and answer for it on links, until told to stop or until the last link breaks.
+
+    Parameters
+    ----------
+    links
+        Opened with the vehicle's address, such as `open_link("tcpin:127.0.0.1:5760", vehicle.address)`, which several
+        clients may use at once; all hear everything that the vehicle says.
+    speedup
+        Simulated seconds for each real one, above 0 to 50.
+
+    Raises
+    ------
+    ValueError
+        The speed-up is out of range.
+    """
+    if not 0.0 < speedup <= MAX_SPEEDUP:
+        raise ValueError(f"speedup: expected more than 0, at most {MAX_SPEEDUP:g}, got {speedup}")
+    listening = list(links)
+    flown_until_s = clock()
+    while listening and not stop():
+        said: list[Message] = []
+        for link in tuple(listening):
+            try:
+                received = link.receive(LISTEN_S / len(listening))
+                while received is not None:
+                    said += vehicle.receive(received)
+                    received = link.receive(0.0)
+            except LinkError:
+                listening.remove(link)
+        now_s = clock()
+        elapsed_s = min(now_s - flown_until_s, MAX_STEP_S)
+        flown_until_s = now_s
+        said += vehicle.step(elapsed_s * (1.0 if vehicle.is_transferring else speedup))
+        _send(listening, said)
+
+
+def _send(links: list[Link], messages: Sequence[Message]) -> None:
+    for link in tuple(links):
+        # A link that breaks while it is written to says so again when it is read.
+        with suppress(LinkError):
+            for message in messages:
+                link.send(message)

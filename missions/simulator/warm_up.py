@@ -1,0 +1,15 @@
+"""Compile the simulator's kernels once and keep them on disk: `python -m missions.simulator.warm_up`."""
+
+from __future__ import annotations
+
+from missions.simulator.trajectory import plan_trajectory
+
+
+def compile_kernels() -> None:
+    """Run every kernel of this package."""
+    nowhere = (0.0, 0.0, 0.0)
+    plan_trajectory((nowhere, nowhere, nowhere), (1.0, 0.0, 0.0), (1.0, 1.0, 1.0), 1.0, 1.0, passes=True)
+
+
+if __name__ == "__main__":
+    compile_kernels()
