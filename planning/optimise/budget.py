@@ -7,6 +7,8 @@ first, many times more than fit.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -103,7 +105,7 @@ def views_within_budget(
     weights = element_weights(problem.model, parameters.solid_angle_weights)
     n_locked = len(locked.heading_rad)
     free = candidate_pool(problem, seed, parameters.n_candidates)
-    free = _shortlist(free, weights, covered_by(problem.model, locked), max(0, MAX_CANDIDATES - n_locked))
+    free = shortlist(free, weights, covered_by(problem.model, locked), max(0, MAX_CANDIDATES - n_locked))
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
     gain = CoverGain(pool.elements, weights)
@@ -183,12 +185,18 @@ def with_fewer_views(model: CoverageModel, views: ViewpointArrays, n_locked: int
     return take(views, np.setdiff1d(np.arange(n_locked + n_free), dropped))
 
 
-def _shortlist(pool: Pool, weights: Array, covered: NDArray[np.int32], n_most: int) -> Pool:
+def shortlist(
+    pool: Pool,
+    weights: Array,
+    covered: NDArray[np.int32] | None,
+    n_most: int,
+    depths: Sequence[int] = CHOICE_DEPTHS,
+) -> Pool:
     """The candidates that greedy takes first, for several depths, beside what is `covered` all the same."""
     state = cover_state(pool.elements, weights, covered)
     chosen = np.zeros(min(n_most, len(state.gains)), np.int64)
     n_chosen = 0
-    for depth in CHOICE_DEPTHS:
+    for depth in depths:
         state.depth[0] = depth
         kernel.refresh_gains(state)
         state.gains[chosen[:n_chosen]] = -np.inf

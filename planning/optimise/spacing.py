@@ -22,11 +22,16 @@ that refuses the mission costs all of them. On office, library and court two or 
 
 
 def merge_close_views(
-    problem: ViewProblem, views: ViewpointArrays, spacing_m: float = MIN_SPACING_M, n_fixed: int = 0
+    problem: ViewProblem,
+    views: ViewpointArrays,
+    spacing_m: float = MIN_SPACING_M,
+    n_fixed: int = 0,
+    covered: NDArray[np.int32] | None = None,
 ) -> ViewpointArrays:
     """Same views, those closer than `spacing_m` to others moved onto them where that loses (almost) no coverage.
 
     Views at one place move together, so that each move leaves one place less. The first `n_fixed` views stay.
+    `covered` counts the views that each element has all the same.
     """
     from scipy.spatial import cKDTree
 
@@ -35,6 +40,8 @@ def merge_close_views(
         return views
     moved = ViewpointArrays(positions, views.heading_rad, views.pitch_rad)
     counts = np.bincount(model.elements(views).items, minlength=model.n_elements)
+    if covered is not None:
+        counts += covered
     close = sorted(cKDTree(positions).query_pairs(spacing_m))
     for allowed_loss in (0, MAX_LOST, int(MAX_LOST_SHARE * np.count_nonzero(counts))):
         for pair in close:

@@ -1,0 +1,141 @@
+"""`topup`: what a flight left open to a short flight that closes it."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundstation.cli.options import checked_seed, in_words_of_options, number
+from planning.errors import InputError
+
+if TYPE_CHECKING:
+    from planning.top_up import TopUp
+
+EPILOG = """What was seen is decided by the poses of the photos, not by the views that they were meant to be. The plan
+that is written is checked, exported and flown like any other.
+
+examples:
+  topup flight.json office.plan.json office.site.json -o topup.plan.json
+  topup flight.json office.plan.json office.site.json -o topup.plan.json --battery 0.55
+  topup flight.json office.plan.json office.site.json -o rest.plan.json --resume
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "topup",
+        help="plan the shortest flight that closes what a flight left open",
+        description="Compare a flight with its plan and plan the shortest flight that shows what is missing,\n"
+        "within the battery that is left; or write the rest of a sortie that was interrupted.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("flight", type=Path, metavar="FLIGHT", help="flight file")
+    add("plan", type=Path, metavar="PLAN", help="plan file that was flown")
+    add("site", type=Path, metavar="SITE", help="site file, as the site is now")
+    add("-o", "--out", type=Path, required=True, metavar="PLAN", help="plan file to write")
+    add("--battery", type=number, metavar="CHARGE", help="charge of the battery on board, 0 to 1 (default: changed)")
+    add("--batteries", type=int, metavar="N", help="full batteries that may be used (default: none beside --battery)")
+    add(
+        "--target",
+        choices=("promised", "reachable"),
+        default="promised",
+        help="what the plan had promised (default), or everything that can be seen",
+    )
+    add("--time-budget", type=number, default=5.0, metavar="S", help="longest wall time (default 5 s)")
+    add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
+    add("--resume", action="store_true", help="the rest of the sortie that was interrupted, as it was planned")
+    add("--sortie", type=int, metavar="N", help="with --resume: which sortie (default: the last that is not complete)")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Plan and write; returns the exit status."""
+    if options.battery is not None and not 0.0 <= options.battery <= 1.0:
+        raise InputError(f"--battery: expected a charge from 0 to 1, got {options.battery:g}")
+    if options.resume:
+        return _resume(options)
+    if options.sortie is not None:
+        raise InputError("--sortie: is for --resume; a top-up closes what all sorties left open")
+    return _top_up(options)
+
+
+def _top_up(options: argparse.Namespace) -> int:
+    from groundstation.cli.console import print_findings, print_json, print_next, run_job
+    from groundstation.services.top_up import top_up_files, top_up_summary
+    from planning.top_up import Target, TopUpRequest
+
+    with in_words_of_options():
+        request = TopUpRequest(
+            Target(options.target),
+            options.battery,
+            options.batteries,
+            checked_seed(options.seed),
+            options.time_budget,
+        )
+    files = options.flight, options.plan, options.site, options.out
+    found, findings = run_job(
+        "topup", lambda context: top_up_files(*files, request, stop=context.stop, trace=context.trace, monitor=context)
+    )
+    if options.json:
+        print_json(top_up_summary(found, findings))
+        return 0
+    _print_top_up(found, options.out)
+    print_findings(findings)
+    if found.plan is not None:
+        print_next("check", options.out, options.site)
+    return 0
+
+
+def _print_top_up(found: TopUp, out: Path) -> None:
+    from groundstation.cli.console import counted
+    from groundstation.services.units import per_cent
+
+    share = per_cent(found.delivered, found.promised, 2)
+    print(f"the photos show {found.delivered} of the {found.promised} sections that the plan promised ({share:.2f} %)")
+    plan = found.plan
+    if plan is None:
+        print("nothing is missing; no top-up is needed, and none was written")
+        return
+    print(
+        f"{out}: {counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')}, "
+        f"{plan.duration_s / 60:.1f} min in the air, close {found.closed} of {found.wanted} missing sections"
+    )
+    for position, sortie in enumerate(plan.sorties, 1):
+        battery = "the battery on board" if found.on_board and position == 1 else "a full battery"
+        print(
+            f"  sortie {position}, on {battery}: {counted(len(sortie.viewpoint_ids), 'view')}, "
+            f"{sortie.length_m:.0f} m, {sortie.duration_s / 60:.1f} min"
+        )
+    print(f"covered before {found.seen}, together {found.together} sections")
+    if found.shortest_s is not None:
+        print(f"no single flight over the views that were compared takes less than {found.shortest_s / 60:.1f} min")
+    elif found.closed < found.bound:
+        print(f"no choice from the views that were compared closes more than {found.bound} on these batteries")
+
+
+def _resume(options: argparse.Namespace) -> int:
+    from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job
+    from groundstation.services.top_up import resume_files, resumed_summary
+
+    if options.batteries is not None:
+        raise InputError("--batteries: is not for --resume, which fits one battery")
+    files = options.flight, options.plan, options.site, options.out
+    rest, findings = run_job(
+        "resume", lambda context: resume_files(*files, options.sortie, options.battery, monitor=context)
+    )
+    if options.json:
+        print_json(resumed_summary(rest, findings))
+        return 0
+    sortie = rest.plan.sorties[0]
+    print(
+        f"{options.out}: rest of sortie {rest.mission.number} from {sortie.viewpoint_ids[0]} on, "
+        f"{counted(len(sortie.viewpoint_ids), 'view')}, {sortie.length_m:.0f} m, {sortie.duration_s / 60:.1f} min"
+    )
+    print_findings(findings)
+    print_next("check", options.out, options.site)
+    return 0

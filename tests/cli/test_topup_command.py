@@ -1,0 +1,114 @@
+"""`topup`: a flight and its plan to a top-up, or to the rest of a sortie."""
+
+import json
+
+import numpy as np
+import pytest
+
+from missions.flight.flight_file import flight_of, write_flight
+from missions.flight.record import FlightRecord, TakenPhoto, Track
+from planning.plan_file import read_plan
+from planning.site_file import read_site
+
+
+@pytest.fixture
+def flown(pane, tmp_path):
+    """A flight file with photos of the first views of the pane's plan."""
+
+    def write(n_photos):
+        plan = read_plan(pane / "plan.json")
+        by_id = {view.id: view for view in plan.viewpoints}
+        views = [by_id[identifier] for identifier in plan.sorties[0].viewpoint_ids[:n_photos]]
+        photos = tuple(
+            TakenPhoto(i, 4.0 * i, view.position_enu_m, view.heading_deg, view.gimbal_pitch_deg)
+            for i, view in enumerate(views)
+        )
+        nothing, nowhere = np.zeros(0), np.zeros((0, 3))
+        track = Track(nothing, nowhere, nowhere, nothing, nothing, nothing, nothing)
+        path = tmp_path / "flight.json"
+        write_flight(path, flight_of(plan, read_site(pane / "site.json"), (FlightRecord(1, "test", track, photos),)))
+        return path
+
+    return write
+
+
+def test_a_top_up_closes_what_is_missing_and_can_be_checked_and_exported(reflight, pane, flown, tmp_path):
+    out = tmp_path / "topup.plan.json"
+    done = reflight("topup", flown(2), pane / "plan.json", pane / "site.json", "-o", out, "--time-budget", 1)
+    assert done.status == 0
+    assert "missing sections" in done.out
+    assert done.err.splitlines()[-1].startswith("next: app.py check ")
+    assert read_plan(out).method == "top-up"
+    assert reflight("check", out, pane / "site.json").status == 0
+    mission = tmp_path / "topup.kmz"
+    assert reflight("export", out, "--format", "dji-kmz", "-o", mission).status == 0
+    assert mission.exists()
+
+
+def test_json_is_one_object_that_says_what_is_left_open(reflight, pane, flown, tmp_path):
+    out = tmp_path / "topup.plan.json"
+    arguments = (flown(2), pane / "plan.json", pane / "site.json", "-o", out, "--time-budget", 1, "--json")
+    done = reflight("topup", *arguments)
+    assert (done.status, done.err) == (0, "")
+    summary = done.json
+    assert summary["views"] == len(read_plan(out).viewpoints)
+    assert summary["wanted"] == summary["closed"] == summary["promised"] - summary["delivered"]
+    assert summary["covered_together"] >= summary["promised"]
+    assert summary["left_open"] == {"unreachable": 0, "battery": 0, "spacing": 0}
+    assert summary["shortest_s"] <= summary["duration_s"] + 0.1
+
+
+def test_a_complete_flight_needs_no_top_up_and_writes_none(reflight, pane, flown, tmp_path):
+    out = tmp_path / "topup.plan.json"
+    done = reflight("topup", flown(99), pane / "plan.json", pane / "site.json", "-o", out)
+    assert (done.status, done.err) == (0, "")
+    assert done.out.splitlines()[-1] == "nothing is missing; no top-up is needed, and none was written"
+    assert not out.exists()
+
+
+def test_resume_writes_the_rest_of_the_sortie(reflight, pane, flown, tmp_path):
+    out = tmp_path / "rest.plan.json"
+    arguments = (flown(2), pane / "plan.json", pane / "site.json", "-o", out, "--resume")
+    done = reflight("topup", *arguments)
+    assert done.status == 0
+    assert "rest of sortie 1 from" in done.out
+    ids = read_plan(pane / "plan.json").sorties[0].viewpoint_ids
+    assert read_plan(out).sorties[0].viewpoint_ids == ids[2:]
+    assert reflight("check", out, pane / "site.json").status == 0
+    summary = reflight("topup", *arguments, "--json").json
+    assert (summary["sortie"], summary["views"], summary["first_view"]) == (1, len(ids) - 2, ids[2])
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--battery", 1.2), "--battery: expected a charge from 0 to 1, got 1.2"),
+        (("--battery", 0.2), "the battery is at 20%; a reserve of 25% and 30 s for take-off and landing leave nothing"),
+        (("--batteries", 0), "--batteries: expected 1 to 100, got 0"),
+        (("--time-budget", 0), "--time-budget: expected more than 0 s"),
+        (("--seed", -1), "--seed: expected 0 to"),
+        (("--sortie", 1), "--sortie: is for --resume"),
+        (("--resume", "--batteries", 2), "--batteries: is not for --resume"),
+        (("--resume", "--sortie", 5), "sortie: expected 1 to 1, got 5"),
+        (("--resume", "--battery", 0.251), "change the battery"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line_and_writes_nothing(reflight, pane, flown, tmp_path, options, words):
+    out = tmp_path / "topup.plan.json"
+    done = reflight("topup", flown(2), pane / "plan.json", pane / "site.json", "-o", out, *options)
+    assert words in done.error
+    assert not out.exists()
+
+
+def test_a_flight_of_another_plan_and_a_wrong_file_are_refused(reflight, pane, flown, changed, tmp_path):
+    out = tmp_path / "topup.plan.json"
+    other = changed(pane / "plan.json", "seed", 5)
+    assert "flight of another plan" in reflight("topup", flown(2), other, pane / "site.json", "-o", out).error
+    swapped = reflight("topup", pane / "plan.json", flown(2), pane / "site.json", "-o", out)
+    assert "reflight-flight/1" in swapped.error
+    missing = reflight("topup", tmp_path / "no.json", pane / "plan.json", pane / "site.json", "-o", out)
+    assert "no.json" in missing.error
+    over = reflight("topup", flown(2), pane / "plan.json", pane / "site.json", "-o", pane / "plan.json")
+    assert "plan.json" in over.error
+    assert json.loads((pane / "plan.json").read_text())["method"] == "greedy"
+    assert not out.exists()
