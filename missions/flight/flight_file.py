@@ -1,0 +1,182 @@
+"""Reading and writing `flight.json` (format reflight-flight/1, docs/file-formats.md)."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from missions.flight.outcome import FlightReport
+from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
+from planning.effects import Decision
+from planning.errors import InputError
+from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.plan import Plan
+from planning.plan_file import plan_to_json
+from planning.site import Origin, SiteModel
+
+FLIGHT_FORMAT = "reflight-flight/1"
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """The content of `flight.json`.
+
+    Parameters
+    ----------
+    site, site_sha256, plan_sha256
+        What was flown: name of the site, and SHA-256 of both files; empty where it is not known.
+    origin
+        Of the site, so that the file stands by itself.
+    sorties
+        Records in the order of flight; a sortie that was interrupted may have several.
+    report
+        Comparison with the plan, where it was made.
+    """
+
+    site: str
+    site_sha256: str
+    plan_sha256: str
+    origin: Origin
+    sorties: tuple[FlightRecord, ...]
+    report: FlightReport | None = None
+    format: str = FLIGHT_FORMAT
+
+
+def flight_of(
+    plan: Plan, site_model: SiteModel, records: tuple[FlightRecord, ...], report: FlightReport | None = None
+) -> Flight:
+    """The flight file of records that were made on a site with a plan."""
+    site = site_model.site
+    return Flight(site.name, site_model.sha256, plan_sha256(plan), site.origin, records, report)
+
+
+def plan_sha256(plan: Plan) -> str:
+    """SHA-256 of the plan file that `write_plan` would write, hexadecimal."""
+    return hashlib.sha256(json.dumps(plan_to_json(plan), indent=1, allow_nan=False).encode()).hexdigest()
+
+
+Point = tuple[float | None, float | None, float | None]
+
+
+@dataclass(frozen=True, slots=True)
+class _TrackColumns:
+    """A track as it stands in the file: a list for each column, null where a value is not known."""
+
+    time_s: tuple[float, ...]
+    position_enu_m: tuple[Point, ...]
+    velocity_enu_m_s: tuple[Point, ...]
+    heading_rad: tuple[float | None, ...]
+    gimbal_pitch_rad: tuple[float | None, ...]
+    gimbal_heading_rad: tuple[float | None, ...]
+    battery: tuple[float | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _RecordContent:
+    sortie: int
+    vehicle: str
+    track: _TrackColumns
+    photos: tuple[TakenPhoto, ...]
+    events: tuple[FlightEvent, ...] = ()
+    duration_s: float | None = None
+    effects: tuple[Decision, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _FlightContent:
+    format: str
+    site: str
+    origin: Origin
+    sorties: tuple[_RecordContent, ...]
+    site_sha256: str = ""
+    plan_sha256: str = ""
+    report: FlightReport | None = None
+
+
+def read_flight(path: Path) -> Flight:
+    """Read a flight.
+
+    Raises
+    ------
+    InputError
+        The file is missing or wrong; the message names the file, the field and what was expected.
+    """
+    content = read_json(path)
+    expect_format(content, FLIGHT_FORMAT, path)
+    flight = to_record(content, _FlightContent, path)
+    records = tuple(_record(record, f"{path}: sorties[{i}]") for i, record in enumerate(flight.sorties))
+    return Flight(flight.site, flight.site_sha256, flight.plan_sha256, flight.origin, records, flight.report)
+
+
+def _record(content: _RecordContent, place: str) -> FlightRecord:
+    columns = {}
+    for field in fields(Track):
+        values = np.array(getattr(content.track, field.name), np.float64)
+        columns[field.name] = values.reshape(-1, 3) if field.name.endswith(("enu_m", "enu_m_s")) else values
+    try:
+        track = Track(**columns)
+    except ValueError as error:
+        raise InputError(f"{place}.track.{error}") from error
+    for i, photo in enumerate(content.photos):
+        if not all(map(math.isfinite, (photo.time_s, *photo.position_enu_m))):
+            raise InputError(f"{place}.photos[{i}]: expected a finite time and position")
+    return FlightRecord(
+        content.sortie, content.vehicle, track, content.photos, content.events, content.duration_s, content.effects
+    )
+
+
+def flight_to_json(flight: Flight) -> dict[str, Any]:
+    """Content of `flight.json`: plain values, null for what is not known."""
+    content: dict[str, Any] = {
+        "format": flight.format,
+        "site": flight.site,
+        "site_sha256": flight.site_sha256,
+        "plan_sha256": flight.plan_sha256,
+        "origin": msgspec.to_builtins(flight.origin),
+        "sorties": [_record_to_json(record) for record in flight.sorties],
+    }
+    if flight.report is not None:
+        content["report"] = msgspec.to_builtins(flight.report)
+    return content
+
+
+def _record_to_json(record: FlightRecord) -> dict[str, Any]:
+    return {
+        "sortie": record.sortie,
+        "vehicle": record.vehicle,
+        "duration_s": record.duration_s,
+        "photos": msgspec.to_builtins(record.photos),
+        "events": msgspec.to_builtins(record.events),
+        "effects": msgspec.to_builtins(record.effects),
+        "track": {field.name: _with_nulls(getattr(record.track, field.name)) for field in fields(Track)},
+    }
+
+
+def _with_nulls(values: np.ndarray[Any, np.dtype[np.float64]]) -> list[Any]:
+    """Nested lists of an array, None for what is not finite."""
+    listed: list[Any] = np.where(np.isfinite(values), values, np.nan).astype(object).tolist()
+    if np.isfinite(values).all():
+        return listed
+    if values.ndim == 1:
+        return [None if math.isnan(value) else value for value in listed]
+    return [[None if math.isnan(value) else value for value in row] for row in listed]
+
+
+def write_flight(path: Path, flight: Flight) -> None:
+    """Write a flight, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        The folder is missing or cannot be written, or the disk is full.
+    ValueError
+        A photo, event or report holds NaN or Infinity.
+    """
+    write_atomically(path, json.dumps(flight_to_json(flight), allow_nan=False, separators=(",", ":")).encode())

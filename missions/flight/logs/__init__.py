@@ -1,0 +1,1 @@
+"""Flight logs of autopilots and ground stations, read into flight records."""

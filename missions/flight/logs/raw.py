@@ -1,0 +1,121 @@
+"""What log readers gather, whoever wrote the log: times in seconds of one clock, positions still on the globe.
+
+A reader only says what stands in the file. Cleaning, splitting into flights and turning into the site's frame is done
+once for all of them, in `flights.py`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from missions.flight.record import FlightEvent
+from planning.findings import Finding, Severity
+
+Floats = NDArray[np.float64]
+
+NOT_KNOWN = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class RawPhoto:
+    """A photo as a log tells of it; NaN and None where it does not say.
+
+    `heading_deg` and `gimbal_pitch_deg` are the camera's, clockwise from north and against the horizon.
+    """
+
+    index: int
+    time_s: float
+    lat_deg: float = NOT_KNOWN
+    lon_deg: float = NOT_KNOWN
+    altitude_amsl_m: float = NOT_KNOWN
+    above_home_m: float = NOT_KNOWN
+    heading_deg: float | None = None
+    gimbal_pitch_deg: float | None = None
+    source: str = "log"
+    file: str = ""
+
+
+Row = tuple[float, ...]
+
+
+@dataclass(slots=True)
+class RawLog:
+    """A log while it is read.
+
+    Parameters
+    ----------
+    positions
+        Rows of time, latitude and longitude (degrees), altitude above mean sea level, height above home (metres).
+    velocities
+        Rows of time, north, east, down (m/s).
+    headings
+        Rows of time, heading of the nose (rad).
+    gimbal_pitches, gimbal_headings
+        Rows of time, angle of the camera (rad), against the horizon and north.
+    gimbal_yaws
+        Rows of time, angle of the camera against the nose (rad): for gimbals that say no more.
+    battery
+        Rows of time, charge left (1 full).
+    armed
+        Time, and whether the motors were armed from then on.
+    photos
+        What the camera said it took.
+    triggers
+        What it was told to take; they count where it says nothing.
+    """
+
+    vehicle: str = ""
+    positions: list[Row] = field(default_factory=list)
+    velocities: list[Row] = field(default_factory=list)
+    headings: list[Row] = field(default_factory=list)
+    gimbal_pitches: list[Row] = field(default_factory=list)
+    gimbal_headings: list[Row] = field(default_factory=list)
+    gimbal_yaws: list[Row] = field(default_factory=list)
+    battery: list[Row] = field(default_factory=list)
+    armed: list[tuple[float, bool]] = field(default_factory=list)
+    photos: list[RawPhoto] = field(default_factory=list)
+    triggers: list[RawPhoto] = field(default_factory=list)
+    events: list[FlightEvent] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+
+    def note(self, code: str, message: str, value: float | None = None) -> None:
+        """Add a finding that the pilot should know of."""
+        self.findings.append(Finding(Severity.WARNING, code, message, "", value))
+
+    def arm(self, time_s: float, is_armed: bool) -> None:
+        """Note the state of the motors; only changes are kept."""
+        if not self.armed or self.armed[-1][1] != is_armed:
+            self.armed.append((time_s, is_armed))
+            self.events.append(FlightEvent(time_s, "armed" if is_armed else "disarmed", ""))
+
+    def mode(self, time_s: float, name: str) -> None:
+        """Note the flight mode; only changes are kept."""
+        last = next((event.text for event in reversed(self.events) if event.code == "mode"), None)
+        if name != last:
+            self.events.append(FlightEvent(time_s, "mode", name))
+
+
+def camera_angles_rad(w: float, x: float, y: float, z: float) -> tuple[float, float] | None:
+    """Heading (or yaw) and pitch of a camera from its quaternion, which turns its axes to north, east, down.
+
+    The heading is read off the camera's right-hand axis, so that it is known straight down, too; that takes the roll as
+    zero, as gimbals keep it. None where the quaternion is none (zero, NaN, not of length one within 2 %).
+    """
+    norm = math.sqrt(w * w + x * x + y * y + z * z) if all(map(math.isfinite, (w, x, y, z))) else 0.0
+    if abs(norm - 1.0) > 0.02:
+        return None
+    w, x, y, z = w / norm, x / norm, y / norm, z / norm
+    heading = math.atan2(2.0 * (w * z - x * y), 1.0 - 2.0 * (x * x + z * z))
+    pitch = math.asin(max(-1.0, min(1.0, 2.0 * (w * y - x * z))))
+    return heading, pitch
+
+
+def table(rows: list[Row], n_columns: int) -> Floats:
+    """Rows as an array of shape (n, n_columns), in the order of time; rows with a time that is none are left out."""
+    values = np.array(rows, np.float64).reshape(-1, n_columns)
+    values = values[np.isfinite(values[:, 0])]
+    return values[np.argsort(values[:, 0], kind="stable")]

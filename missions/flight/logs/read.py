@@ -1,0 +1,62 @@
+"""Any flight log: what kind it is, by its content, and the flights in it."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+
+from missions.flight.logs.ardupilot import read_dataflash
+from missions.flight.logs.dataflash import looks_binary, looks_like_text
+from missions.flight.logs.flights import HeightSource, LogFlights, flights_of
+from missions.flight.logs.raw import RawLog
+from missions.flight.logs.tlog import looks_like_tlog, read_tlog
+from missions.flight.logs.ulog import looks_like_ulog, read_ulog
+from planning.errors import InputError
+from planning.progress import QUIET, Monitor
+from planning.site import Site
+
+MAX_LOG_BYTES = 512 * 2**20
+"""Larger logs are refused: an hour of ArduPilot's full logging has about 200 MiB."""
+
+HEAD_BYTES = 65536
+
+
+def read_log(path: Path, site: Site, heights: HeightSource = "takeoff", monitor: Monitor = QUIET) -> LogFlights:
+    """Flights of a log: telemetry (.tlog), ArduPilot (.BIN, .log) or PX4 (.ulg), whatever its name.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, too large or no log, belongs to another site, or holds no flight.
+    """
+    return flights_of(_raw_log(_content(path), str(path), monitor), site, str(path), heights)
+
+
+def _content(path: Path) -> bytes:
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise InputError(f"{path}: expected a flight log, found something that is not a regular file")
+        if status.st_size > MAX_LOG_BYTES:
+            raise InputError(
+                f"{path}: the log has more than {MAX_LOG_BYTES // 2**20} MiB; cut out the flight with a log tool"
+            )
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    if not content:
+        raise InputError(f"{path}: the log is empty; copy it from the vehicle again")
+    return content
+
+
+def _raw_log(content: bytes, label: str, monitor: Monitor) -> RawLog:
+    head = content[:HEAD_BYTES]
+    if looks_like_ulog(head):
+        return read_ulog(content, label, monitor)
+    if looks_binary(head) or looks_like_text(head):
+        return read_dataflash(content, monitor)
+    if looks_like_tlog(head):
+        return read_tlog(content, monitor)
+    raise InputError(
+        f"{label}: its content is no flight log; expected telemetry (.tlog), ArduPilot (.BIN, .log) or PX4 (.ulg)"
+    )

@@ -1,0 +1,277 @@
+"""Which photo is of which planned view, and why a view has none.
+
+Photos and views of a sortie are aligned in the order of flight by a dynamic programme: of all ways to pair them in
+order, the one with the largest sum of 1 - e^2, where e is how far a photo is from a view in parts of the gates. What
+was flown out of order (again, later, the other way round) is paired afterwards, by an optimal assignment. A photo is
+only ever paired with the view that it fits best, or nearly so: one that is missing does not shift all that follow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from missions.flight.outcome import Reason
+from missions.flight.record import FlightRecord, TakenPhoto
+from planning.frames import heading_difference_rad
+from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Gates:
+    """How far a photo may be from a view and still be taken for it; not how far it should be.
+
+    Parameters
+    ----------
+    position_m
+        Autopilots that trigger while they fly miss a view by metres (ArduCopter 4.5.6 by 3.7 to 7.2 m).
+    angle_deg
+        Of heading and pitch, each.
+    slack
+        A photo may be paired with another view than the one it fits best, if that fits as well within this part of the
+        gates: GNSS errors blur what is closer together.
+    reached_m
+        An aircraft that came this close was at the view.
+    """
+
+    position_m: float = 5.0
+    angle_deg: float = 20.0
+    slack: float = 0.15
+    reached_m: float = 2.0
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
+                raise ValueError(f"{name}: expected a positive number, got {getattr(self, name)}")
+
+
+DEFAULT_GATES = Gates()
+
+TOO_FAR = 3.0
+"""Photos up to this many gates away are told of as taken too far away; beyond they have nothing to do with a view."""
+
+
+@dataclass(frozen=True, slots=True)
+class PhotoRef:
+    """A photo of a flight: which record, and which of its photos, both from 0."""
+
+    record: int
+    photo: int
+
+
+@dataclass(frozen=True, slots=True)
+class ViewMatch:
+    """A view with its photo, or the reason why there is none; `nearest` is the photo that the reason is about."""
+
+    view_id: str
+    sortie: int
+    reason: Reason
+    photo: PhotoRef | None = None
+    nearest: PhotoRef | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Matching:
+    """Views of a plan against the records of a flight.
+
+    Parameters
+    ----------
+    views
+        In the order of the plan's sorties.
+    sortie_of_record
+        Which sortie each record flew, from 1; 0 for none.
+    extra
+        Photos that belong to no view.
+    """
+
+    views: tuple[ViewMatch, ...]
+    sortie_of_record: tuple[int, ...]
+    extra: tuple[PhotoRef, ...]
+
+
+def match_flight(plan: Plan, records: Sequence[FlightRecord], gates: Gates = DEFAULT_GATES) -> Matching:
+    """Tie every planned view to a photo or a reason."""
+    by_id = {view.id: view for view in plan.viewpoints}
+    sorties = [tuple(by_id[identifier] for identifier in sortie.viewpoint_ids) for sortie in plan.sorties]
+    flown = tuple(_sortie_flown(record, sorties, gates) for record in records)
+    views: list[ViewMatch] = []
+    used: set[PhotoRef] = set()
+    for number, planned in enumerate(sorties, 1):
+        own = [index for index, sortie in enumerate(flown) if sortie == number]
+        found = _match_sortie(number, planned, own, records, gates)
+        used.update(match.photo for match in found if match.photo is not None)
+        views += found
+    every = (PhotoRef(r, p) for r, record in enumerate(records) for p in range(len(record.photos)))
+    return Matching(tuple(views), flown, tuple(photo for photo in every if photo not in used))
+
+
+def _sortie_flown(record: FlightRecord, sorties: Sequence[tuple[Viewpoint, ...]], gates: Gates) -> int:
+    """The sortie that fits a record best, by its photos, or by its track where no photo fits any; 0 for none.
+
+    The record's own number decides between equals only.
+    """
+    by_photos = [float(_aligned(_misfits(views, record.photos, gates))[1]) for views in sorties]
+    scores = by_photos if max(by_photos, default=0.0) > 0.0 else [_share_reached(v, record, gates) for v in sorties]
+    best = max(scores, default=0.0)
+    if best <= 0.0:
+        return 0
+    equals = [number for number, score in enumerate(scores, 1) if score >= best - 1e-9]
+    return record.sortie if record.sortie in equals else equals[0]
+
+
+def _share_reached(views: Sequence[Viewpoint], record: FlightRecord, gates: Gates) -> float:
+    if not views:
+        return 0.0
+    return float(np.mean([away_m <= gates.reached_m for away_m in _closest_m(views, record)]))
+
+
+def _closest_m(views: Sequence[Viewpoint], record: FlightRecord) -> list[float]:
+    """How close a record's track comes to each view, between its samples, too; inf where there is no track."""
+    points = record.track.position_enu_m[np.isfinite(record.track.position_enu_m).all(axis=1)]
+    if len(points) == 0:
+        return [math.inf] * len(views)
+    start, step = points, np.diff(points, axis=0, append=points[-1:])
+    length2 = np.maximum((step**2).sum(axis=1), 1e-12)
+    found = []
+    for view in views:
+        to_view = np.array(view.position_enu_m) - start
+        share = np.clip((to_view * step).sum(axis=1) / length2, 0.0, 1.0)
+        found.append(float(np.linalg.norm(to_view - share[:, None] * step, axis=1).min()))
+    return found
+
+
+def _misfits(views: Sequence[Viewpoint], photos: Sequence[TakenPhoto], gates: Gates) -> Floats:
+    """How far each photo is from each view in parts of the gates, shape (n, m): the largest of position and angles."""
+    planned, taken = viewpoint_arrays(tuple(views)), _photo_arrays(photos)
+    position = np.linalg.norm(planned.positions_enu_m[:, None] - taken.positions_enu_m[None], axis=2)
+    return np.asarray(np.maximum(position / gates.position_m, _angles_off(planned, taken, gates)))
+
+
+def _angles_off(planned: ViewpointArrays, taken: ViewpointArrays, gates: Gates) -> Floats:
+    """The larger of heading and pitch error in parts of the gate, shape (n, m); angles that are not known fit."""
+    heading = np.abs(heading_difference_rad(planned.heading_rad[:, None], taken.heading_rad[None]))
+    # Looking steeply down a heading hardly matters: what counts is how far the picture turns and moves.
+    heading = heading * np.cos(planned.pitch_rad)[:, None]
+    pitch = np.abs(planned.pitch_rad[:, None] - taken.pitch_rad[None])
+    off: Floats = np.nan_to_num(np.fmax(heading, pitch)) / math.radians(gates.angle_deg)
+    return off
+
+
+def _photo_arrays(photos: Sequence[TakenPhoto]) -> ViewpointArrays:
+    """Poses of photos; NaN for angles that are not known."""
+    angles = np.array([(photo.heading_deg, photo.gimbal_pitch_deg) for photo in photos], np.float64).reshape(-1, 2)
+    positions = np.array([photo.position_enu_m for photo in photos], np.float64).reshape(-1, 3)
+    return ViewpointArrays(positions, np.radians(angles[:, 0]), np.radians(angles[:, 1]))
+
+
+def _gains(misfits: Floats, gates: Gates) -> Floats:
+    """What pairing each view and photo is worth: 1 - e^2, and nothing where they are not to be paired."""
+    best = misfits.min(axis=0, initial=np.inf)
+    fits = (misfits <= 1.0) & (misfits <= best + gates.slack)
+    return np.where(fits, 1.0 - np.minimum(misfits, 1.0) ** 2, 0.0)
+
+
+def _aligned(misfits: Floats, gates: Gates = DEFAULT_GATES) -> tuple[list[tuple[int, int]], float]:
+    """The best pairs of view and photo in order, and their worth.
+
+    `best[i, j]` is the worth of the first i views and j photos: the larger of leaving out view i, leaving out photo j,
+    and pairing them (Needleman and Wunsch, 1970, with gaps that cost nothing).
+    """
+    gains = _gains(misfits, gates)
+    n, m = gains.shape
+    best = np.zeros((n + 1, m + 1))
+    for i in range(n):
+        with_view = np.maximum(best[i, 1:], best[i, :-1] + gains[i])
+        best[i + 1, 1:] = np.maximum.accumulate(with_view)
+    pairs = []
+    i, j = n, m
+    while i > 0 and j > 0:
+        if best[i, j] == best[i - 1, j]:
+            i -= 1
+        elif best[i, j] == best[i, j - 1]:
+            j -= 1
+        else:
+            i, j = i - 1, j - 1
+            pairs.append((i, j))
+    return pairs[::-1], float(best[n, m])
+
+
+def _match_sortie(
+    number: int, views: Sequence[Viewpoint], own: list[int], records: Sequence[FlightRecord], gates: Gates
+) -> list[ViewMatch]:
+    """Matches of one sortie's views with the photos of the records that flew it."""
+    refs = [PhotoRef(index, photo) for index in own for photo in range(len(records[index].photos))]
+    photos = [records[ref.record].photos[ref.photo] for ref in refs]
+    misfits = _misfits(views, photos, gates)
+    photo_of = dict(_aligned(misfits, gates)[0])
+    photo_of.update(_out_of_order(misfits, photo_of, gates))
+    found = {view: ViewMatch(views[view].id, number, Reason.TAKEN, refs[photo]) for view, photo in photo_of.items()}
+    missing = [view for view in range(len(views)) if view not in found]
+    if missing:
+        left = np.flatnonzero(misfits.min(axis=0, initial=np.inf) > 1.0).tolist()  # the others are of some view
+        reasons = _reasons(views, missing, [records[index] for index in own], set(photo_of), gates)
+        for view in missing:
+            near = _near_miss(views[view], [photos[photo] for photo in left], gates)
+            reason = reasons[view] if near is None else near[0]
+            nearest = None if near is None else refs[left[near[1]]]
+            found[view] = ViewMatch(views[view].id, number, reason, None, nearest)
+    return [found[view] for view in range(len(views))]
+
+
+def _out_of_order(misfits: Floats, photo_of: dict[int, int], gates: Gates) -> dict[int, int]:
+    """Pairs of what is left after pairing in order."""
+    from scipy.optimize import linear_sum_assignment
+
+    views = [view for view in range(misfits.shape[0]) if view not in photo_of]
+    photos = sorted(set(range(misfits.shape[1])) - set(photo_of.values()))
+    if not views or not photos:
+        return {}
+    gains = _gains(misfits, gates)[np.ix_(views, photos)]
+    rows, columns = linear_sum_assignment(gains, maximize=True)
+    return {views[row]: photos[column] for row, column in zip(rows, columns, strict=True) if gains[row, column] > 0.0}
+
+
+def _near_miss(view: Viewpoint, photos: Sequence[TakenPhoto], gates: Gates) -> tuple[Reason, int] | None:
+    """The photo that was probably meant for a view but is not of it, and what is wrong with it."""
+    if not photos:
+        return None
+    planned, taken = viewpoint_arrays((view,)), _photo_arrays(photos)
+    away = np.linalg.norm(taken.positions_enu_m - planned.positions_enu_m, axis=1) / gates.position_m
+    turned = _angles_off(planned, taken, gates)[0]
+    at_place = np.flatnonzero((away <= 1.0) & (turned > 1.0))
+    if len(at_place):
+        return Reason.WRONG_ANGLE, int(at_place[np.argmin(turned[at_place])])
+    aimed = np.flatnonzero((away > 1.0) & (away <= TOO_FAR) & (turned <= 1.0))
+    if len(aimed):
+        return Reason.TOO_FAR, int(aimed[np.argmin(away[aimed])])
+    return None
+
+
+def _reasons(
+    views: Sequence[Viewpoint],
+    missing: list[int],
+    records: Sequence[FlightRecord],
+    taken: set[int],
+    gates: Gates,
+) -> dict[int, Reason]:
+    """Why views without any photo near them have none."""
+    if not records:
+        return dict.fromkeys(missing, Reason.NOT_FLOWN)
+    closest = [min(away) for away in zip(*(_closest_m(views, record) for record in records), strict=True)]
+    if not any(map(math.isfinite, closest)):
+        return dict.fromkeys(missing, Reason.NO_TRACK)
+    reached = {view for view in missing if closest[view] <= gates.reached_m}
+    last = max(taken | reached, default=-1)
+    reasons = {}
+    for view in missing:
+        if view in reached:
+            reasons[view] = Reason.NO_PHOTO
+        else:
+            reasons[view] = Reason.FLIGHT_ENDED if view > last else Reason.NOT_REACHED
+    return reasons

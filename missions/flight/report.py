@@ -1,0 +1,265 @@
+"""A flight compared with its plan: every view, every sortie, the coverage, and what breaks a limit.
+
+Coverage is counted again by the definition, for the poses at which photos were really taken. Distances are those to
+panels, building and obstacles, exact along the whole track between its samples.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from missions.flight.matching import DEFAULT_GATES, Gates, Matching, PhotoRef, ViewMatch, match_flight
+from missions.flight.outcome import FlightReport, SortieOutcome, Summary, ViewOutcome
+from missions.flight.record import FlightRecord, TakenPhoto, Track
+from missions.flight.report_rules import DEFAULT_LIMITS, Limits, flight_findings
+from planning.checks.case import Case
+from planning.checks.measures import pose_of
+from planning.evaluate import Sight, section_counts, sights
+from planning.frames import Vec3, wrap_heading_deg
+from planning.geometry.solids import Solids
+from planning.plan import Plan, Viewpoint
+from planning.progress import QUIET, Monitor
+from planning.site import SiteModel
+
+Floats = NDArray[np.float64]
+
+GAP_S = 2.0
+"""Where a track says nothing for longer, no straight line is drawn between its samples."""
+
+TURN_WINDOW_S = 0.5
+"""Rates of turn are differences over this time: shorter ones would be noise of the log's rounding."""
+
+
+def report_flight(
+    plan: Plan,
+    site_model: SiteModel,
+    records: Sequence[FlightRecord],
+    limits: Limits = DEFAULT_LIMITS,
+    gates: Gates = DEFAULT_GATES,
+    monitor: Monitor = QUIET,
+) -> FlightReport:
+    """Compare a flight with its plan."""
+    monitor.report("comparing the flight", 0, 4)
+    case = Case.of(plan, site_model)
+    monitor.report("comparing the flight", 1, 4)
+    return report_case(case, records, limits, gates, monitor)
+
+
+def report_case(
+    case: Case,
+    records: Sequence[FlightRecord],
+    limits: Limits = DEFAULT_LIMITS,
+    gates: Gates = DEFAULT_GATES,
+    monitor: Monitor = QUIET,
+) -> FlightReport:
+    """Compare a flight with a plan that is measured already."""
+    matching = match_flight(case.plan, records, gates)
+    shots = _shots(case, records, matching)
+    monitor.report("comparing the flight", 2, 4)
+    by_id = {view.id: view for view in case.plan.viewpoints}
+    views = tuple(_view_outcome(case, by_id[m.view_id], m, records, shots, limits) for m in matching.views)
+    monitor.report("comparing the flight", 3, 4)
+    sorties = tuple(_sortie_outcome(case, matching, index, record) for index, record in enumerate(records))
+    summary = _summary(case, matching, records, sorties, shots)
+    findings = flight_findings(case, records, summary, views, sorties, limits)
+    return FlightReport(summary, views, sorties, findings)
+
+
+@dataclass(frozen=True, slots=True)
+class _Shot:
+    """What a photo shows, and how far from everything it was taken."""
+
+    sight: Sight
+    distance_m: float
+
+
+def _shots(case: Case, records: Sequence[FlightRecord], matching: Matching) -> dict[PhotoRef, _Shot]:
+    """Every photo whose direction is known; that of a matched one is its view's where the source does not say it."""
+    by_id = {view.id: view for view in case.plan.viewpoints}
+    view_of = {match.photo: by_id[match.view_id] for match in matching.views if match.photo is not None}
+    poses: dict[PhotoRef, Viewpoint] = {}
+    for record_index, record in enumerate(records):
+        for photo_index, photo in enumerate(record.photos):
+            ref = PhotoRef(record_index, photo_index)
+            pose = _pose(photo, view_of.get(ref))
+            if pose is not None:
+                poses[ref] = pose
+    if not poses:
+        return {}
+    seen = sights(case.model, tuple(poses.values()))
+    distances = case.space.solids.clearance_m(np.array([pose.position_enu_m for pose in poses.values()]))
+    return {ref: _Shot(sight, float(m)) for ref, sight, m in zip(poses, seen, distances, strict=True)}
+
+
+def _pose(photo: TakenPhoto, view: Viewpoint | None) -> Viewpoint | None:
+    heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
+    if view is not None:
+        heading_deg = view.heading_deg if heading_deg is None else heading_deg
+        pitch_deg = view.gimbal_pitch_deg if pitch_deg is None else pitch_deg
+    if heading_deg is None or pitch_deg is None:
+        return None
+    return Viewpoint("photo", photo.position_enu_m, wrap_heading_deg(heading_deg), min(90.0, max(-180.0, pitch_deg)))
+
+
+def _view_outcome(
+    case: Case,
+    view: Viewpoint,
+    match: ViewMatch,
+    records: Sequence[FlightRecord],
+    shots: Mapping[PhotoRef, _Shot],
+    limits: Limits,
+) -> ViewOutcome:
+    n_planned = len(case.measures.seen[pose_of(view)].elements)
+    about = match.photo or match.nearest
+    if about is None:
+        return ViewOutcome(match.view_id, match.sortie, match.reason, n_planned=n_planned)
+    record = records[about.record]
+    photo, shot = record.photos[about.photo], shots.get(about)
+    speed_m_s = photo.speed_m_s if photo.speed_m_s is not None else _speed_m_s(record.track, photo.time_s)
+    return ViewOutcome(
+        view_id=match.view_id,
+        sortie=match.sortie,
+        reason=match.reason,
+        record=about.record,
+        photo=about.photo,
+        n_planned=n_planned,
+        n_flown=len(shot.sight.elements) if shot is not None and match.photo is not None else 0,
+        position_error_m=math.dist(photo.position_enu_m, view.position_enu_m),
+        heading_error_deg=_turned_deg(photo.heading_deg, view.heading_deg),
+        gimbal_pitch_error_deg=_turned_deg(photo.gimbal_pitch_deg, view.gimbal_pitch_deg),
+        speed_m_s=speed_m_s,
+        blur_px=None if shot is None else _blur_px(case, record.track, photo.time_s, speed_m_s, shot, limits),
+        distance_m=None if shot is None else shot.distance_m,
+    )
+
+
+def _turned_deg(flown_deg: float | None, planned_deg: float) -> float | None:
+    return None if flown_deg is None else wrap_heading_deg(flown_deg - planned_deg)
+
+
+def _speed_m_s(track: Track, time_s: float) -> float | None:
+    speeds = np.linalg.norm(track.velocity_enu_m_s, axis=1)
+    known = np.isfinite(speeds)
+    return float(np.interp(time_s, track.time_s[known], speeds[known])) if known.any() else None
+
+
+def _blur_px(
+    case: Case, track: Track, time_s: float, speed_m_s: float | None, shot: _Shot, limits: Limits
+) -> float | None:
+    """Smear during the exposure, in pixels: v t / GSD + w t / (angle of a pixel).
+
+    An upper bound: all of the speed is taken as across the line of sight, at the distance of the nearest panel in the
+    picture (of the nearest thing where there is none).
+    """
+    if speed_m_s is None:
+        return None
+    camera = case.plan.camera
+    distance_m = max(shot.sight.nearest_m if math.isfinite(shot.sight.nearest_m) else abs(shot.distance_m), 0.1)
+    turn_rad_s = math.hypot(
+        _rate(track.time_s, track.gimbal_heading_rad, time_s), _rate(track.time_s, track.gimbal_pitch_rad, time_s)
+    )
+    return limits.exposure_s * (speed_m_s / camera.gsd_m(distance_m) + turn_rad_s / camera.pixel_angle_rad)
+
+
+def _rate(time_s: Floats, angle_rad: Floats, when_s: float) -> float:
+    """How fast an angle changes around a time, rad/s; 0 where it is not known."""
+    known = np.isfinite(angle_rad)
+    if not known.any():
+        return 0.0
+    ends = np.array([when_s - TURN_WINDOW_S / 2.0, when_s + TURN_WINDOW_S / 2.0])
+    before, after = np.interp(ends, time_s[known], np.unwrap(angle_rad[known]))
+    return abs(float(after - before)) / TURN_WINDOW_S
+
+
+def _sortie_outcome(case: Case, matching: Matching, index: int, record: FlightRecord) -> SortieOutcome:
+    number = matching.sortie_of_record[index]
+    of_sortie = [match for match in matching.views if match.sortie == number]
+    least = closest(case.space.solids, record.track)
+    motors_s = case.plan.sorties[number - 1].duration_s if number else None
+    return SortieOutcome(
+        record=index,
+        sortie=number,
+        n_views=len(of_sortie),
+        n_taken=sum(match.photo is not None and match.photo.record == index for match in of_sortie),
+        n_extra=sum(photo.record == index for photo in matching.extra),
+        duration_predicted_s=None if motors_s is None else max(0.0, motors_s - case.plan.rules.takeoff_landing_s),
+        duration_flown_s=record.duration_s,
+        battery_predicted=None if motors_s is None else motors_s / case.plan.aircraft.endurance_s,
+        battery_used=_battery_used(record.track),
+        least_distance_m=None if least is None else least.distance_m,
+        least_distance_time_s=None if least is None else least.time_s,
+        least_distance_enu_m=None if least is None else least.position_enu_m,
+    )
+
+
+def _battery_used(track: Track) -> float | None:
+    known = track.battery[np.isfinite(track.battery)]
+    return float(known[0] - known[-1]) if len(known) > 1 else None
+
+
+class Closest(NamedTuple):
+    """Where a track comes closest to solids: distance (negative inside), time and place of the sample before."""
+
+    distance_m: float
+    time_s: float
+    position_enu_m: Vec3
+
+
+def closest(solids: Solids, track: Track) -> Closest | None:
+    """Where a track comes closest to solids; None without any position.
+
+    Between samples the aircraft is taken to fly straight, but not over gaps.
+    """
+    known = np.isfinite(track.position_enu_m).all(axis=1)
+    points, time_s = track.position_enu_m[known], track.time_s[known]
+    if len(points) == 0 or len(solids.part) == 0:
+        return None
+    at_points = solids.clearance_m(points)
+    sample = int(np.argmin(at_points))
+    distance_m = float(at_points[sample])
+    length_m = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    # A leg comes no closer than its ends less the way that it has for coming closer; most cannot be the nearest.
+    at_least = (at_points[:-1] + at_points[1:] - length_m) / 2.0
+    legs = np.flatnonzero((np.diff(time_s) <= GAP_S) & (at_least < distance_m))
+    if len(legs) and distance_m > 0.0:
+        along = solids.segment_distances_m(points[legs], points[legs + 1], distance_m)
+        leg = int(np.argmin(along))
+        if along[leg] < distance_m:
+            distance_m, sample = float(along[leg]), int(legs[leg])
+    east, north, up = points[sample].tolist()
+    return Closest(distance_m, float(time_s[sample]), (east, north, up))
+
+
+def _summary(
+    case: Case,
+    matching: Matching,
+    records: Sequence[FlightRecord],
+    sorties: Sequence[SortieOutcome],
+    shots: dict[PhotoRef, _Shot],
+) -> Summary:
+    planned = case.measures.counts > 0
+    flown = section_counts(case.model, [shot.sight for shot in shots.values()]) > 0
+    is_lost = np.asarray(planned.any(axis=1)) & ~np.asarray(flown.any(axis=1))
+    flights = [outcome for outcome in sorties if outcome.sortie]
+    durations = [(outcome.duration_predicted_s, outcome.duration_flown_s) for outcome in flights]
+    distances = [outcome.least_distance_m for outcome in sorties if outcome.least_distance_m is not None]
+    flown_s = [flown_s for _, flown_s in durations if flown_s is not None]
+    by_sortie = {outcome.sortie: outcome.duration_predicted_s or 0.0 for outcome in flights}
+    return Summary(
+        n_views=len(matching.views),
+        n_taken=sum(match.photo is not None for match in matching.views),
+        n_photos=sum(len(record.photos) for record in records),
+        covered_planned=int(planned.sum()),
+        covered=int(flown.sum()),
+        total=int(planned.size),
+        lost_panels=tuple(p.id for p, lost in zip(case.site_model.site.panels, is_lost, strict=True) if lost),
+        duration_predicted_s=sum(by_sortie.values()) if flights else None,
+        duration_flown_s=sum(flown_s) if flights and len(flown_s) == len(flights) else None,
+        least_distance_m=min(distances, default=None),
+    )

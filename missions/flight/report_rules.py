@@ -1,0 +1,219 @@
+"""Rules of the flight report: what was measured on a flight, against its limits; all findings at once."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from missions.flight.flight_file import Flight, plan_sha256
+from missions.flight.outcome import Reason, SortieOutcome, Summary, ViewOutcome
+from missions.flight.record import FlightRecord
+from planning.checks.case import Case, judge
+from planning.findings import Finding, Severity
+from planning.plan import Plan
+from planning.site import SiteModel
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a flight is judged by.
+
+    Parameters
+    ----------
+    position_m, heading_deg, gimbal_pitch_deg
+        Largest errors at the shutter.
+    coverage
+        Least part of the planned sections to be covered.
+    duration
+        Part by which a duration may differ from the predicted one.
+    blur_px
+        Largest smear; more than a pixel takes sharpness that the camera has.
+    exposure_s
+        Shutter time that blur is computed with: 1/500 s, a bright day.
+    """
+
+    position_m: float = 0.5
+    heading_deg: float = 3.0
+    gimbal_pitch_deg: float = 2.0
+    coverage: float = 0.97
+    duration: float = 0.10
+    blur_px: float = 1.0
+    exposure_s: float = 0.002
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
+                raise ValueError(f"{name}: expected a positive number, got {getattr(self, name)}")
+
+
+DEFAULT_LIMITS = Limits()
+
+
+REASONS = {
+    Reason.NOT_FLOWN: "their sortie was not flown",
+    Reason.NOT_REACHED: "not reached",
+    Reason.NO_PHOTO: "reached, but the camera did not answer",
+    Reason.TOO_FAR: "photo taken too far away",
+    Reason.WRONG_ANGLE: "photo looks elsewhere",
+    Reason.FLIGHT_ENDED: "the flight ended before",
+    Reason.NO_TRACK: "the record does not say where the aircraft was",
+}
+
+
+def flight_findings(
+    case: Case,
+    records: Sequence[FlightRecord],
+    summary: Summary,
+    views: Sequence[ViewOutcome],
+    sorties: Sequence[SortieOutcome],
+    limits: Limits,
+) -> tuple[Finding, ...]:
+    """All findings of all rules."""
+    return (
+        *_sorties_known(records, sorties),
+        *_views_taken(views, sorties),
+        *_poses(views, limits),
+        *_coverage(summary, limits),
+        *_distances(case, sorties),
+        *_durations(sorties, limits),
+        *_batteries(case, records, sorties),
+    )
+
+
+def belonging(flight: Flight, plan: Plan, site_model: SiteModel) -> tuple[Finding, ...]:
+    """Whether a flight was flown at this site with this plan."""
+    site = site_model.site
+    if flight.site != site.name or flight.origin != site.origin:
+        text = f"the flight was at site '{flight.site}', this is '{site.name}'; take its own site file"
+        return (Finding(Severity.ERROR, "flight-site", text),)
+    found = []
+    if flight.site_sha256 and site_model.sha256 and flight.site_sha256 != site_model.sha256:
+        text = "the site file has changed since the flight; distances and coverage are those of the site as it is now"
+        found.append(Finding(Severity.WARNING, "flight-site", text))
+    if flight.plan_sha256 and flight.plan_sha256 != plan_sha256(plan):
+        text = "the flight was flown with another plan, or this one has changed since; views match as far as they fit"
+        found.append(Finding(Severity.WARNING, "flight-plan", text))
+    return tuple(found) or (Finding(Severity.OK, "flight-site", "the flight belongs to this site and plan"),)
+
+
+def _sorties_known(records: Sequence[FlightRecord], sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
+    if not records:
+        yield Finding(Severity.ERROR, "no-flight", "there is no record of any flight")
+    for record, outcome in zip(records, sorties, strict=True):
+        place = _place(outcome)
+        if outcome.sortie == 0:
+            text = "this flight is none of the plan's sorties: no photo and no view of them is near its track"
+            yield Finding(Severity.WARNING, "sortie-unknown", text, place)
+        elif record.sortie not in (0, outcome.sortie):
+            text = f"recorded as sortie {record.sortie}, but it flew sortie {outcome.sortie}; it counts as what it flew"
+            yield Finding(Severity.WARNING, "sortie-swapped", text, place)
+
+
+def _place(outcome: SortieOutcome) -> str:
+    return f"sortie {outcome.sortie}" if outcome.sortie else f"record {outcome.record + 1}"
+
+
+def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
+    missing = [view for view in views if view.reason is not Reason.TAKEN]
+    n_taken = len(views) - len(missing)
+    if missing:
+        counts = Counter(view.reason for view in missing)
+        why = ", ".join(f"{n} {REASONS[reason]}" for reason, n in counts.most_common())
+        text = f"{len(missing)} of {len(views)} views have no photo: {why}; plan a top-up flight for them"
+        first = missing[0].view_id
+        yield Finding(Severity.ERROR, "views-taken", text, first, float(n_taken), float(len(views)), "views")
+    else:
+        text = f"all {len(views)} views have a photo"
+        yield Finding(Severity.OK, "views-taken", text, "", float(n_taken), float(len(views)), "views")
+    n_extra = sum(outcome.n_extra for outcome in sorties)
+    if n_extra:
+        text = f"{n_extra} photos belong to no view, or to one that has a better photo; they count for coverage, too"
+        yield Finding(Severity.NOTE, "photos-extra", text, "", float(n_extra), 0.0, "photos")
+
+
+def _poses(views: Sequence[ViewOutcome], limits: Limits) -> Iterator[Finding]:
+    taken = [view for view in views if view.reason is Reason.TAKEN]
+    rules = (
+        ("position", "position_error_m", limits.position_m, "m", "position error at the shutter", Severity.ERROR),
+        ("heading", "heading_error_deg", limits.heading_deg, "deg", "heading error at the shutter", Severity.ERROR),
+        ("gimbal", "gimbal_pitch_error_deg", limits.gimbal_pitch_deg, "deg", "gimbal pitch error", Severity.ERROR),
+        ("blur", "blur_px", limits.blur_px, "px", "motion blur", Severity.WARNING),
+    )
+    for code, field, limit, unit, what, severity in rules:
+        known = [(abs(getattr(view, field)), view.view_id) for view in taken if getattr(view, field) is not None]
+        if len(known) < len(taken):
+            n = len(taken) - len(known)
+            as_planned = "" if code in ("position", "blur") else "; coverage is counted as if they looked as planned"
+            text = f"the {what} of {n} of {len(taken)} photos is not known{as_planned}"
+            yield Finding(Severity.WARNING, f"{code}-unknown", text, "", float(n), 0.0, "photos")
+        if not known:
+            continue
+        worst, where = max(known)
+        n_over = sum(value > limit for value, _ in known)
+        advice = f"{n_over} of {len(known)} photos are over it; hover longer, or fly in less wind"
+        yield judge(worst <= limit, code, f"largest {what}", worst, limit, unit, where, advice, severity)
+
+
+def _coverage(summary: Summary, limits: Limits) -> Iterator[Finding]:
+    if summary.covered_planned:
+        share = summary.covered / summary.covered_planned
+        subject = f"planned sections covered, {summary.covered} of {summary.covered_planned}"
+        advice = "plan a top-up flight"
+        yield judge(
+            share >= limits.coverage, "coverage", subject, 100.0 * share, 100.0 * limits.coverage, "%", "", advice,
+            least=True,
+        )  # fmt: skip
+    if summary.lost_panels:
+        n = len(summary.lost_panels)
+        text = f"{n} panels of the plan are on no photo, the first is '{summary.lost_panels[0]}'"
+        yield Finding(Severity.WARNING, "panels-lost", text, summary.lost_panels[0], float(n), 0.0, "panels")
+
+
+def _distances(case: Case, sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
+    """The minimum distance; where it was missed by no more than positions may err, it is a warning only."""
+    limit = case.plan.constraints.min_distance_m
+    for outcome in sorties:
+        if outcome.least_distance_m is None or outcome.least_distance_time_s is None:
+            yield Finding(Severity.WARNING, "distance-unknown", "the distance kept is not known", _place(outcome))
+            continue
+        short_m = limit - outcome.least_distance_m
+        severity = Severity.ERROR if short_m > DISTANCE_TOLERANCE_M else Severity.WARNING
+        subject = f"smallest distance flown, {outcome.least_distance_time_s:.1f} s after the start"
+        advice = "see where, and keep further away"
+        judged = subject, outcome.least_distance_m, limit, "m", _place(outcome), advice, severity
+        yield judge(short_m <= 0.0, "distance", *judged, least=True)
+
+
+DISTANCE_TOLERANCE_M = 0.5
+"""Plans go right up to the minimum distance, and positions may be off by this much at views."""
+
+
+def _durations(sorties: Sequence[SortieOutcome], limits: Limits) -> Iterator[Finding]:
+    """Predicted durations, where a sortie was flown in full."""
+    for outcome in sorties:
+        predicted, flown = outcome.duration_predicted_s, outcome.duration_flown_s
+        if not predicted or flown is None or outcome.n_taken < outcome.n_views:
+            continue
+        off = abs(flown / predicted - 1.0)
+        subject = f"difference between the {flown:.0f} s flown and the {predicted:.0f} s predicted"
+        advice = "check the speeds and hover times of the aircraft's profile"
+        judged = subject, 100.0 * off, 100.0 * limits.duration, "%", _place(outcome), advice, Severity.WARNING
+        yield judge(off <= limits.duration, "duration", *judged)
+
+
+def _batteries(case: Case, records: Sequence[FlightRecord], sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
+    """The reserve at landing."""
+    reserve = case.plan.rules.battery_reserve
+    for record, outcome in zip(records, sorties, strict=True):
+        known = record.track.battery[record.track.battery >= 0.0]
+        if outcome.battery_used is None or len(known) == 0:
+            continue
+        left = float(known[-1])
+        subject = f"battery left at the end, {outcome.battery_used:.0%} used"
+        if outcome.battery_predicted is not None:
+            subject += f" where {outcome.battery_predicted:.0%} was predicted"
+        advice = "lower the endurance of the aircraft's profile"
+        judged = subject, 100.0 * left, 100.0 * reserve, "%", _place(outcome), advice
+        yield judge(left >= reserve, "battery", *judged, Severity.WARNING, least=True)

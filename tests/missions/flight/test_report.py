@@ -1,0 +1,306 @@
+"""The flight report: what was flown against what was planned, rule by rule."""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from missions.flight.flight_file import flight_of
+from missions.flight.outcome import FlightReport, Reason
+from missions.flight.record import FlightRecord, TakenPhoto, Track
+from missions.flight.report import Limits, closest, report_case
+from missions.flight.report_rules import belonging
+from missions.flight.report_text import report_text, report_to_json
+from planning.checks.case import Case
+from planning.findings import Finding, Severity
+from planning.frames import aim
+from planning.plan import Constraints, Plan, Viewpoint
+from planning.scenes import ORIGIN
+from planning.site import SiteModel
+from tests.missions.flight.flights import cut_at, flown_as_planned, moved, with_durations, with_photos
+from tests.missions.plans import make_plan
+from tests.planning.plan_cases import dense_points, distances, kiosk, seen_by_contract, solid_triangles
+
+Records = tuple[FlightRecord, ...]
+
+
+@functools.cache
+def site() -> SiteModel:
+    return replace(kiosk(), sha256="0" * 64)
+
+
+@functools.cache
+def plan() -> Plan:
+    """Twelve views in front of the southern side."""
+    views = []
+    for i in range(12):
+        position = (-11.0 + 2.0 * i, -9.0 - 1.3 * (i % 4), 5.0 + 2.0 * (i % 3))
+        heading, pitch = aim(np.array([-4.0 + 0.7 * i, 0.0, 1.5 + 3.0 * (i % 3)]) - np.array(position))
+        views.append(Viewpoint(f"v{i:04d}", position, float(np.degrees(heading)), float(np.degrees(pitch))))
+    made = make_plan([(views, {})], ORIGIN, home=site().site.home_enu_m)
+    constraints = Constraints(min_distance_m=5.0, occlusion="on")
+    return with_durations(replace(made, site="kiosk", site_sha256=site().sha256, constraints=constraints))
+
+
+@functools.cache
+def case() -> Case:
+    return Case.of(plan(), site())
+
+
+@functools.cache
+def flown() -> Records:
+    return flown_as_planned(plan())
+
+
+def n_seen(views: tuple[Viewpoint, ...]) -> int:
+    """Sections that views cover, by the contract's words."""
+    return len(seen_by_contract(site(), plan().camera, views, 30.0, occlusion=True))
+
+
+def report(records: Records, limits: Limits | None = None) -> FlightReport:
+    return report_case(case(), records, limits or Limits())
+
+
+def problems(found: tuple[Finding, ...]) -> dict[str, Finding]:
+    """Findings that are not OK, by code."""
+    return {finding.code: finding for finding in found if finding.severity is not Severity.OK}
+
+
+def photos(change: Callable[[tuple[TakenPhoto, ...]], tuple[TakenPhoto, ...]]) -> Records:
+    """The flight with other photos in its first record."""
+    return (with_photos(flown()[0], change), *flown()[1:])
+
+
+def tracked(**changes: np.ndarray) -> Records:
+    """The flight with other columns in its first track."""
+    track = flown()[0].track
+    columns = {name: getattr(track, name) for name in Track.__slots__}
+    return (replace(flown()[0], track=Track(**{**columns, **changes})), *flown()[1:])
+
+
+def n_samples() -> int:
+    """Samples of the first track."""
+    return len(flown()[0].track.time_s)
+
+
+def lasting(times: float) -> FlightRecord:
+    """The first record, so many times as long."""
+    return replace(flown()[0], duration_s=times * (flown()[0].duration_s or 0.0))
+
+
+def at(index: int, change: Callable[[TakenPhoto], TakenPhoto]) -> Records:
+    """The flight with one photo changed."""
+    return photos(lambda p: (*p[:index], change(p[index]), *p[index + 1 :]))
+
+
+def test_a_flight_as_planned_breaks_no_rule() -> None:
+    made = report(flown())
+    assert problems(made.findings) == {}
+    assert made.summary.covered == made.summary.covered_planned == n_seen(plan().viewpoints)
+    assert (made.summary.n_taken, made.summary.n_photos) == (12, 12)
+    assert made.summary.lost_panels == ()
+    assert made.summary.duration_flown_s == pytest.approx(plan().duration_s - 30.0)
+    assert {finding.code for finding in made.findings} >= {"position", "heading", "gimbal", "coverage", "distance"}
+    for view in made.views:
+        assert view.position_error_m == view.heading_error_deg == view.gimbal_pitch_error_deg == 0.0
+        assert view.n_flown == view.n_planned
+        assert view.blur_px == pytest.approx(0.0, abs=1e-9)
+
+
+def test_coverage_is_that_of_the_poses_really_flown() -> None:
+    records = photos(lambda taken: tuple(moved(p, (0.4, -1.0, 0.7), 6.0) for p in taken[2:]))
+    views = [
+        Viewpoint("p", photo.position_enu_m, photo.heading_deg or 0.0, photo.gimbal_pitch_deg or 0.0)
+        for record in records
+        for photo in record.photos
+    ]
+    expected = n_seen(tuple(views))
+    summary = report(records).summary
+    assert summary.covered == expected
+    assert summary.covered < summary.covered_planned
+
+
+@pytest.mark.parametrize(
+    ("records", "code", "severity", "value"),
+    [
+        (lambda: photos(lambda p: p[:3] + p[4:]), "views-taken", Severity.ERROR, 11.0),
+        (lambda: at(2, lambda p: moved(p, (0.6, 0.0, 0.0))), "position", Severity.ERROR, 0.6),
+        (lambda: at(2, lambda p: moved(p, (0.0, 0.0, 0.0), -3.5)), "heading", Severity.ERROR, 3.5),
+        (lambda: at(2, lambda p: replace(p, gimbal_pitch_deg=p.gimbal_pitch_deg - 2.5)), "gimbal", Severity.ERROR, 2.5),
+        (lambda: at(2, lambda p: replace(p, speed_m_s=30.0)), "blur", Severity.WARNING, None),
+        (lambda: at(2, lambda p: replace(p, heading_deg=None)), "heading-unknown", Severity.WARNING, 1.0),
+        (lambda: photos(lambda p: p[:6]), "coverage", Severity.ERROR, None),
+        (lambda: photos(lambda p: (p[0], *p)), "photos-extra", Severity.NOTE, 1.0),
+        (lambda: (lasting(1.2),), "duration", Severity.WARNING, 20.0),
+        (lambda: tracked(battery=np.linspace(1.0, 0.2, n_samples())), "battery", Severity.WARNING, 20.0),
+        (lambda: (replace(flown()[0], sortie=7),), "sortie-swapped", Severity.WARNING, None),
+        (lambda: (), "no-flight", Severity.ERROR, None),
+    ],
+)  # fmt: skip
+def test_what_breaks_a_limit_is_found(
+    records: Callable[[], Records], code: str, severity: Severity, value: float | None
+) -> None:
+    found = problems(report(records()).findings)
+    assert found[code].severity is severity
+    if value is not None:
+        assert found[code].value == pytest.approx(value)
+
+
+def test_one_broken_limit_breaks_no_other() -> None:
+    found = problems(report(at(2, lambda p: moved(p, (0.0, 0.0, 0.0), 3.5))).findings)
+    assert set(found) <= {"heading", "coverage"}
+
+
+def test_the_distance_kept_is_found_between_samples_of_the_track() -> None:
+    triangles = solid_triangles(site())
+    path = np.array([[-30.0, -20.0, 12.0], [30.0, -3.0, 6.0], [30.0, 30.0, 6.0]])
+    track = sparse_track(path, np.array([0.0, 1.9, 3.8]))
+    least = closest(case().space.solids, track)
+    assert least is not None
+    expected = distances(dense_points(path, 0.02), triangles).min()
+    assert expected - 0.02 <= least[0] <= expected
+    assert least[0] < distances(path, triangles).min() - 1.0
+    assert least[1] == 0.0
+
+
+def sparse_track(points: np.ndarray, time_s: np.ndarray) -> Track:
+    """A track of positions only."""
+    n = len(points)
+    unknown = np.full(n, np.nan)
+    return Track(time_s, points, np.full((n, 3), np.nan), unknown, unknown, unknown, unknown)
+
+
+def test_no_straight_line_is_drawn_over_a_gap() -> None:
+    through = np.array([[-30.0, 4.0, 5.0], [30.0, 4.0, 5.0]])
+    least = closest(case().space.solids, sparse_track(through, np.array([0.0, 1.0])))
+    assert least == (0.0, 0.0, (-30.0, 4.0, 5.0))
+    over_gap = closest(case().space.solids, sparse_track(through, np.array([0.0, 60.0])))
+    assert over_gap is not None
+    assert over_gap[0] > 10.0
+
+
+def test_inside_a_solid_the_distance_is_negative() -> None:
+    least = closest(case().space.solids, sparse_track(np.array([[0.0, 4.0, 5.0]]), np.zeros(1)))
+    assert least is not None
+    assert least[0] == pytest.approx(-4.0)
+
+
+@pytest.mark.parametrize(("short_m", "severity"), [(0.3, Severity.WARNING), (0.8, Severity.ERROR)])
+def test_too_close_by_more_than_positions_may_err_is_an_error(short_m: float, severity: Severity) -> None:
+    before = flown()[0].track.position_enu_m
+    strayed = before.copy()
+    strayed[len(strayed) // 2] = (0.0, -(5.0 - short_m), 4.0)
+    found = problems(report(tracked(position_enu_m=strayed)).findings)["distance"]
+    assert found.severity is severity
+    assert found.value is not None
+    assert found.value == pytest.approx(5.0 - short_m, abs=0.01)
+
+
+def test_blur_adds_speed_and_turning() -> None:
+    track, photo = flown()[0].track, flown()[0].photos[4]
+    turn_rad_s, speed_m_s, exposure_s = 0.3, 1.5, 0.004
+    turning = track.gimbal_heading_rad + turn_rad_s * (track.time_s - photo.time_s)
+    records = tracked(gimbal_heading_rad=turning)
+    records = (with_photos(records[0], lambda p: tuple(replace(x, speed_m_s=speed_m_s) for x in p)), *records[1:])
+    view = report(records, Limits(exposure_s=exposure_s)).views[4]
+    sight = case().measures.seen[
+        next((v.position_enu_m, v.heading_deg, v.gimbal_pitch_deg) for v in plan().viewpoints if v.id == view.view_id)
+    ]
+    camera = plan().camera
+    moved_px = speed_m_s * exposure_s / camera.gsd_m(sight.nearest_m)
+    turned_px = turn_rad_s * exposure_s / (camera.sensor_width_mm / camera.focal_length_mm / camera.image_width_px)
+    assert view.blur_px == pytest.approx(moved_px + turned_px, rel=0.02)
+
+
+def test_without_photos_everything_is_missing_and_nothing_is_covered() -> None:
+    made = report(photos(lambda _: ()))
+    assert made.summary.covered == 0
+    assert {view.reason for view in made.views} == {Reason.NO_PHOTO}
+    assert len(made.summary.lost_panels) > 0
+    assert {"views-taken", "coverage", "panels-lost"} <= set(problems(made.findings))
+    assert "0 of 12 views" in report_text(made)
+
+
+def test_an_aborted_sortie_is_judged_by_neither_duration_nor_success() -> None:
+    made = report((cut_at(flown()[0], flown()[0].photos[5].time_s + 0.5),))
+    assert [view.reason for view in made.views] == [Reason.TAKEN] * 6 + [Reason.FLIGHT_ENDED] * 6
+    assert "duration" not in {finding.code for finding in made.findings}
+    assert made.summary.duration_flown_s is None
+    assert problems(made.findings)["views-taken"].severity is Severity.ERROR
+
+
+def test_a_record_of_a_single_moment_at_time_zero_is_no_trouble() -> None:
+    view = plan().viewpoints[0]
+    photo = TakenPhoto(1, 0.0, view.position_enu_m, view.heading_deg, view.gimbal_pitch_deg)
+    track = sparse_track(np.array([view.position_enu_m]), np.zeros(1))
+    made = report((FlightRecord(0, "", track, (photo,)),))
+    assert made.summary.n_taken == 1
+    assert made.views[0].speed_m_s is None
+    assert made.views[0].blur_px is None
+
+
+def test_unknown_directions_are_taken_as_planned_and_the_report_says_so() -> None:
+    made = report(photos(lambda p: tuple(replace(x, heading_deg=None, gimbal_pitch_deg=None) for x in p)))
+    assert made.summary.covered == made.summary.covered_planned
+    found = problems(made.findings)
+    assert "as if they looked as planned" in found["heading-unknown"].message
+    assert found["gimbal-unknown"].value == 12.0
+
+
+def test_an_extra_photo_without_direction_covers_nothing() -> None:
+    extra = TakenPhoto(99, 1.0, (0.0, -12.0, 5.0))
+    made = report(photos(lambda p: (extra, *p[6:])))
+    assert made.summary.covered == report(photos(lambda p: p[6:])).summary.covered
+
+
+def test_a_flight_of_another_site_or_plan_is_told_apart() -> None:
+    flight = flight_of(plan(), site(), flown())
+    assert [f.severity for f in belonging(flight, plan(), site())] == [Severity.OK]
+    elsewhere = replace(flight, site="tower")
+    assert belonging(elsewhere, plan(), site())[0].severity is Severity.ERROR
+    changed = belonging(flight, replace(plan(), seed=5), replace(site(), sha256="1" * 64))
+    assert [f.code for f in changed] == ["flight-site", "flight-plan"]
+    assert {f.severity for f in changed} == {Severity.WARNING}
+
+
+def test_the_report_is_json() -> None:
+    made = report(photos(lambda p: p[1:]))
+    content = json.loads(json.dumps(report_to_json(made), allow_nan=False))
+    assert content["n_views"] == 12
+    assert content["n_taken"] == 11
+    assert len(content["views"]) == 12
+    assert content["views"][0]["reason"] == "no-photo"
+
+
+@settings(max_examples=25)
+@given(st.integers(0, 2**32 - 1), st.floats(0.0, 3.0), st.floats(0.0, 15.0), st.floats(0.0, 1.0))
+def test_no_flight_however_bad_gives_nan_or_more_photos_than_there_are(
+    seed: int, error_m: float, error_deg: float, kept: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    track = flown()[0].track
+    columns = {name: getattr(track, name).copy() for name in Track.__slots__}
+    for name in Track.__slots__[1:]:
+        columns[name][rng.random(len(track.time_s)) > kept] = np.nan
+    taken = tuple(
+        replace(
+            moved(photo, tuple(rng.normal(0.0, error_m, 3)), float(rng.normal(0.0, error_deg))),
+            speed_m_s=None if rng.random() > kept else 0.1,
+        )
+        for photo in flown()[0].photos
+        if rng.random() < kept
+    )
+    made = report((replace(flown()[0], track=Track(**columns), photos=taken),))
+    json.dumps(report_to_json(made), allow_nan=False)
+    used = [view.photo for view in made.views if view.reason is Reason.TAKEN]
+    assert len(set(used)) == len(used) == made.summary.n_taken <= len(taken)
+    assert made.summary.covered <= made.summary.total
+    assert math.isfinite(sum(view.position_error_m or 0.0 for view in made.views))
