@@ -1,15 +1,16 @@
-"""The demonstration: the whole main job on the bundled sites, from site file to mission files."""
+"""The demonstration: the whole main job on the bundled sites, from site file to mission files and a flight."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
 
+from groundstation.services.flying import FlightWish, Flown, fly_files
 from groundstation.services.missions import SUFFIXES, export_plan
 from groundstation.services.planning import plan_site
 from planning.checks import check_plan
 from planning.errors import InputError
-from planning.findings import Finding
+from planning.findings import Finding, is_flyable
 from planning.plan_file import read_plan
 from planning.planner import Planned
 from planning.progress import QUIET, Monitor
@@ -20,7 +21,10 @@ from planning.site_file import read_site
 
 @dataclass(frozen=True, slots=True)
 class Demonstration:
-    """What the demonstration made, and what the checks found on the plan and on its mission files."""
+    """What the demonstration made, and what the checks found on the plan and on its mission files.
+
+    A plan that is not ready to fly is not flown: `flight_path` and `flown` are None then.
+    """
 
     site_path: Path
     plan_path: Path
@@ -28,12 +32,14 @@ class Demonstration:
     findings: tuple[Finding, ...]
     mission_paths: tuple[Path, ...]
     export_findings: tuple[Finding, ...]
+    flight_path: Path | None
+    flown: Flown | None
 
 
 def demonstrate(
     folder: Path, scene: str = "office", request: PlanRequest = PlanRequest(), monitor: Monitor = QUIET
 ) -> Demonstration:
-    """Make a bundled site, plan, check and export it into `folder`.
+    """Make a bundled site, plan, check, export and simulate it into `folder`.
 
     Raises
     ------
@@ -55,4 +61,9 @@ def demonstrate(
         paths, found = export_plan(plan_path, file_format, folder / f"{scene}{suffix}", site_path)
         missions += paths
         export_findings += found
-    return Demonstration(site_path, plan_path, planned, findings, tuple(missions), tuple(export_findings))
+    flight_path = flown = None
+    if is_flyable(findings):
+        flight_path = folder / f"{scene}.flight.json"
+        flown = fly_files(plan_path, site_path, flight_path, FlightWish(), monitor=monitor)
+    checked = findings, tuple(missions), tuple(export_findings)
+    return Demonstration(site_path, plan_path, planned, *checked, flight_path, flown)

@@ -12,11 +12,13 @@ from planning.request import PlanRequest
 
 def test_all_files_are_made_and_the_plan_is_ready_to_fly(tmp_path):
     made = demonstrate(tmp_path / "new" / "demo", "single-panel", PlanRequest(n_views=4, time_budget_s=5.0))
-    assert {made.site_path, made.plan_path, *made.mission_paths} == set((tmp_path / "new" / "demo").iterdir())
+    paths = {made.site_path, made.plan_path, made.flight_path, *made.mission_paths}
+    assert paths == set((tmp_path / "new" / "demo").iterdir())
     assert len(made.mission_paths) == len(FileFormat)
     assert read_plan(made.plan_path) == made.planned.plan
     assert is_flyable(made.findings)
     assert is_flyable(made.export_findings)
+    assert made.flown.flight.report.summary.n_taken == 4
 
 
 def test_unknown_sites_and_bad_folders_are_refused(tmp_path):

@@ -14,8 +14,8 @@ def add_parser(subparsers: Any) -> None:
     """Describe the command."""
     parser = subparsers.add_parser(
         "demo",
-        help="plan, check and export the bundled site",
-        description="Do the main job on a site that the program makes itself: plan, check, export.",
+        help="plan, check, export and simulate the bundled site",
+        description="Do the main job on a site that the program makes itself: plan, check, export, simulate.",
     )
     parser.set_defaults(run=run)
     parser.add_argument("--out", type=Path, default=Path("demo-out"), metavar="DIR", help="default: demo-out")
@@ -25,10 +25,13 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Demonstrate; returns the exit status."""
+    import msgspec
+
     from groundstation.cli.commands.plan import print_summary
     from groundstation.cli.console import print_findings, print_json, run_job
     from groundstation.services.demo import demonstrate
     from groundstation.services.planning import planned_summary
+    from missions.flight.report_text import report_text
     from planning.findings import Severity, is_flyable
 
     started = time.perf_counter()
@@ -40,6 +43,9 @@ def run(options: argparse.Namespace) -> int:
         content["site"], content["plan"] = str(made.site_path), str(made.plan_path)
         content["missions"] = [str(path) for path in made.mission_paths]
         content["flyable"] = flyable
+        if made.flown is not None and made.flown.flight.report is not None:
+            content["flight"] = str(made.flight_path)
+            content["flown"] = msgspec.to_builtins(made.flown.flight.report.summary)
         print_json(content)
     else:
         print(f"site:     {made.site_path}")
@@ -49,5 +55,8 @@ def run(options: argparse.Namespace) -> int:
             f"check:    {kept} of {len(made.findings)} rules kept, {'ready to fly' if flyable else 'NOT ready to fly'}"
         )
         print("missions: " + ", ".join(str(path) for path in made.mission_paths))
+        if made.flown is not None and made.flown.flight.report is not None:
+            print(f"flight:   {made.flight_path} ({made.flown.flight.sorties[0].vehicle}, {made.flown.seconds:.1f} s)")
+            print(report_text(made.flown.flight.report))
         print_findings(f for f in (*made.findings, *made.export_findings) if f.severity is not Severity.OK)
     return 0 if flyable else 1

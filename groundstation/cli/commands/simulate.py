@@ -1,0 +1,211 @@
+"""`simulate`: fly a plan with the simulated vehicle, or with one at the end of a link."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundstation.cli.options import checked_seed, number
+from planning.errors import InputError
+
+if TYPE_CHECKING:
+    from groundstation.services.flying import FlightWish, Flown
+    from missions.simulator.scene import FixKind
+    from planning.effects import Wish
+    from planning.progress import Monitor
+
+EPILOG = """effects:
+  --effects auto             what the scene calls for (default)
+  --effects none             none of them; --effects all: all
+  --effects wind=on          one by name; give it several times, also behind none or all
+  Names are printed with each flight, such as gnss-noise, multipath, gimbal-lag.
+
+a vehicle at a link:
+  --link tcp:127.0.0.1:5760  a simulation of ArduPilot or PX4 on this machine. It is set up, armed and started.
+  Whatever else is named takes off only with --take-off.
+
+examples:
+  simulate office.plan.json office.site.json -o office.flight.json
+  simulate office.plan.json office.site.json -o windy.flight.json --wind 8 --gnss single
+"""
+
+FIXES: dict[str, FixKind] = {"rtk": "rtk-fixed", "float": "rtk-float", "single": "single"}
+SITL_SPEEDUP = 10.0
+"""Ten times is flown the same as real time, and leaves the link's time-outs room."""
+
+LOCAL_HOSTS = ("127.0.0.1", "localhost", "[::1]")
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "simulate",
+        help="fly a plan in simulation and report what was covered",
+        description="Upload a plan to a simulated vehicle over MAVLink, fly all its sorties, and compare every photo\n"
+        "with what was planned. The flight and its report are written.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("plan", type=Path, metavar="PLAN", help="plan file")
+    add("site", type=Path, metavar="SITE", help="site file")
+    add("-o", "--out", type=Path, required=True, metavar="FLIGHT", help="flight file to write")
+    add("--link", default="sim", metavar="URL", help="sim (default), or the url of a vehicle")
+    add("--autopilot", choices=("ardupilot", "px4"), help="which one is simulated, or expected (default: by profile)")
+    add("--wind", type=number, metavar="M_S", help="mean wind (default: what the plan expects)")
+    add("--wind-from", type=number, default=270.0, metavar="DEG", help="where it comes from (default 270, west)")
+    add("--gnss", choices=tuple(FIXES), default="rtk", help="what the receiver reaches (default rtk)")
+    add("--effects", action="append", default=[], metavar="WISH", help="auto, none, all, or NAME=on|off|auto")
+    add("--seed", type=int, default=0, help="of everything random (default 0)")
+    add("--speedup", type=number, metavar="X", help="times real time (default: as fast as it goes)")
+    add("--sitl", type=Path, metavar="BINARY", help="start this arducopter and fly it")
+    add("--sitl-defaults", type=Path, metavar="PARM", help="its parameters, such as ArduPilot's copter.parm")
+    add("--take-off", action="store_true", help="let the vehicle at the link take off, wherever it is")
+    add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Fly and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+
+    flown = run_job("simulate", lambda context: _fly(options, context))
+    if options.json:
+        print_json(_summary(flown, options))
+    else:
+        _print_text(flown, options)
+    return 0
+
+
+def _fly(options: argparse.Namespace, monitor: Monitor) -> Flown:
+    from groundstation.services.flying import fly_files
+
+    if options.sitl is None:
+        between = _battery_change if sys.stdin is not None and sys.stdin.isatty() else None
+        return fly_files(options.plan, options.site, options.out, _wish(options), monitor=monitor, between=between)
+    from groundstation.services.flying_sitl import SITL_LINK, sitl
+    from groundstation.services.given_files import read_given_plan, read_given_site
+    from missions.build import missions_from_plan
+
+    site = read_given_site(options.site).site
+    first = missions_from_plan(read_given_plan(options.plan), site.origin, site.home_enu_m)[0]
+    speedup, options.speedup, options.link = options.speedup or SITL_SPEEDUP, None, SITL_LINK
+    with sitl(options.sitl, first.takeoff, speedup, options.sitl_defaults, monitor):
+        return fly_files(options.plan, options.site, options.out, _wish(options), monitor=monitor)
+
+
+def _battery_change(number: int) -> None:
+    """Let the pilot change the battery; whoever is not at a terminal is told by the list before take-off."""
+    print(f"\nsortie {number} comes next: put in a full battery, then press Enter", file=sys.stderr, flush=True)
+    sys.stdin.readline()
+
+
+def _wish(options: argparse.Namespace) -> FlightWish:
+    from groundstation.services.flying import SIMULATED, FlightWish
+    from missions.mavlink.autopilots import Autopilot
+    from missions.simulator.scene import Conditions
+
+    if options.wind is not None and options.wind < 0.0:
+        raise InputError(f"--wind: expected 0 m/s or more, got {options.wind:g}")
+    if options.speedup is not None and not options.speedup > 0.0:
+        raise InputError(f"--speedup: expected more than 0, got {options.speedup:g}")
+    is_simulated = options.link == SIMULATED
+    if not is_simulated:
+        _check_link(options)
+    wind_m_s = options.wind
+    if wind_m_s is None:
+        from groundstation.services.given_files import read_given_plan
+
+        wind_m_s = read_given_plan(options.plan).rules.wind_m_s
+    return FlightWish(
+        link=options.link,
+        autopilot=None if options.autopilot is None else Autopilot(options.autopilot),
+        conditions=Conditions(wind_m_s=wind_m_s, wind_from_deg=options.wind_from, fix=FIXES[options.gnss]),
+        effects=effect_wishes(options.effects),
+        seed=checked_seed(options.seed),
+        speedup=options.speedup,
+        sets_parameters=not is_simulated,
+        log_folder=None if is_simulated else (options.logs or options.out.parent / "logs"),
+    )
+
+
+def _check_link(options: argparse.Namespace) -> None:
+    """Refuse what would be ignored, and to start what may be an aircraft."""
+    if options.effects or options.wind is not None or options.speedup is not None:
+        raise InputError("--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own")
+    kind, _, place = options.link.partition(":")
+    is_here = kind in ("tcp", "udpout") and place.rpartition(":")[0] in LOCAL_HOSTS
+    if not is_here and not options.take_off:
+        raise InputError(
+            f"--link {options.link}: this could be a real aircraft, and 'simulate' takes off by itself; add --take-off "
+            "if it may (a simulation on this machine, such as tcp:127.0.0.1:5760, needs no leave)"
+        )
+
+
+def effect_wishes(texts: list[str]) -> dict[str, Wish]:
+    """Wishes by the effects' names.
+
+    Raises
+    ------
+    InputError
+        A text is no wish, or names no effect.
+    """
+    from missions.simulator.build import EFFECTS
+
+    names = {effect.name.lower().replace(" ", "-"): effect.name for effect in EFFECTS}
+    states: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
+    all_at_once: dict[str, Wish] = {"auto": "auto", "none": "off", "all": "on"}
+    wishes: dict[str, Wish] = {}
+    for text in (part for given in texts for part in given.split(",")):
+        name, equals, state = text.strip().partition("=")
+        if not equals and name in all_at_once:
+            wishes = dict.fromkeys(names.values(), all_at_once[name])
+        elif name.lower().replace(" ", "-") in names and state in states:
+            wishes[names[name.lower().replace(" ", "-")]] = states[state]
+        else:
+            raise InputError(
+                f"--effects {text}: expected auto, none, all, or NAME=on, off or auto; names are {', '.join(names)}"
+            )
+    return wishes
+
+
+def _summary(flown: Flown, options: argparse.Namespace) -> dict[str, Any]:
+    import msgspec
+
+    from missions.flight.report_text import report_to_json
+
+    report = flown.flight.report
+    assert report is not None
+    return {
+        "flight": str(options.out),
+        "link": options.link,
+        **report_to_json(report),
+        "effects": msgspec.to_builtins(flown.sorties[0].effects if flown.sorties else ()),
+        "logs": [str(sortie.log) for sortie in flown.sorties if sortie.log is not None],
+        "notes": [msgspec.to_builtins(sortie.notes) for sortie in flown.sorties],
+        "plan_findings": msgspec.to_builtins(flown.findings),
+        "seconds": round(flown.seconds, 3),
+    }
+
+
+def _print_text(flown: Flown, options: argparse.Namespace) -> None:
+    from groundstation.cli.console import print_findings
+    from missions.flight.report_text import report_text
+    from missions.simulator.build import effects_table
+
+    report = flown.flight.report
+    assert report is not None
+    print(f"flight:   {options.out} ({flown.flight.sorties[0].vehicle}, {flown.seconds:.1f} s)")
+    print(report_text(report))
+    for sortie in flown.sorties:
+        if sortie.log is not None:
+            print(f"log:      {sortie.log}")
+        for note in sortie.notes:
+            if note.code == "log" or note.code.startswith("warning-"):
+                print(f"warning: sortie {sortie.number}, {note.time_s:.0f} s: {note.text}", file=sys.stderr)
+    print_findings(flown.findings)
+    if flown.sorties and flown.sorties[0].effects:
+        print(f"effects:\n{effects_table(flown.sorties[0].effects)}")

@@ -1,0 +1,91 @@
+"""ArduCopter's own simulation, started from its binary: at the plan's home, with a camera, in a folder of its own."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from missions.heights import altitude_amsl_m
+from missions.mavlink.link import open_link
+from missions.model import GeoPoint
+from planning.errors import InputError, LinkError
+from planning.progress import QUIET, Monitor
+
+SITL_LINK = "tcp:127.0.0.1:5760"
+"""Where its first instance listens."""
+
+START_S, END_S = 30.0, 5.0
+
+DEFAULTS = {"FRAME_CLASS": 1, "FRAME_TYPE": 1, "CAM1_TYPE": 1, "MNT1_TYPE": 1}
+"""Parameters at first power-up: a quadrotor, and what would otherwise take a reboot. ArduPilot's own
+Tools/autotest/default_params/copter.parm, where it is given, comes first: it calibrates the simulated sensors."""
+
+
+@contextmanager
+def sitl(
+    binary: Path, home: GeoPoint, speedup: float, defaults: Path | None, monitor: Monitor = QUIET
+) -> Iterator[str]:
+    """Run ArduCopter's simulation; gives the url of its link, and ends it afterwards.
+
+    Raises
+    ------
+    InputError
+        The binary or the file of defaults is missing or cannot be run.
+    LinkError
+        It ended at once, or opened no link in time; the message holds its last words.
+    """
+    if defaults is not None and not defaults.is_file():
+        raise InputError(f"{defaults}: there is no such file; expected ArduPilot's copter.parm")
+    with tempfile.TemporaryDirectory(prefix="reflight-sitl-") as folder:
+        own = Path(folder, "reflight.parm")
+        own.write_text("".join(f"{name} {value}\n" for name, value in DEFAULTS.items()))
+        place = f"{home.lat_deg:.9f},{home.lon_deg:.9f},{altitude_amsl_m(home):.2f},0"
+        files = ",".join(str(path.resolve()) for path in (defaults, own) if path is not None)
+        command = [str(binary.resolve()), "--model", "+", "--speedup", f"{speedup:g}", "--home", place]
+        with Path(folder, "output.txt").open("w+b") as output:
+            try:
+                process = subprocess.Popen(
+                    [*command, "--defaults", files, "-w", "-I0"],
+                    cwd=folder,
+                    stdout=output,
+                    stderr=subprocess.STDOUT,
+                    stdin=subprocess.DEVNULL,
+                )
+            except OSError as error:
+                raise InputError(f"{binary}: cannot be run ({error.strerror or error}); name an arducopter") from error
+            try:
+                _wait_for_link(process, binary, Path(folder, "output.txt"), monitor)
+                yield SITL_LINK
+            finally:
+                _end(process)
+
+
+def _wait_for_link(process: subprocess.Popen[bytes], binary: Path, output: Path, monitor: Monitor) -> None:
+    """Wait until it listens; a link that is opened and closed again does no harm."""
+    deadline_s = time.monotonic() + START_S
+    while True:
+        monitor.report("starting the simulation", 0, 0)
+        if process.poll() is not None:
+            said = output.read_text(errors="replace").strip().splitlines()[-1:] or ["it said nothing"]
+            raise LinkError(f"{binary}: ended at once with status {process.returncode} ({said[0]})")
+        try:
+            open_link(SITL_LINK).close()
+        except LinkError as error:
+            if time.monotonic() > deadline_s:
+                raise LinkError(f"{binary}: opened no link at {SITL_LINK} within {START_S:g} s") from error
+            time.sleep(0.1)
+        else:
+            return
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(END_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

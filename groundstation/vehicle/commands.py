@@ -1,0 +1,136 @@
+"""A command to the vehicle and its acknowledgement, as a state machine without any link.
+
+    WAITING -> WAITING    no answer in time: sent again, with the next confirmation number
+            -> WORKING    the vehicle says that it is IN_PROGRESS
+    WORKING -> WORKING    it says so again
+    WAITING -> ended      accepted, refused, or no answer to any of the attempts
+    WORKING -> ended      accepted, refused, or not heard of again
+
+Acknowledgements of other commands, from other systems, and for other ground stations are passed over.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from missions.mavlink.messages import Address, CommandAck, CommandInt, CommandLong, Message, Received
+
+ATTEMPT_S = 1.5
+"""Wait for an acknowledgement before the command is sent again; the MAVLink guide's default timeout."""
+
+N_ATTEMPTS = 6
+"""The first and five more, the guide's number of retries."""
+
+PROGRESS_S = 10.0
+"""Wait after IN_PROGRESS; vehicles repeat it at 1 Hz or more often."""
+
+
+class Answer(Enum):
+    """How a command ended."""
+
+    ACCEPTED = "accepted"
+    REFUSED = "refused"
+    NO_ANSWER = "no answer"
+
+
+RESULTS = {
+    1: "not now",
+    2: "denied",
+    3: "not supported",
+    4: "failed",
+    6: "cancelled",
+    7: "only as COMMAND_LONG",
+    8: "only as COMMAND_INT",
+    9: "frame not supported",
+}
+"""MAV_RESULT in words."""
+
+MAV_RESULT_ACCEPTED, MAV_RESULT_TEMPORARILY_REJECTED, MAV_RESULT_IN_PROGRESS = 0, 1, 5
+
+
+@dataclass(frozen=True, slots=True)
+class CommandOutcome:
+    """How a command ended; `result` is the MAV_RESULT, None without an answer."""
+
+    answer: Answer
+    result: int | None
+    text: str
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether the vehicle does it."""
+        return self.answer is Answer.ACCEPTED
+
+
+class CommandCall:
+    """One command on its way.
+
+    Parameters
+    ----------
+    what
+        The command in the pilot's words, for messages: "arming".
+    own
+        Address of the ground station, to which the acknowledgement goes.
+    n_attempts
+        How often it is sent at most; once where doing it twice would do harm.
+    """
+
+    def __init__(
+        self, what: str, command: CommandLong | CommandInt, own: Address, n_attempts: int = N_ATTEMPTS
+    ) -> None:
+        self.what, self._command, self._own, self._n_attempts = what, command, own, n_attempts
+        self.outcome: CommandOutcome | None = None
+        self.progress_percent: int | None = None
+        self._n_sent = 0
+        self._deadline_s = math.inf
+
+    @property
+    def next_deadline_s(self) -> float:
+        """When `tick` wants to be called; infinity once it has ended."""
+        return self._deadline_s if self.outcome is None else math.inf
+
+    def start(self, now_s: float) -> list[Message]:
+        """Send it for the first time."""
+        return self._send(now_s)
+
+    def receive(self, received: Received) -> list[Message]:
+        """Take a message; nothing is ever sent in answer."""
+        ack, target = received.message, self._command
+        if self.outcome is not None or not isinstance(ack, CommandAck) or ack.command != target.command:
+            return []
+        from_it = received.source.system == target.target_system and (
+            target.target_component in (0, received.source.component)
+        )
+        if not from_it or ack.target_system not in (0, self._own.system):
+            return []
+        if ack.target_system != 0 and ack.target_component not in (0, self._own.component):
+            return []
+        if ack.result == MAV_RESULT_IN_PROGRESS:
+            self.progress_percent = ack.progress if ack.progress <= 100 else None
+            self._deadline_s = received.time_s + PROGRESS_S
+            self._n_sent = self._n_attempts  # it is being done: sending it again could do it twice
+        elif ack.result == MAV_RESULT_ACCEPTED:
+            self.outcome = CommandOutcome(Answer.ACCEPTED, ack.result, f"{self.what}: done")
+        else:
+            word = RESULTS.get(ack.result, f"result {ack.result}")
+            self.outcome = CommandOutcome(Answer.REFUSED, ack.result, f"the vehicle refused {self.what} ({word})")
+        return []
+
+    def tick(self, now_s: float) -> list[Message]:
+        """Send it again when the time is up, or give up."""
+        if self.outcome is not None or now_s < self._deadline_s:
+            return []
+        if self._n_sent < self._n_attempts:
+            return self._send(now_s)
+        self.outcome = CommandOutcome(Answer.NO_ANSWER, None, f"the vehicle did not answer to {self.what}")
+        return []
+
+    def _send(self, now_s: float) -> list[Message]:
+        command = self._command
+        if isinstance(command, CommandLong):
+            command = replace(command, confirmation=self._n_sent)
+        self._n_sent += 1
+        self._deadline_s = now_s + ATTEMPT_S
+        return [command]

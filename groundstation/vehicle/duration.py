@@ -1,0 +1,77 @@
+"""How long an autopilot takes for a mission's items: the plan's motion, and the waits that are in the items.
+
+Plans reckon with an aircraft that turns at the waypoint, as DJI's do. Both MAVLink autopilots turn nose and gimbal on
+the way, and what is left of the turn is in the hold: they are faster. PX4 more so: its hold counts from when the nose
+points and the place is within the item's radius, before the aircraft rests.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from pymavlink.dialects.v20 import common as mavlink
+
+from groundstation.vehicle.orders import SortieOrders
+from groundstation.vehicle.setup import landing
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.items import MissionItem
+from missions.model import Mission
+from planning.frames import Vec3, wrap_heading_deg
+from planning.geodesy.enu import enu_from_geodetic
+from planning.timing import MotionLimits, leg_times_s, motion_limits, rest_to_rest_s
+
+
+def items_duration_s(orders: SortieOrders, autopilot: Autopilot) -> float:
+    """Time from lift-off to touch-down, seconds, as `autopilot` flies a sortie's items.
+
+    Raises
+    ------
+    InfeasibleError
+        The aircraft cannot fly in the wind that the plan expects.
+    """
+    mission = orders.mission
+    rules = replace(mission.rules, max_speed_m_s=None)
+    limits = replace(motion_limits(mission.aircraft, rules), horizontal_m_s=mission.speed_m_s)
+    headings = {photo.viewpoint_id: photo.heading_deg for waypoint in mission.waypoints for photo in waypoint.photos}
+    items, here, nose_deg, total_s = orders.items[autopilot], orders.home_enu_m, 0.0, 0.0
+    for item, following in zip(items, (*items[1:], None), strict=True):
+        if item.command in (mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT):
+            there = _place(item, mission)
+            leg_s = float(leg_times_s(np.array([np.subtract(there, here)]), limits)[0])
+            if autopilot is Autopilot.PX4 and item.command == mavlink.MAV_CMD_NAV_WAYPOINT:
+                leg_s = max(leg_s / 2.0, leg_s - _tail_s(item.params[1], limits))
+            if autopilot is Autopilot.PX4 and following is not None and following.viewpoint_id:
+                wanted_deg = headings[following.viewpoint_id]
+                turn_rad = math.radians(abs(wrap_heading_deg(wanted_deg - nose_deg)))
+                leg_s, nose_deg = max(leg_s, turn_rad / limits.yaw_rate_rad_s), wanted_deg
+            here = there
+            total_s += leg_s + item.params[0]
+        elif item.command == mavlink.MAV_CMD_NAV_DELAY:
+            total_s += item.params[0]
+        elif item.command == mavlink.MAV_CMD_NAV_LAND:
+            total_s += _landing_s(here, orders.home_enu_m, autopilot, limits)
+    return total_s
+
+
+def _tail_s(radius_m: float, limits: MotionLimits) -> float:
+    """Time for the last metres to a stop, inside the radius in which PX4 takes a waypoint as reached."""
+    a_m_s2, j_m_s3 = limits.acceleration_m_s2, limits.jerk_m_s3
+    return float(rest_to_rest_s(2.0 * radius_m, limits.horizontal_m_s, a_m_s2, j_m_s3)) / 2.0
+
+
+def _place(item: MissionItem, mission: Mission) -> Vec3:
+    """Local position of an item whose height counts from take-off."""
+    lat_deg, lon_deg, above_m = item.params[4:]
+    height_m = mission.takeoff.height_ellipsoid_m + above_m
+    x, y, z = enu_from_geodetic(mission.origin, lat_deg, lon_deg, height_m)[0]
+    return (float(x), float(y), float(z))
+
+
+def _landing_s(here: Vec3, home: Vec3, autopilot: Autopilot, limits: MotionLimits) -> float:
+    """From above home to the ground: at the autopilot's usual speed, then slowly."""
+    slow = landing(autopilot)
+    height_m = max(0.0, here[2] - home[2])
+    fast_m = max(0.0, height_m - slow.below_m)
+    return fast_m / limits.descent_m_s + (height_m - fast_m) / slow.speed_m_s

@@ -1,0 +1,277 @@
+"""One sortie, from the first heartbeat to the landing, as a state machine without any link.
+
+    CONNECTING -> PREPARING   an autopilot was heard
+    PREPARING  -> UPLOADING   it sends what is watched, and its parameters are as they should be (it may be rebooted)
+    UPLOADING  -> CHECKING    mission and geofence were read back and are equal
+    CHECKING   -> READY       nothing on the pre-flight list is missing
+    READY      -> STARTING    the pilot said so (or nobody was to be asked)
+    STARTING   -> FLYING      armed and in the mission's mode
+    FLYING     -> ENDED       landed and disarmed
+    any        -> ENDED       it cannot go on: what failed, and what to do, stands in the outcome
+
+`steps.py` holds what is done in each phase. Pilot's orders (pause, resume, return, land) go out beside it at any time.
+Losing the link ends nothing: it is shown, the aircraft goes on by itself, and when it is heard again what it has on
+board is read back once more.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Generator
+from typing import Any, Protocol
+
+from groundstation.vehicle.commands import CommandCall, CommandOutcome
+from groundstation.vehicle.modes import LAND_MODE, MISSION_MODE, PAUSE_MODE, RETURN_MODE, set_mode_command
+from groundstation.vehicle.orders import SortieOrders
+from groundstation.vehicle.preflight import OnBoard, PreflightCheck, preflight_checks
+from groundstation.vehicle.recorder import Recorder
+from groundstation.vehicle.run_records import Phase, PilotOrder, RunOptions, RunOutcome, RunView
+from groundstation.vehicle.state import VehicleState
+from groundstation.vehicle.telemetry import LocalFrame, folded
+from groundstation.vehicle.watch import Watch, WatchRules, watched
+from missions.flight.record import FlightEvent
+from missions.mavlink.drive import GROUND_HEARTBEAT, HEARTBEAT_EVERY_S
+from missions.mavlink.link import GROUND_STATION
+from missions.mavlink.messages import Address, Message, Received
+from planning.errors import GroundStationError
+
+WATCH_EVERY_S = 0.5
+LONGEST_WAIT_S = 0.25
+
+
+_ORDER_MODES = {
+    PilotOrder.PAUSE: PAUSE_MODE,
+    PilotOrder.RESUME: MISSION_MODE,
+    PilotOrder.RETURN: RETURN_MODE,
+    PilotOrder.LAND: LAND_MODE,
+}
+
+
+class Exchange(Protocol):
+    """A machine that a run lets work: a command, a parameter, a transfer."""
+
+    @property
+    def outcome(self) -> Any:
+        """None while it runs."""
+
+    @property
+    def next_deadline_s(self) -> float:
+        """When `tick` wants to be called."""
+
+    def start(self, now_s: float) -> list[Message]:
+        """Messages that begin it."""
+
+    def receive(self, received: Received) -> list[Message]:
+        """Messages that answer one."""
+
+    def tick(self, now_s: float) -> list[Message]:
+        """Messages that are due."""
+
+
+Steps = Generator["Exchange | None", Any, None]
+"""Yields a machine to be run and gets its outcome, or None to be called again after the next event."""
+
+
+class FlightRun:
+    """A sortie being flown; give it what is received and the time, and send what it returns."""
+
+    def __init__(
+        self, orders: SortieOrders, options: RunOptions, link_name: str, own: Address = GROUND_STATION
+    ) -> None:
+        self.orders, self.options, self.own = orders, options, own
+        self.link_name = link_name
+        self.state = VehicleState()
+        self.phase = Phase.CONNECTING
+        self.watch = Watch()
+        self.on_board = OnBoard()
+        self.now_s = 0.0
+        self.outcome: RunOutcome | None = None
+        self.answers: tuple[CommandOutcome, ...] = ()
+        self.notes: tuple[FlightEvent, ...] = ()
+        self.recorder: Recorder | None = None
+        self.may_start = options.starts_itself
+        self.was_ordered_away = False
+        self._frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
+        self._steps: Steps | None = None
+        self._machine: Exchange | None = None
+        self._orders: deque[PilotOrder] = deque()
+        self._order_call: CommandCall | None = None
+        self._aside: Exchange | None = None
+        self._outbox: list[Message] = []
+        self._heartbeat_s = self._watch_s = -math.inf
+        self._had_link = False
+        self._checks: tuple[PreflightCheck, ...] = ()
+
+    # For whoever drives it
+
+    @property
+    def next_deadline_s(self) -> float:
+        """When `tick` wants to be called at the latest."""
+        machines = (self._machine, self._order_call, self._aside)
+        deadlines = [each.next_deadline_s for each in machines if each is not None and each.outcome is None]
+        return min([self._heartbeat_s + HEARTBEAT_EVERY_S, self.now_s + LONGEST_WAIT_S, *deadlines])
+
+    def start(self, now_s: float) -> list[Message]:
+        """Begin."""
+        from groundstation.vehicle.steps import sortie_steps
+
+        self.now_s = now_s
+        self._steps = sortie_steps(self)
+        return self._advance()
+
+    def receive(self, received: Received) -> list[Message]:
+        """Take a message."""
+        self.now_s = received.time_s
+        before = self.state
+        self.state = folded(before, received, self._frame)
+        if self.state is not before and self.recorder is not None:
+            self.recorder.take(received.message)
+        for machine in (self._machine, self._order_call, self._aside):
+            if machine is not None and machine.outcome is None:
+                self._outbox += machine.receive(received)
+        return self._advance()
+
+    def tick(self, now_s: float) -> list[Message]:
+        """Let time pass."""
+        self.now_s = now_s
+        for machine in (self._machine, self._order_call, self._aside):
+            if machine is not None and machine.outcome is None and now_s >= machine.next_deadline_s:
+                self._outbox += machine.tick(now_s)
+        return self._advance()
+
+    def order(self, order: PilotOrder) -> None:
+        """Queue an order of the pilot; it goes out with the next `receive` or `tick`.
+
+        Raises
+        ------
+        ValueError
+            There is no vehicle yet.
+        """
+        if self.state.autopilot is None:
+            raise ValueError("no vehicle was heard yet, so none can take orders")
+        self._orders.append(order)
+
+    def begin(self) -> None:
+        """The pilot says: take off."""
+        self.may_start = True
+
+    def view(self) -> RunView:
+        """The run as it stands."""
+        return RunView(
+            self.now_s,
+            self.phase,
+            self.state,
+            self.checks(),
+            self.watch,
+            self.on_board,
+            getattr(self._machine, "progress", (self.phase.value, 0.0, 0.0)),
+            self.answers,
+            self.notes,
+            self.state.is_link_alive(self.now_s),
+        )
+
+    # For the steps
+
+    def checks(self) -> tuple[PreflightCheck, ...]:
+        """The pre-flight list: now, and once it was started as it was then."""
+        if self.phase not in (Phase.STARTING, Phase.FLYING, Phase.ENDED):
+            needs_rtk = self.options.needs_rtk
+            self._checks = preflight_checks(self.state, self.orders, self.on_board, self.now_s, needs_rtk=needs_rtk)
+        return self._checks
+
+    def note(self, code: str, text: str) -> None:
+        """Note something, in the record too where one is made."""
+        self.notes = (*self.notes, FlightEvent(self.now_s, code, text))
+        if self.recorder is not None:
+            self.recorder.note(code, text)
+
+    def aside(self, machine: Exchange) -> None:
+        """Let a machine work beside the steps."""
+        self._aside = machine
+        self._outbox += machine.start(self.now_s)
+
+    # Inside
+
+    def _advance(self) -> list[Message]:
+        if self.outcome is None:
+            self._watch_link()
+            self._watch_flight()
+            self._pass_orders_on()
+            self._step()
+        if self.now_s >= self._heartbeat_s + HEARTBEAT_EVERY_S:
+            self._heartbeat_s = self.now_s
+            self._outbox.append(GROUND_HEARTBEAT)
+        sent, self._outbox = self._outbox, []
+        return sent
+
+    def _step(self) -> None:
+        """Let the steps go on as far as they can."""
+        assert self._steps is not None
+        try:
+            while self.outcome is None:
+                outcome = None
+                if self._machine is not None:
+                    outcome = self._machine.outcome
+                    if outcome is None:
+                        return
+                    self._machine = None
+                wanted = self._steps.send(None if outcome is None else outcome)
+                if wanted is None:
+                    return
+                self._machine = wanted
+                self._outbox += wanted.start(self.now_s)
+        except StopIteration:
+            self._end(None)
+        except GroundStationError as error:
+            self._end(error)
+
+    def _end(self, error: GroundStationError | None) -> None:
+        self.phase, self._machine = Phase.ENDED, None
+        if error is not None:
+            self.note("failed", str(error))
+        record = None if self.recorder is None else self.recorder.record(self.orders.site, self.orders.number)
+        self.outcome = RunOutcome(error, record, self.notes)
+
+    def _watch_link(self) -> None:
+        has_link = self.state.is_link_alive(self.now_s)
+        if has_link != self._had_link and self.recorder is not None:
+            if has_link:
+                self.note("link-found", "the vehicle is heard again")
+            else:
+                self.note("link-lost", "no heartbeat; the aircraft goes on by itself")
+            if has_link and self.phase is Phase.FLYING:
+                from groundstation.vehicle.steps import reread_mission
+
+                self.aside(reread_mission(self))
+        self._had_link = has_link
+
+    def _watch_flight(self) -> None:
+        autopilot = self.state.autopilot
+        if self.phase is not Phase.FLYING or autopilot is None or self.now_s < self._watch_s + WATCH_EVERY_S:
+            return
+        self._watch_s = self.now_s
+        before = self.watch.codes()
+        around = self.orders.surroundings[autopilot]
+        self.watch = watched(self.watch, self.state, around, self.now_s, WatchRules(self.options.needs_rtk))
+        for warning in self.watch.warnings:
+            if warning.code not in before:
+                self.note(f"warning-{warning.code}", warning.text)
+
+    def _pass_orders_on(self) -> None:
+        call = self._order_call
+        if call is not None and call.outcome is not None:
+            self.answers = (*self.answers, call.outcome)
+            self.note("order", call.outcome.text)
+            self._order_call = None
+        # Acknowledgements do not say which of two changes of mode they are for: one after the other.
+        is_busy = self._order_call is not None or isinstance(self._machine, CommandCall)
+        if is_busy or not self._orders or self.state.autopilot is None or self.state.address is None:
+            return
+        order = self._orders.popleft()
+        self.was_ordered_away = order is not PilotOrder.RESUME
+        mode = _ORDER_MODES[order][self.state.autopilot]
+        target = self.state.address
+        command = set_mode_command(self.state.autopilot, mode, target.system, target.component)
+        self._order_call = CommandCall(order.value, command, self.own)
+        self._outbox += self._order_call.start(self.now_s)

@@ -1,0 +1,167 @@
+"""The list before take-off: what is well, what is still to come, and what grounds the flight."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from groundstation.vehicle.orders import SortieOrders
+from groundstation.vehicle.state import VehicleState
+from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
+
+HOME_M = 3.0
+"""How far from the planned home the aircraft may stand: it climbs where it is, and the plan's column has that room."""
+
+PRE_ARM = "pre-arm checks"
+"""Name of that bit in `data/vehicle.toml`."""
+
+FIX_NAMES = {0: "none", 1: "none", 2: "2-D", 3: "3-D", 4: "differential", 5: "RTK float", 6: "RTK fixed", 7: "static"}
+
+
+class Verdict(Enum):
+    """What a check came to."""
+
+    OK = "ok"
+    WAIT = "wait"
+    """Not known yet, or not yet well; it may become so by itself."""
+    BAD = "bad"
+    """It will not become well by itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class PreflightCheck:
+    """One line of the list; `value` and `limit` where something was measured, in `unit`."""
+
+    code: str
+    verdict: Verdict
+    text: str
+    value: float | None = None
+    limit: float | None = None
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class OnBoard:
+    """What was read back from the vehicle and compared: None while that is not done."""
+
+    mission: bool | None = None
+    fence: bool | None = None
+
+
+def preflight_checks(
+    state: VehicleState, orders: SortieOrders, on_board: OnBoard, now_s: float, *, needs_rtk: bool
+) -> tuple[PreflightCheck, ...]:
+    """All checks, in the order in which they are shown."""
+    return (
+        _link(state, now_s),
+        _position(state, now_s),
+        _gnss(state, now_s, needs_rtk),
+        _home(state, orders, now_s),
+        _battery(state, orders, now_s),
+        *_sensors(state),
+        _wind(state, orders),
+        _board("mission", on_board.mission),
+        *([_board("geofence", on_board.fence)] if orders.fences else []),
+    )
+
+
+def is_ready(checks: tuple[PreflightCheck, ...]) -> bool:
+    """Whether nothing is missing."""
+    return all(check.verdict is Verdict.OK for check in checks)
+
+
+def _link(state: VehicleState, now_s: float) -> PreflightCheck:
+    if state.heartbeat is None or state.autopilot is None:
+        return PreflightCheck("link", Verdict.WAIT, "no autopilot was heard yet")
+    if not state.is_link_alive(now_s):
+        return PreflightCheck("link", Verdict.WAIT, f"no heartbeat for {state.heartbeat.age_s(now_s):.0f} s")
+    return PreflightCheck("link", Verdict.OK, f"{state.autopilot.value} answers")
+
+
+def _position(state: VehicleState, now_s: float) -> PreflightCheck:
+    if state.estimator is None and state.motion is None:
+        return PreflightCheck("position", Verdict.WAIT, "the autopilot does not know where it is yet")
+    if state.estimator is not None and state.estimator.value.problem:
+        return PreflightCheck("position", Verdict.WAIT, f"the autopilot has {state.estimator.value.problem}")
+    if state.motion is None or state.motion.age_s(now_s) > STALE_S:
+        return PreflightCheck("position", Verdict.WAIT, "the autopilot sends no position")
+    return PreflightCheck("position", Verdict.OK, "the autopilot knows where it is")
+
+
+def _gnss(state: VehicleState, now_s: float, needs_rtk: bool) -> PreflightCheck:
+    if state.fix is None or state.fix.age_s(now_s) > STALE_S:
+        return PreflightCheck("gnss", Verdict.WAIT, "the GNSS receiver is silent")
+    fix, wanted = state.fix.value, RTK_FLOAT if needs_rtk else FIX_3D
+    name = FIX_NAMES.get(fix.fix_type, str(fix.fix_type))
+    text = f"fix: {name}, {fix.n_satellites} satellites"
+    if fix.horizontal_accuracy_m is not None:
+        text += f", {fix.horizontal_accuracy_m:.2f} m"
+    verdict = Verdict.OK if fix.fix_type >= wanted else Verdict.WAIT
+    if verdict is Verdict.WAIT:
+        text += f"; {FIX_NAMES[wanted]} is needed"
+    return PreflightCheck("gnss", verdict, text, float(fix.fix_type), float(wanted))
+
+
+def _home(state: VehicleState, orders: SortieOrders, now_s: float) -> PreflightCheck:
+    # Autopilots set home anew when they are armed: where the aircraft stands is what counts.
+    if state.motion is None:
+        return PreflightCheck("home", Verdict.WAIT, "where the aircraft stands is not known yet")
+    x, y, _ = state.motion.value.position_enu_m
+    away_m = math.dist((x, y), orders.home_enu_m[:2])
+    low, high = orders.site.airspace.min_enu_m, orders.site.airspace.max_enu_m
+    place = f"{orders.home.lat_deg:.7f}, {orders.home.lon_deg:.7f}"
+    if not (low[0] <= x <= high[0] and low[1] <= y <= high[1]):
+        text = f"the aircraft stands {away_m:.0f} m from the planned home, outside the airspace; put it at {place}"
+        return PreflightCheck("home", Verdict.BAD, text, away_m, HOME_M, "m")
+    if away_m > HOME_M:
+        text = f"the aircraft stands {away_m:.1f} m from the planned home; put it at {place}, or plan from here"
+        return PreflightCheck("home", Verdict.BAD, text, away_m, HOME_M, "m")
+    return PreflightCheck("home", Verdict.OK, f"{away_m:.1f} m from the planned home", away_m, HOME_M, "m")
+
+
+def _battery(state: VehicleState, orders: SortieOrders, now_s: float) -> PreflightCheck:
+    level = None if state.battery is None else state.battery.value.remaining
+    if level is None:
+        return PreflightCheck("battery", Verdict.WAIT, "the battery's charge is not known")
+    needed = orders.battery_needed
+    if level < needed:
+        text = f"the battery holds {level:.0%}; the sortie and the reserve take {needed:.0%}: put in a full one"
+        return PreflightCheck("battery", Verdict.BAD, text, level, needed)
+    return PreflightCheck("battery", Verdict.OK, f"{level:.0%}; {needed:.0%} are needed", level, needed)
+
+
+def _sensors(state: VehicleState) -> Iterator[PreflightCheck]:
+    """What the autopilot says of its own sensors; only its pre-arm checks decide whether it can be armed."""
+    if state.sensor_problems is None:
+        return
+    problems = state.sensor_problems.value
+    if PRE_ARM in problems:
+        texts = (text.text for text in reversed(state.texts) if text.text.startswith("PreArm"))
+        said = next(texts, "it does not say why")
+        yield PreflightCheck("sensors", Verdict.WAIT, f"the autopilot cannot be armed yet ({said})")
+    elif problems:
+        yield PreflightCheck("sensors", Verdict.OK, "it can be armed, but has trouble with: " + ", ".join(problems))
+    else:
+        yield PreflightCheck("sensors", Verdict.OK, "the autopilot is content with all sensors")
+
+
+def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
+    limit_m_s = orders.mission.aircraft.max_wind_m_s
+    if state.wind_enu_m_s is None:
+        # Multirotors without an airspeed sensor know the wind only in flight.
+        return PreflightCheck("wind", Verdict.OK, "not measured on the ground; look up", None, limit_m_s, "m/s")
+    wind_m_s = math.hypot(*state.wind_enu_m_s.value[:2])
+    if wind_m_s > limit_m_s:
+        text = f"{wind_m_s:.1f} m/s, more than the {limit_m_s:g} m/s of {orders.mission.aircraft.name}; wait"
+        return PreflightCheck("wind", Verdict.BAD, text, wind_m_s, limit_m_s, "m/s")
+    return PreflightCheck("wind", Verdict.OK, f"{wind_m_s:.1f} m/s", wind_m_s, limit_m_s, "m/s")
+
+
+def _board(what: str, is_equal: bool | None) -> PreflightCheck:
+    if is_equal is None:
+        return PreflightCheck(what, Verdict.WAIT, f"the {what} was not uploaded yet")
+    if not is_equal:
+        return PreflightCheck(what, Verdict.BAD, f"what the vehicle holds is not this {what}: upload it again")
+    return PreflightCheck(what, Verdict.OK, f"the {what} is on board, read back and equal")

@@ -1,0 +1,111 @@
+"""What a sortie being flown takes and shows: its phases, the pilot's orders, options, outcome, and how it stands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from groundstation.vehicle.commands import CommandOutcome
+from groundstation.vehicle.preflight import OnBoard, PreflightCheck
+from groundstation.vehicle.state import VehicleState
+from groundstation.vehicle.watch import Watch
+from missions.flight.record import FlightEvent, FlightRecord
+from missions.mavlink.autopilots import Autopilot
+from planning.errors import GroundStationError
+
+
+class Phase(Enum):
+    """Where a sortie stands; `flight_run.py` has the transitions."""
+
+    CONNECTING = "connecting"
+    PREPARING = "preparing the vehicle"
+    UPLOADING = "uploading"
+    CHECKING = "checking before take-off"
+    READY = "ready for take-off"
+    STARTING = "starting"
+    FLYING = "flying"
+    ENDED = "ended"
+
+
+class PilotOrder(Enum):
+    """What the pilot may order at any time."""
+
+    PAUSE = "pausing"
+    RESUME = "resuming the mission"
+    RETURN = "returning home"
+    LAND = "landing here"
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """What a run may do without asking.
+
+    Parameters
+    ----------
+    autopilot
+        That is expected; None takes any.
+    sets_parameters
+        Set the vehicle's parameters; else differences are only told. For simulations, or where the pilot agrees.
+    starts_itself
+        Start without waiting for the pilot.
+    needs_rtk
+        Do not start without RTK, and say so when it is lost.
+    connect_s, ready_s
+        Longest waits for the first heartbeat, and for the pre-flight list.
+    link_lost_s
+        Give up watching after so long without the link.
+    """
+
+    autopilot: Autopilot | None = None
+    sets_parameters: bool = False
+    starts_itself: bool = True
+    needs_rtk: bool = False
+    connect_s: float = 30.0
+    ready_s: float = 180.0
+    link_lost_s: float = 300.0
+
+
+@dataclass(frozen=True, slots=True)
+class RunOutcome:
+    """How a sortie ended.
+
+    Parameters
+    ----------
+    record
+        What was flown, also of a sortie that failed in flight.
+    notes
+        What was noticed from the first heartbeat on; times by the receiver's clock.
+    """
+
+    error: GroundStationError | None
+    record: FlightRecord | None
+    notes: tuple[FlightEvent, ...]
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether it was flown to its end."""
+        return self.error is None
+
+
+@dataclass(frozen=True, slots=True)
+class RunView:
+    """A run as it stands, for views: nothing in it changes any more.
+
+    Parameters
+    ----------
+    doing
+        What is done now, with how much of it and of how much.
+    answers
+        What the vehicle said to the pilot's orders, the last at the end.
+    """
+
+    time_s: float
+    phase: Phase
+    state: VehicleState
+    checks: tuple[PreflightCheck, ...]
+    watch: Watch
+    on_board: OnBoard
+    doing: tuple[str, float, float]
+    answers: tuple[CommandOutcome, ...]
+    notes: tuple[FlightEvent, ...]
+    is_link_alive: bool

@@ -1,0 +1,91 @@
+"""Parameters that a vehicle needs for a plan, and messages that it shall send: `data/setup.toml`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import Address, CommandLong
+from missions.model import Mission
+from planning.json_file import read_toml
+
+DATA_PATH = Path(__file__).parent / "data" / "setup.toml"
+
+MAV_CMD_SET_MESSAGE_INTERVAL, MAV_CMD_REQUEST_MESSAGE = 511, 512
+HOME_POSITION = 242
+
+RATES_HZ = {
+    33: 10.0,  # GLOBAL_POSITION_INT
+    30: 10.0,  # ATTITUDE
+    285: 10.0,  # GIMBAL_DEVICE_ATTITUDE_STATUS
+    1: 1.0,  # SYS_STATUS
+    24: 2.0,  # GPS_RAW_INT
+    42: 2.0,  # MISSION_CURRENT
+    245: 2.0,  # EXTENDED_SYS_STATE
+    242: 0.5,  # HOME_POSITION
+}
+OWN_RATES_HZ = {
+    Autopilot.ARDUPILOT: {193: 1.0, 168: 1.0},  # EKF_STATUS_REPORT, WIND
+    Autopilot.PX4: {230: 1.0, 231: 1.0},  # ESTIMATOR_STATUS, WIND_COV
+}
+"""Messages by number: positions and angles often enough for a photo's pose, the rest for the eye."""
+
+
+@dataclass(frozen=True, slots=True)
+class SlowLanding:
+    """The last part of a landing: from which height on, and how fast."""
+
+    below_m: float
+    speed_m_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleSetup:
+    """What the data file holds for one autopilot; it explains the fields."""
+
+    reboot: frozenset[str]
+    landing: SlowLanding
+    needed: dict[str, float]
+    from_plan: dict[str, tuple[str, float]]
+
+
+@cache
+def _setups() -> dict[str, VehicleSetup]:
+    return read_toml(DATA_PATH, dict[str, VehicleSetup])
+
+
+def needs_reboot(autopilot: Autopilot) -> frozenset[str]:
+    """Parameters whose change takes effect after a reboot only."""
+    return _setups()[autopilot].reboot
+
+
+def landing(autopilot: Autopilot) -> SlowLanding:
+    """How an autopilot lands when nobody says otherwise."""
+    return _setups()[autopilot].landing
+
+
+def wanted_parameters(autopilot: Autopilot, mission: Mission) -> dict[str, float]:
+    """Parameters with which a mission is flown as it was planned, in the autopilot's units."""
+    setup, aircraft = _setups()[autopilot], mission.aircraft
+    low, high = mission.camera.gimbal_pitch_deg
+    own = {"speed_m_s": mission.speed_m_s, "gimbal_pitch_low_deg": low, "gimbal_pitch_high_deg": high}
+    wanted = dict(setup.needed)
+    for name, (field, factor) in setup.from_plan.items():
+        value = own[field] if field in own else getattr(aircraft, field)
+        if value is not None:
+            wanted[name] = value * factor
+    return wanted
+
+
+def message_requests(autopilot: Autopilot, vehicle: Address) -> tuple[CommandLong, ...]:
+    """Commands that make the vehicle send what is watched; home, which seldom changes, at once."""
+    rates = RATES_HZ | OWN_RATES_HZ[autopilot]
+    return (
+        *(
+            CommandLong(vehicle.system, vehicle.component, MAV_CMD_SET_MESSAGE_INTERVAL, float(number), 1e6 / rate_hz)
+            for number, rate_hz in rates.items()
+        ),
+        CommandLong(vehicle.system, vehicle.component, MAV_CMD_REQUEST_MESSAGE, float(HOME_POSITION)),
+    )

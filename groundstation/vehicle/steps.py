@@ -1,0 +1,296 @@
+"""What a sortie does, step by step: the phases of `flight_run.py`.
+
+Each function is a generator: it yields a machine to be run, or None to wait for the next event, and raises what ends
+the sortie.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from groundstation.vehicle.commands import MAV_RESULT_TEMPORARILY_REJECTED, Answer, CommandCall, CommandOutcome
+from groundstation.vehicle.modes import MISSION_MODE, set_mode_command
+from groundstation.vehicle.orders import fence_messages
+from groundstation.vehicle.parameters import ParameterCall, ParameterOutcome, ParameterStatus
+from groundstation.vehicle.preflight import Verdict, is_ready
+from groundstation.vehicle.recorder import Recorder
+from groundstation.vehicle.reread import MissionReread
+from groundstation.vehicle.setup import message_requests, needs_reboot, wanted_parameters
+from groundstation.vehicle.state import Landed, VehicleState
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import Address, CommandLong
+from missions.mavlink.transfer.exchange import MissionType, Route
+from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
+from missions.mavlink.transfer.wire_items import to_wire
+from planning.errors import LinkRejected, LinkTimeout, MissionError
+
+if TYPE_CHECKING:
+    from groundstation.vehicle.flight_run import FlightRun, Steps
+
+MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, MAV_CMD_MISSION_START = 246, 300
+MAV_CMD_COMPONENT_ARM_DISARM = 400
+REBOOT_AUTOPILOT = 1.0
+
+ARMING_S, ARMING_PAUSE_S = 60.0, 2.0
+"""How long arming is tried while the autopilot still has something to say against it."""
+
+MODE_S = 5.0
+TAKE_OFF_S = 60.0
+"""Wait for the aircraft to leave the ground once its mission was started."""
+
+DISARM_S = 20.0
+"""Wait for the autopilot to disarm by itself after it has landed."""
+
+REBOOT_PAUSE_S, REBOOT_S = 3.0, 60.0
+MAV_RESULT_FAILED = 4
+
+
+def sortie_steps(run: FlightRun) -> Steps:
+    """The whole sortie."""
+    from groundstation.vehicle.run_records import Phase
+
+    yield from _connect(run)
+    run.phase = Phase.PREPARING
+    yield from _prepare(run)
+    run.phase = Phase.UPLOADING
+    yield from _upload(run)
+    run.phase = Phase.CHECKING
+    yield from _check(run)
+    run.phase = Phase.READY
+    while not run.may_start:
+        yield None
+    run.phase = Phase.STARTING
+    yield from _start(run)
+    run.phase = Phase.FLYING
+    yield from _fly(run)
+
+
+# Connecting and preparing
+
+
+def _connect(run: FlightRun) -> Steps:
+    deadline_s = run.now_s + run.options.connect_s
+    while run.state.autopilot is None:
+        if run.now_s > deadline_s:
+            raise LinkTimeout(
+                f"{run.link_name}: no ArduPilot or PX4 was heard within {run.options.connect_s:g} s; is the vehicle "
+                "on, and the address right?"
+            )
+        yield None
+    expected, found = run.options.autopilot, run.state.autopilot
+    if expected is not None and found is not expected:
+        raise LinkRejected(f"{run.link_name}: expected {expected.value}, found {found.value}; name the other autopilot")
+    if run.state.is_armed:
+        raise LinkRejected(f"{run.link_name}: the vehicle is armed already; land and disarm it first")
+    run.recorder = Recorder(f"{found.value}, {run.link_name}", found)
+
+
+def _vehicle(run: FlightRun) -> tuple[Autopilot, Address]:
+    autopilot, address = run.state.autopilot, run.state.address
+    assert autopilot is not None
+    assert address is not None
+    return autopilot, address
+
+
+def _prepare(run: FlightRun) -> Steps:
+    yield from _ask_for_telemetry(run)
+    autopilot, address = _vehicle(run)
+    changed: set[str] = set()
+    for name, value in wanted_parameters(autopilot, run.orders.mission).items():
+        wanted = value if run.options.sets_parameters else None
+        outcome: ParameterOutcome = yield ParameterCall(name, wanted, autopilot, address)
+        if outcome.status is ParameterStatus.SET:
+            changed.add(name)
+            run.note("parameter", f"{name} was {outcome.former:g} and is {value:g} now")
+        elif outcome.status is ParameterStatus.READ and abs((outcome.value or 0.0) - value) > 1e-3 * abs(value):
+            run.note("parameter", f"{name} is {outcome.value:g}; the plan was made for {value:g}")
+        elif not outcome.is_as_wanted:
+            run.note("parameter", f"{name}: {outcome.status.value}")
+    if changed & needs_reboot(autopilot):
+        yield from _reboot(run)
+
+
+def _ask_for_telemetry(run: FlightRun) -> Steps:
+    autopilot, address = _vehicle(run)
+    for command in message_requests(autopilot, address):
+        outcome: CommandOutcome = yield CommandCall("sending telemetry", command, run.own)
+        if outcome.answer is Answer.NO_ANSWER:
+            raise LinkTimeout(f"{run.link_name}: the vehicle is heard but does not answer; does the link go both ways?")
+
+
+def _reboot(run: FlightRun) -> Steps:
+    """Restart the autopilot, once; its word for it may be lost, so its own time since power-up is what tells."""
+    autopilot, address = _vehicle(run)
+    names = ", ".join(sorted(needs_reboot(autopilot)))
+    command = CommandLong(address.system, address.component, MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, REBOOT_AUTOPILOT)
+    before_s = run.state.boot_time_s or 0.0
+    outcome: CommandOutcome = yield CommandCall("rebooting", command, run.own, n_attempts=1)
+    if outcome.answer is Answer.REFUSED:
+        raise LinkRejected(f"{outcome.text}; {names} take effect after a reboot only: restart the vehicle")
+    run.note("reboot", f"the autopilot restarts, so that {names} take effect")
+    yield from _pause(run, REBOOT_PAUSE_S)
+    run.state = VehicleState(address=address, autopilot=autopilot)
+    is_back = yield from _wait(run, lambda state: state.heartbeat is not None and state.heartbeat.value > 1, REBOOT_S)
+    if not is_back:
+        raise LinkTimeout(f"{run.link_name}: the vehicle did not come back within {REBOOT_S:g} s of its reboot")
+    yield from _ask_for_telemetry(run)
+    yield from _wait(run, lambda state: state.boot_time_s is not None, MODE_S)
+    if run.state.boot_time_s is None or run.state.boot_time_s >= before_s + REBOOT_PAUSE_S:
+        raise LinkRejected(f"{run.link_name}: the vehicle was not rebooted; {names} take effect then: restart it")
+
+
+# Transfer
+
+
+def _upload(run: FlightRun) -> Steps:
+    """Geofence first: a mission is never on board without its fence."""
+    autopilot, address = _vehicle(run)
+    if run.orders.fences:
+        route = Route(run.own, address, MissionType.FENCE)
+        yield from _put(run, "geofence", VerifiedUpload(route, fence_messages(run.orders.fences, autopilot), autopilot))
+        run.on_board = replace(run.on_board, fence=True)
+    messages = to_wire(run.orders.items[autopilot], autopilot)
+    yield from _put(run, "mission", VerifiedUpload(Route(run.own, address), messages, autopilot))
+    run.on_board = replace(run.on_board, mission=True)
+
+
+def _put(run: FlightRun, what: str, upload: VerifiedUpload) -> Steps:
+    outcome: Verified | NotVerified = yield upload
+    if isinstance(outcome, NotVerified):
+        raise LinkRejected(f"the {what} is not on the vehicle: {outcome}")
+    run.note("uploaded", f"{what}: {len(outcome.items)} items, read back and equal")
+
+
+def reread_mission(run: FlightRun) -> MissionReread:
+    """What is on board now, compared with what was uploaded."""
+    autopilot, address = _vehicle(run)
+
+    def done(text: str, is_equal: bool | None) -> None:
+        run.note("mission-reread", text)
+        run.on_board = replace(run.on_board, mission=is_equal)
+
+    return MissionReread(Route(run.own, address), to_wire(run.orders.items[autopilot], autopilot), autopilot, done)
+
+
+def _check(run: FlightRun) -> Steps:
+    """Wait until nothing is missing; give up at once on what will not become well by itself."""
+    deadline_s = run.now_s + run.options.ready_s
+    while not is_ready(checks := run.checks()):
+        bad = [check.text for check in checks if check.verdict is Verdict.BAD]
+        if bad and run.options.starts_itself:
+            raise MissionError("not ready for take-off: " + "; ".join(bad))
+        if run.now_s > deadline_s and run.options.starts_itself:
+            missing = [f"{check.code}: {check.text}" for check in checks if check.verdict is not Verdict.OK]
+            raise LinkTimeout(f"not ready for take-off after {run.options.ready_s:g} s: " + "; ".join(missing))
+        yield None
+
+
+# Flying
+
+
+def _set_mode(run: FlightRun, name: str) -> Steps:
+    autopilot, address = _vehicle(run)
+    command = set_mode_command(autopilot, name, address.system, address.component)
+    outcome: CommandOutcome = yield CommandCall(f"the mode {name}", command, run.own)
+    if not outcome.is_accepted:
+        raise LinkRejected(f"{outcome.text}{_last_complaint(run)}")
+
+
+def _arm(run: FlightRun) -> Steps:
+    _, address = _vehicle(run)
+    deadline_s = run.now_s + ARMING_S
+    while True:
+        command = CommandLong(address.system, address.component, MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
+        outcome: CommandOutcome = yield CommandCall("arming", command, run.own)
+        if outcome.is_accepted:
+            return
+        may_come = outcome.result in (MAV_RESULT_TEMPORARILY_REJECTED, MAV_RESULT_FAILED)
+        if not may_come or run.now_s > deadline_s:
+            raise LinkRejected(f"{outcome.text}{_last_complaint(run)}")
+        yield from _pause(run, ARMING_PAUSE_S)
+
+
+def _start(run: FlightRun) -> Steps:
+    """Start the mission as each autopilot wants it; an order of the pilot meanwhile ends that."""
+    autopilot, address = _vehicle(run)
+    if autopilot is Autopilot.ARDUPILOT:
+        # AUTO cannot be armed in (without AUTO_OPTIONS), and begins to fly only when it is told to start.
+        yield from _set_mode(run, "GUIDED")
+        yield from _arm(run)
+        if run.was_ordered_away:
+            return
+        yield from _set_mode(run, MISSION_MODE[autopilot])
+        command = CommandLong(address.system, address.component, MAV_CMD_MISSION_START)
+        outcome: CommandOutcome = yield CommandCall("starting the mission", command, run.own)
+        if not outcome.is_accepted:
+            raise LinkRejected(f"{outcome.text}{_last_complaint(run)}")
+    else:
+        yield from _arm(run)
+        if run.was_ordered_away:
+            return
+        yield from _set_mode(run, MISSION_MODE[autopilot])
+    wanted = MISSION_MODE[autopilot]
+    in_mode = yield from _wait(run, lambda state: state.mode is not None and state.mode.value == wanted, MODE_S)
+    if not in_mode and not run.was_ordered_away:
+        found = "unknown" if run.state.mode is None else run.state.mode.value
+        raise LinkRejected(f"the vehicle is in mode {found} and not in {wanted}{_last_complaint(run)}")
+    run.note("started", f"sortie {run.orders.number}")
+
+
+def _fly(run: FlightRun) -> Steps:
+    """Watch until the aircraft has landed and is disarmed."""
+    took_off = yield from _wait(run, lambda state: _is_flying(state) or not state.is_armed, TAKE_OFF_S)
+    # Without a link nobody knows: what is heard when it is back decides.
+    is_known = run.state.is_link_alive(run.now_s)
+    if is_known and not (took_off and (run.state.is_armed or _is_flying(run.state))):
+        raise MissionError(f"the aircraft did not take off{_last_complaint(run)}")
+    limit_s = (run.state.boot_time_s or 0.0) + 2.0 * run.orders.mission.aircraft.endurance_s
+    landed_s: float | None = None
+    while run.state.is_armed:
+        heartbeat = run.state.heartbeat
+        if heartbeat is not None and heartbeat.age_s(run.now_s) > run.options.link_lost_s:
+            raise LinkTimeout(
+                f"the vehicle was not heard for {run.options.link_lost_s:g} s in flight; what was recorded ends there"
+            )
+        if (run.state.boot_time_s or 0.0) > limit_s:
+            raise LinkTimeout("the aircraft is armed for longer than any battery lasts; look at what it does")
+        landed = run.state.landed
+        is_down = landed is not None and landed.value is Landed.ON_GROUND
+        landed_s = (landed_s or run.now_s) if is_down else None
+        if landed_s is not None and run.now_s - landed_s > DISARM_S:
+            _, address = _vehicle(run)
+            command = CommandLong(address.system, address.component, MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
+            yield CommandCall("disarming", command, run.own)
+            landed_s = run.now_s
+        yield None
+    run.note("landed", f"{len(run.state.photos)} photos were reported")
+
+
+def _is_flying(state: VehicleState) -> bool:
+    if state.landed is not None and state.landed.value in (Landed.IN_AIR, Landed.TAKING_OFF, Landed.LANDING):
+        return True
+    return state.motion is not None and state.is_armed and state.motion.value.height_above_home_m > 1.0
+
+
+def _wait(run: FlightRun, condition: Callable[[VehicleState], bool], timeout_s: float) -> Generator[None, Any, bool]:
+    """Wait for a condition; the generator's value says whether it came."""
+    deadline_s = run.now_s + timeout_s
+    while not condition(run.state):
+        if run.now_s > deadline_s:
+            return False
+        yield None
+    return True
+
+
+def _pause(run: FlightRun, duration_s: float) -> Steps:
+    until_s = run.now_s + duration_s
+    while run.now_s < until_s:
+        yield None
+
+
+def _last_complaint(run: FlightRun) -> str:
+    """The autopilot's own last words, warnings or worse, in brackets."""
+    text = next((text.text for text in reversed(run.state.texts) if text.severity <= 4), "")
+    return f" ({text})" if text else ""

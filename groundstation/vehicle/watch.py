@@ -1,0 +1,299 @@
+"""Warnings that speak before they matter: a pure fold over the states of a vehicle.
+
+Each rule measures how far something is beyond its limit. A warning appears when that is more than nothing, and goes
+when it is back by the rule's slack and at least `HOLD_S` have passed: so none flickers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from groundstation.vehicle.modes import MISSION_MODE
+from groundstation.vehicle.state import LINK_LOST_S, Landed, Motion, VehicleState
+from groundstation.vehicle.surroundings import Surroundings
+from planning.findings import Severity
+from planning.frames import Vec3
+
+HOLD_S = 3.0
+"""Shortest time for which a warning is shown."""
+
+DISTANCE_TOLERANCE_M = 0.5
+"""Of the minimum distance: plans use it to the full, and a vehicle with RTK keeps its path to some 0.3 m."""
+
+DISTANCE_SLACK_M = 0.25
+REACTION_S = 1.5
+"""Of a pilot: how much longer the aircraft flies on when no mission brakes it."""
+
+WIND_SHARE, WIND_SLACK_M_S = 0.85, 1.5
+"""Of the aircraft's limit, from which the wind is spoken of; the slack is about what gusts differ by (1 sigma)."""
+
+BATTERY_EARLY = 0.05
+"""Charge above what the way home needs, at which that is said."""
+
+BATTERY_SLACK = 0.02
+AIRSPACE_EARLY_M, AIRSPACE_SLACK_M = 0.5, 0.5
+OFF_PATH_M, OFF_PATH_SLACK_M = 2.0, 0.5
+PHOTO_NEAR_M = 2.0
+"""A photo further from its viewpoint than this is not its photo."""
+
+PHOTO_LATE_S = 3.0
+"""How much later than the next item a photo may be reported."""
+
+RTK_FLOAT, FIX_3D = 5, 3
+STALE_S = 5.0
+"""Positions and fixes older than this are not known any more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """What one rule found now.
+
+    Parameters
+    ----------
+    excess
+        How far beyond the limit it is, in `unit`; the warning appears above 0.
+    slack
+        How far within the limit it must be for the warning to go.
+    """
+
+    code: str
+    severity: Severity
+    text: str
+    excess: float
+    slack: float
+    value: float
+    limit: float
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class FlightWarning:
+    """A warning that is shown; `since_s` by the receiver's clock."""
+
+    code: str
+    severity: Severity
+    text: str
+    since_s: float
+    value: float
+    limit: float
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """The warnings of now, and what the rules remember.
+
+    Parameters
+    ----------
+    passed_s
+        When each viewpoint without a photo was seen to be passed.
+    """
+
+    warnings: tuple[FlightWarning, ...] = ()
+    passed_s: tuple[tuple[str, float], ...] = ()
+
+    def codes(self) -> frozenset[str]:
+        """Codes of all warnings."""
+        return frozenset(warning.code for warning in self.warnings)
+
+
+@dataclass(frozen=True, slots=True)
+class WatchRules:
+    """What the pilot may choose.
+
+    Parameters
+    ----------
+    needs_rtk
+        Say so when the fix is less than RTK float.
+    """
+
+    needs_rtk: bool = False
+
+
+def watched(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules = WatchRules()
+) -> Watch:
+    """Warnings after one more state.
+
+    On the ground only link, battery and GNSS are watched; what depends on a position that is not known any more stays
+    as it was.
+    """
+    watch = replace(watch, passed_s=tuple(_passed(watch, state, around, now_s)))
+    found = {each.code: each for rule in _RULES for each in rule(watch, state, around, now_s, rules)}
+    warnings = []
+    for code in dict.fromkeys([*(warning.code for warning in watch.warnings), *found]):
+        former = next((warning for warning in watch.warnings if warning.code == code), None)
+        shown = _shown(former, found.get(code), now_s)
+        if shown is not None:
+            warnings.append(shown)
+    return replace(watch, warnings=tuple(warnings))
+
+
+def _shown(former: FlightWarning | None, found: Watched | None, now_s: float) -> FlightWarning | None:
+    if found is None:
+        return former if former is not None and now_s - former.since_s < HOLD_S else None
+    if former is None:
+        if found.excess <= 0.0:
+            return None
+        return FlightWarning(found.code, found.severity, found.text, now_s, found.value, found.limit, found.unit)
+    if found.excess < -found.slack and now_s - former.since_s >= HOLD_S:
+        return None
+    return replace(former, severity=found.severity, text=found.text, value=found.value)
+
+
+def stop_point(motion: Motion, deceleration_m_s2: float, reaction_s: float) -> Vec3:
+    """Where an aircraft comes to rest that flies on for `reaction_s` and then brakes: v t + v^2 / (2 a) ahead."""
+    speed = math.sqrt(sum(part * part for part in motion.velocity_enu_m_s))
+    ahead_s = reaction_s + speed / (2.0 * deceleration_m_s2)
+    x, y, z = (p + v * ahead_s for p, v in zip(motion.position_enu_m, motion.velocity_enu_m_s, strict=True))
+    return (x, y, z)
+
+
+def _link(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    if state.heartbeat is None:
+        return
+    age_s = state.heartbeat.age_s(now_s)
+    text = f"no heartbeat for {age_s:.0f} s: what is shown is old; the aircraft goes on by itself"
+    yield Watched("link-lost", Severity.ERROR, text, age_s - LINK_LOST_S, LINK_LOST_S / 2.0, age_s, LINK_LOST_S, "s")
+
+
+def _distance(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    motion = _flying(state, now_s)
+    if motion is None:
+        return
+    limit_m = around.space.min_distance_m - DISTANCE_TOLERANCE_M
+    # A mission brakes by itself before each waypoint; only without one does the pilot's reaction count.
+    end = stop_point(motion, around.aircraft.max_acceleration_m_s2, 0.0 if _flies_mission(state) else REACTION_S)
+    ahead_m = around.facade_distance_m(motion.position_enu_m, end)
+    here_m = around.facade_distance_m(motion.position_enu_m, motion.position_enu_m)
+    severity = Severity.ERROR if here_m < limit_m else Severity.WARNING
+    text = f"the facade is {here_m:.1f} m away and will be {ahead_m:.1f} m away where the aircraft can stop"
+    excess_m = limit_m - ahead_m
+    yield Watched("facade-distance", severity, text, excess_m, DISTANCE_SLACK_M, ahead_m, limit_m, "m")
+
+
+def _wind(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    if state.wind_enu_m_s is None:
+        return
+    wind_m_s = math.hypot(*state.wind_enu_m_s.value[:2])
+    limit_m_s = around.aircraft.max_wind_m_s
+    severity = Severity.ERROR if wind_m_s > limit_m_s else Severity.WARNING
+    text = f"the wind is {wind_m_s:.1f} m/s; {around.aircraft.name} may fly in up to {limit_m_s:g} m/s"
+    excess_m_s = wind_m_s - WIND_SHARE * limit_m_s
+    yield Watched("wind", severity, text, excess_m_s, WIND_SLACK_M_S, wind_m_s, limit_m_s, "m/s")
+
+
+def _battery(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    level = None if state.battery is None else state.battery.value.remaining
+    if level is None:
+        return
+    reserve = around.rules.battery_reserve
+    motion = _flying(state, now_s)
+    home = 0.0 if motion is None else around.way_home_s(motion.position_enu_m) / around.aircraft.endurance_s
+    needed = reserve + home
+    if level <= reserve:
+        severity, text = Severity.ERROR, f"the battery holds {level:.0%}, less than the reserve of {reserve:.0%}: land"
+    elif level <= needed:
+        severity, text = Severity.ERROR, f"the way home would use the reserve: {level:.0%} left, {needed:.0%} needed"
+    else:
+        severity = Severity.WARNING
+        text = f"the battery holds {level:.0%}; at {needed:.0%} the aircraft must turn home"
+    yield Watched("battery", severity, text, needed + BATTERY_EARLY - level, BATTERY_SLACK, level, needed)
+
+
+def _airspace(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    motion = _flying(state, now_s)
+    if motion is None:
+        return
+    end = stop_point(motion, around.aircraft.max_acceleration_m_s2, 0.0 if _flies_mission(state) else REACTION_S)
+    room_m = around.airspace_room_m(end)
+    here_m = around.airspace_room_m(motion.position_enu_m)
+    severity = Severity.ERROR if here_m < 0.0 else Severity.WARNING
+    text = f"the airspace ends {max(room_m, 0.0):.1f} m from where the aircraft can stop"
+    if here_m < 0.0:
+        text = f"the aircraft is {-here_m:.1f} m outside the airspace"
+    # Plans use the airspace up to its faces, as they do the minimum distance.
+    yield Watched("airspace", severity, text, -AIRSPACE_EARLY_M - room_m, AIRSPACE_SLACK_M, room_m, 0.0, "m")
+    away_m = around.no_fly_distance_m(end)
+    text = f"a no-fly zone is {max(away_m, 0.0):.1f} m from where the aircraft can stop"
+    severity = Severity.ERROR if away_m <= 0.0 else Severity.WARNING
+    if math.isfinite(away_m):
+        limit_m = max(0.0, around.space.no_fly_distance_m - DISTANCE_TOLERANCE_M)
+        yield Watched("no-fly", severity, text, limit_m - away_m, AIRSPACE_SLACK_M, away_m, limit_m, "m")
+
+
+def _gnss(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    if state.fix is None:
+        return
+    wanted = RTK_FLOAT if rules.needs_rtk else FIX_3D
+    is_stale = state.fix.age_s(now_s) > STALE_S and state.is_link_alive(now_s)
+    fix_type = 0 if is_stale else state.fix.value.fix_type
+    severity = Severity.ERROR if fix_type < FIX_3D else Severity.WARNING
+    text = "the GNSS receiver has lost its fix: fly by hand or land" if fix_type < FIX_3D else "RTK is lost"
+    yield Watched("gnss", severity, text, wanted - fix_type - 0.5, 0.0, float(fix_type), float(wanted))
+
+
+def _photos(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    missing = [name for name, since_s in watch.passed_s if now_s - since_s > PHOTO_LATE_S]
+    if missing:
+        text = f"no photo came from viewpoint '{missing[-1]}'; {len(missing)} of this sortie are missing"
+        yield Watched("photo-missing", Severity.WARNING, text, float(len(missing)), 0.0, float(len(missing)), 0.0)
+
+
+def _deviation(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    motion = _flying(state, now_s)
+    if motion is None or not _flies_mission(state):
+        return
+    off_m = around.off_path_m(motion.position_enu_m)
+    text = f"the aircraft is {off_m:.1f} m beside its planned path"
+    yield Watched("off-path", Severity.WARNING, text, off_m - OFF_PATH_M, OFF_PATH_SLACK_M, off_m, OFF_PATH_M, "m")
+
+
+Rule = Callable[[Watch, VehicleState, Surroundings, float, WatchRules], Iterator[Watched]]
+
+_RULES: tuple[Rule, ...] = (_link, _distance, _airspace, _gnss, _battery, _wind, _deviation, _photos)
+
+
+def _passed(watch: Watch, state: VehicleState, around: Surroundings, now_s: float) -> Iterator[tuple[str, float]]:
+    """Viewpoints behind the current item that have no photo, and since when that is known."""
+    if state.mission is None:
+        return
+    known = dict(watch.passed_s)
+    # The item behind the trigger keeps the aircraft in place until the photo is taken: it counts as not passed yet.
+    for expected in around.photos:
+        if expected.trigger_seq + 1 >= state.mission.value.current:
+            return
+        if not any(math.dist(p.position_enu_m, expected.position_enu_m) <= PHOTO_NEAR_M for p in state.photos):
+            yield expected.viewpoint_id, known.get(expected.viewpoint_id, now_s)
+
+
+def _flying(state: VehicleState, now_s: float) -> Motion | None:
+    """Motion of a vehicle that is in the air, where it is known."""
+    if state.motion is None or state.motion.age_s(now_s) > STALE_S or not state.is_armed:
+        return None
+    if state.landed is not None and state.landed.value is Landed.ON_GROUND:
+        return None
+    return state.motion.value
+
+
+def _flies_mission(state: VehicleState) -> bool:
+    autopilot, mode = state.autopilot, state.mode
+    return autopilot is not None and mode is not None and mode.value == MISSION_MODE[autopilot]

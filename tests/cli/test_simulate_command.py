@@ -1,0 +1,135 @@
+"""`simulate`: what it prints, writes, and refuses."""
+
+import json
+import threading
+
+import pytest
+
+from groundstation.cli.commands.simulate import effect_wishes
+from missions.flight.flight_file import read_flight
+from missions.flight.logs.read import read_log
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.link import VEHICLE, open_link
+from missions.simulator.build import EFFECTS, make_airframe
+from missions.simulator.server import serve
+from missions.simulator.vehicle import SimulatedVehicle
+from planning.errors import InputError
+from planning.plan_file import read_plan
+from planning.progress import StopRequest
+from planning.site_file import read_site
+from tests.cli.conftest import BAD_CONTENTS
+
+
+@pytest.fixture
+def fly(reflight, pane, tmp_path):
+    """Simulate the pane's plan."""
+
+    def run(*arguments):
+        return reflight("simulate", pane / "plan.json", pane / "site.json", "-o", tmp_path / "f.json", *arguments)
+
+    return run
+
+
+def test_a_flight_is_reported_and_written(fly, tmp_path):
+    done = fly()
+    assert done.status == 0
+    assert "photos: 6 of 6 views" in done.out
+    assert "effects:" in done.out
+    flight = read_flight(tmp_path / "f.json")
+    assert len(flight.sorties[0].photos) == 6
+    assert flight.report.summary.n_taken == 6
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+def test_json_is_one_object_with_what_others_need(fly, autopilot):
+    content = fly("--autopilot", autopilot, "--json", "--seed", 7).json
+    assert (content["n_taken"], content["n_views"]) == (6, 6)
+    assert content["covered"] == content["covered_planned"] > 0
+    assert len(content["effects"]) == len(EFFECTS)
+    assert content["duration_flown_s"] == pytest.approx(content["duration_predicted_s"], rel=0.1)
+    assert {"flight", "link", "views", "sorties", "findings", "seconds"} <= set(content)
+
+
+def test_effects_can_be_overruled(fly):
+    content = fly("--effects", "none", "--effects", "wind=on", "--wind", 5, "--json").json
+    assert {effect["effect"] for effect in content["effects"] if effect["on"]} == {"wind"}
+    assert all(effect["decided_by"] == "user" for effect in content["effects"])
+
+
+def test_wishes_are_understood_together():
+    assert effect_wishes([]) == {}
+    assert set(effect_wishes(["all"]).values()) == {"on"}
+    assert effect_wishes(["none,gnss-noise=auto"])["GNSS noise"] == "auto"
+    assert effect_wishes(["GNSS noise=off"]) == {"GNSS noise": "off"}
+    for bad in ("wind", "wind=yes", "rain=on", "=on", ""):
+        with pytest.raises(InputError, match="names are wind, gnss-noise"):
+            effect_wishes([bad])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (("--wind", -1), "--wind: expected 0 m/s or more"),
+        (("--wind", 40), "wind"),
+        (("--speedup", 0), "--speedup: expected more than 0"),
+        (("--seed", -1), "--seed: expected 0 to"),
+        (("--effects", "rain=on"), "names are wind"),
+        (("--link", "carrier-pigeon"), "--take-off"),
+        (("--link", "carrier-pigeon", "--take-off"), "such as tcp:127.0.0.1:5760"),
+        (("--link", "serial:/dev/nothing:57600"), "this could be a real aircraft"),
+        (("--link", "udp:127.0.0.1:14550"), "this could be a real aircraft"),
+        (("--link", "tcp:127.0.0.1:5760", "--wind", 3), "are for --link sim"),
+        (("--link", "tcp:127.0.0.1:1"), "cannot be opened"),
+    ],
+)
+def test_what_cannot_be_flown_is_said_in_one_line_and_nothing_is_written(fly, tmp_path, arguments, text):
+    done = fly(*arguments)
+    assert text in done.error
+    assert not (tmp_path / "f.json").exists()
+
+
+@pytest.mark.parametrize("name", sorted(BAD_CONTENTS))
+def test_files_that_are_no_plan_are_refused(reflight, pane, tmp_path, name):
+    bad = tmp_path / "bad.json"
+    bad.write_bytes(BAD_CONTENTS[name])
+    assert "bad.json" in reflight("simulate", bad, pane / "site.json", "-o", tmp_path / "f.json").error
+    assert "bad.json" in reflight("simulate", pane / "plan.json", bad, "-o", tmp_path / "f.json").error
+
+
+def test_a_plan_for_another_site_is_refused(reflight, pane, changed, tmp_path):
+    moved = changed(pane / "site.json", "origin", "lat_deg", 1.0)
+    done = reflight("simulate", pane / "plan.json", moved, "-o", tmp_path / "f.json")
+    assert "a changed site" in done.error
+
+
+def test_the_flight_may_not_replace_the_plan(reflight, pane):
+    before = (pane / "plan.json").read_bytes()
+    assert (
+        "would replace" in reflight("simulate", pane / "plan.json", pane / "site.json", "-o", pane / "plan.json").error
+    )
+    assert (pane / "plan.json").read_bytes() == before
+
+
+@pytest.mark.parametrize("autopilot", list(Autopilot))
+def test_a_vehicle_at_a_link_is_flown_and_logged(fly, pane, tmp_path, autopilot):
+    plan, model = read_plan(pane / "plan.json"), read_site(pane / "site.json")
+    airframe, _ = make_airframe(plan, model, plan.sorties[0])
+    vehicle = SimulatedVehicle(autopilot, airframe, model.site.origin, is_ready=True)
+    link = open_link("tcpin:127.0.0.1:0", VEHICLE)
+    stop = StopRequest()
+    thread = threading.Thread(target=serve, args=(vehicle, [link], 50.0, stop))
+    thread.start()
+    try:
+        url = f"tcp:127.0.0.1:{link.channel.port}"
+        done = fly("--link", url, "--autopilot", autopilot.value, "--logs", tmp_path / "logs", "--json")
+    finally:
+        stop.request()
+        thread.join()
+        link.close()
+    assert (done.json["n_taken"], done.json["link"]) == (6, url)
+    (log,) = (tmp_path / "logs").iterdir()
+    assert [str(log)] == done.json["logs"]
+    (again,) = read_log(log, model.site).records
+    assert len(again.photos) == 6
+    content = json.loads((tmp_path / "f.json").read_text())
+    assert {photo["source"] for photo in content["sorties"][0]["photos"]} <= {"camera-feedback", "image-captured"}

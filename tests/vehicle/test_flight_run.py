@@ -1,0 +1,317 @@
+"""A sortie from the first heartbeat to the landing, and everything that can come between."""
+
+from dataclasses import replace
+
+import pytest
+
+from groundstation.vehicle.conduct import conduct
+from groundstation.vehicle.flight_run import FlightRun
+from groundstation.vehicle.orders import sortie_orders
+from groundstation.vehicle.preflight import Verdict
+from groundstation.vehicle.run_records import Phase, PilotOrder, RunOptions
+from groundstation.vehicle.state import LINK_LOST_S
+from missions.build import missions_from_plan
+from missions.mavlink.autopilots import Autopilot
+from planning.errors import LinkError, LinkRejected, LinkTimeout, MissionError, OperationCancelled
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.scenes import single_panel
+from planning.site import NoFlyZone
+from tests.vehicle.toy import Toy, ToyLink
+
+BOTH = pytest.mark.parametrize("autopilot", list(Autopilot))
+
+
+@pytest.fixture(scope="module")
+def orders():
+    """A flight of some photos before a single pane, beside a zone not to be flown over."""
+    model = single_panel()
+    low = model.site.airspace.min_enu_m
+    corner = [(low[0] + x, low[1] + y) for x, y in ((0, 0), (3, 0), (3, 3))]
+    airspace = replace(model.site.airspace, no_fly=(NoFlyZone("road", tuple(corner), -10.0, 200.0),))
+    model = replace(model, site=replace(model.site, airspace=airspace))
+    plan = plan_flight(model, PlanRequest(n_views=5, time_budget_s=2.0)).plan
+    (mission,) = missions_from_plan(plan, model.site.origin, model.site.home_enu_m)
+    return sortie_orders(plan, model, mission)
+
+
+def toy_at_home(orders, **faults):
+    home = orders.home
+    return Toy((round(home.lat_deg * 1e7), round(home.lon_deg * 1e7)), **faults)
+
+
+OPTIONS = RunOptions(sets_parameters=True, connect_s=10.0, ready_s=20.0)
+
+
+def fly(orders, toy, options=OPTIONS, link=None, **changes):
+    run = FlightRun(orders, options, "toy")
+    outcome = conduct(run, link or ToyLink(toy), lambda: toy.now_s, **changes)
+    return run, outcome
+
+
+def codes(outcome):
+    return [event.code for event in outcome.record.events]
+
+
+@BOTH
+def test_a_sortie_is_flown_and_recorded(orders, autopilot):
+    toy = toy_at_home(orders, autopilot=autopilot)
+    phases = []
+    run, outcome = fly(orders, toy, show=lambda view: phases.append(view.phase))
+    assert outcome.succeeded
+    assert list(dict.fromkeys(phases)) == [phase for phase in Phase if phase in phases]
+    assert phases[-1] is Phase.ENDED
+    assert len(outcome.record.photos) == orders.mission.n_photos
+    assert outcome.record.sortie == 1
+    assert run.on_board.mission is True
+    assert run.on_board.fence is True
+
+
+def test_ardupilot_is_started_as_it_wants_it(orders):
+    toy = toy_at_home(orders)
+    fly(orders, toy)
+    started = [command for command in toy.commands if command[0] in (176, 300, 400)]
+    assert started == [(176, 1.0, 4.0), (400, 1.0, 0.0), (176, 1.0, 3.0), (300, 0.0, 0.0)]
+
+
+def test_px4_is_started_as_it_wants_it(orders):
+    toy = toy_at_home(orders, autopilot=Autopilot.PX4)
+    fly(orders, toy)
+    assert [command for command in toy.commands if command[0] in (176, 300, 400)] == [(400, 1.0, 0.0), (176, 1.0, 4.0)]
+
+
+def test_without_a_heartbeat_it_says_what_to_look_for(orders):
+    toy = toy_at_home(orders, silent=(0.0, 1000.0))
+    _, outcome = fly(orders, toy)
+    assert isinstance(outcome.error, LinkTimeout)
+    assert "no ArduPilot or PX4 was heard within 10 s" in str(outcome.error)
+
+
+def test_another_autopilot_than_expected_is_refused(orders):
+    _, outcome = fly(orders, toy_at_home(orders), replace(OPTIONS, autopilot=Autopilot.PX4))
+    assert "expected px4, found ardupilot" in str(outcome.error)
+
+
+def test_a_vehicle_that_is_armed_already_is_left_alone(orders):
+    toy = toy_at_home(orders, is_armed=True)
+    _, outcome = fly(orders, toy)
+    assert "armed already" in str(outcome.error)
+    assert toy.commands == []
+
+
+def test_a_link_that_goes_one_way_is_told_so(orders):
+    toy = toy_at_home(orders)
+    toy.hear = lambda message: None
+    _, outcome = fly(orders, toy)
+    assert "does the link go both ways" in str(outcome.error)
+
+
+@pytest.mark.parametrize(
+    ("fault", "text"),
+    [({"battery": 10}, "battery holds 10%"), ({"fix_type": 2}, "fix: 2-D"), ({"refuses": {400: 3}}, "not supported")],
+)
+def test_what_grounds_a_flight_is_said(orders, fault, text):
+    toy = toy_at_home(orders, **fault)
+    _, outcome = fly(orders, toy)
+    assert not outcome.succeeded
+    assert text in str(outcome.error)
+    assert not toy.is_flying
+
+
+def test_an_aircraft_far_from_the_planned_home_is_not_started(orders):
+    toy = toy_at_home(orders)
+    toy.place = (toy.home[0] + 500, toy.home[1], 0)
+    _, outcome = fly(orders, toy)
+    assert isinstance(outcome.error, MissionError)
+    assert "5.5 m from the planned home" in str(outcome.error)
+
+
+def test_arming_is_tried_again_while_the_autopilot_settles(orders):
+    toy = toy_at_home(orders, refuses={400: 4}, refusals={400: 3})
+    _, outcome = fly(orders, toy)
+    assert outcome.succeeded
+    assert sum(command[0] == 400 for command in toy.commands) == 4
+
+
+def test_arming_that_stays_refused_is_told_with_the_autopilots_own_words(orders):
+    _, outcome = fly(orders, toy_at_home(orders, refuses={400: 4}))
+    assert isinstance(outcome.error, LinkRejected)
+    assert "refused arming (failed) (PreArm: test says no)" in str(outcome.error)
+
+
+def test_an_aircraft_that_does_not_take_off_is_no_success(orders):
+    _, outcome = fly(orders, toy_at_home(orders, takes_off=False))
+    assert "did not take off" in str(outcome.error)
+
+
+def test_a_vehicle_that_keeps_its_motors_running_is_disarmed(orders):
+    toy = toy_at_home(orders, disarms_itself=False)
+    _, outcome = fly(orders, toy)
+    assert outcome.succeeded
+    assert (400, 0.0, 0.0) in toy.commands
+
+
+def test_parameters_are_set_where_that_is_allowed_and_only_told_where_not(orders):
+    toy = toy_at_home(orders, parameters={"WPNAV_SPEED": 500.0, "CAM1_TYPE": 1.0, "MNT1_TYPE": 1.0})
+    fly(orders, toy)
+    assert toy.parameters["WPNAV_SPEED"] == 100.0 * orders.mission.speed_m_s
+    toy = toy_at_home(orders, parameters={"WPNAV_SPEED": 500.0})
+    _, outcome = fly(orders, toy, replace(OPTIONS, sets_parameters=False))
+    assert toy.parameters["WPNAV_SPEED"] == 500.0
+    told = [note.text for note in outcome.notes if note.code == "parameter"]
+    assert any("WPNAV_SPEED is 500" in text for text in told)
+
+
+def test_a_camera_that_was_just_set_up_takes_effect_after_a_reboot(orders):
+    toy = toy_at_home(orders, parameters={"CAM1_TYPE": 0.0, "MNT1_TYPE": 0.0})
+    _, outcome = fly(orders, toy)
+    assert outcome.succeeded
+    assert sum(command[0] == 246 for command in toy.commands) == 1
+
+
+def test_losing_the_link_in_flight_is_shown_and_survived(orders):
+    toy = toy_at_home(orders)
+    shown = []
+
+    def show(view):
+        if view.phase is Phase.FLYING and toy.silent == (0.0, 0.0):
+            toy.silent = (toy.now_s + 1.0, toy.now_s + 2.0 + 2.0 * LINK_LOST_S)
+        shown.append((view.phase, view.is_link_alive, "link-lost" in view.watch.codes()))
+
+    run, outcome = fly(orders, toy, show=show)
+    assert outcome.succeeded
+    assert (Phase.FLYING, False, True) in shown
+    assert {"link-lost", "link-found", "mission-reread"} <= set(codes(outcome))
+    assert run.on_board.mission is True
+    (text,) = [event.text for event in outcome.record.events if event.code == "mission-reread"]
+    assert text == "the mission on board is the one that was uploaded"
+
+
+def test_a_mission_that_was_changed_behind_our_back_is_told(orders):
+    toy = toy_at_home(orders)
+
+    def show(view):
+        if view.phase is Phase.FLYING and toy.silent == (0.0, 0.0):
+            toy.silent = (toy.now_s + 1.0, toy.now_s + 2.0 + LINK_LOST_S)
+            toy.items[3] = replace(toy.items[3], z=99.0)
+
+    run, outcome = fly(orders, toy, show=show)
+    assert run.on_board.mission is False
+    assert any("another mission" in event.text for event in outcome.record.events)
+
+
+def test_a_vehicle_that_stays_away_in_flight_is_no_success_but_leaves_its_record(orders):
+    toy = toy_at_home(orders)
+
+    def show(view):
+        if view.phase is Phase.FLYING and len(view.state.photos) == 2:
+            toy.silent = (toy.now_s, 1e9)
+
+    _, outcome = fly(orders, toy, replace(OPTIONS, link_lost_s=30.0), show=show)
+    assert "not heard for 30 s in flight" in str(outcome.error)
+    assert len(outcome.record.photos) == 2
+
+
+def test_a_broken_link_is_opened_again(orders):
+    toy = toy_at_home(orders)
+    opened = []
+
+    def reopen():
+        opened.append(toy.now_s)
+        if len(opened) < 3:
+            raise LinkError("not yet")
+        return ToyLink(toy)
+
+    link = ToyLink(toy, breaks_at_s=20.0)
+    _, outcome = fly(orders, toy, link=link, reopen=reopen, wait=toy.step)
+    assert outcome.succeeded
+    assert link.is_closed
+    assert len(opened) == 3
+
+
+def test_a_broken_link_that_cannot_be_opened_again_is_an_error(orders):
+    toy = toy_at_home(orders)
+    with pytest.raises(LinkError, match="cable"):
+        fly(orders, toy, link=ToyLink(toy, breaks_at_s=5.0))
+
+
+@pytest.mark.parametrize(
+    ("order", "mode"), [(PilotOrder.PAUSE, "BRAKE"), (PilotOrder.RETURN, "RTL"), (PilotOrder.LAND, "LAND")]
+)
+def test_orders_of_the_pilot_go_out_and_are_answered(orders, order, mode):
+    toy = toy_at_home(orders)
+    run = FlightRun(orders, OPTIONS, "toy")
+    modes = []
+
+    def show(view):
+        modes.append(toy.mode)
+        if view.phase is Phase.FLYING and len(view.state.photos) == 1 and mode not in modes and not run._orders:
+            run.order(order)
+        if toy.mode == "BRAKE" and len(modes) % 50 == 0:
+            run.order(PilotOrder.RESUME)
+
+    outcome = conduct(run, ToyLink(toy), lambda: toy.now_s, show=show)
+    assert outcome.succeeded
+    assert mode in modes
+    assert run.answers[0].is_accepted
+    assert run.answers[0].text == f"{order.value}: done"
+    n_photos = orders.mission.n_photos if order is PilotOrder.PAUSE else 1
+    assert len(outcome.record.photos) == n_photos
+
+
+def test_a_refused_order_is_not_taken_for_done(orders):
+    toy = toy_at_home(orders)
+    run = FlightRun(orders, OPTIONS, "toy")
+
+    def show(view):
+        if view.phase is Phase.FLYING and not run.answers and 176 not in toy.refuses:
+            toy.refuses[176] = 2
+            run.order(PilotOrder.RETURN)
+
+    outcome = conduct(run, ToyLink(toy), lambda: toy.now_s, show=show)
+    assert run.answers[0].text == "the vehicle refused returning home (denied)"
+    assert outcome.succeeded
+
+
+def test_without_a_vehicle_nothing_can_be_ordered(orders):
+    with pytest.raises(ValueError, match="no vehicle"):
+        FlightRun(orders, OPTIONS, "toy").order(PilotOrder.LAND)
+
+
+def test_a_run_waits_for_the_pilot_where_it_must_not_start_by_itself(orders):
+    toy = toy_at_home(orders)
+    run = FlightRun(orders, replace(OPTIONS, starts_itself=False), "toy")
+    ready_s = []
+
+    def show(view):
+        if view.phase is Phase.READY:
+            assert all(check.verdict is Verdict.OK for check in view.checks)
+            ready_s.append(view.time_s)
+            if view.time_s > ready_s[0] + 10.0:
+                run.begin()
+
+    outcome = conduct(run, ToyLink(toy), lambda: toy.now_s, show=show)
+    assert outcome.succeeded
+    assert ready_s[-1] - ready_s[0] > 9.0
+
+
+def test_a_photo_that_stays_away_is_warned_of_in_flight(orders):
+    toy = toy_at_home(orders, drops_photo=2)
+    _, outcome = fly(orders, toy)
+    assert len(outcome.record.photos) == orders.mission.n_photos - 1
+    assert "warning-photo-missing" in codes(outcome)
+
+
+def test_a_cancelled_sortie_is_cancelled_and_its_link_closed(orders):
+    toy = toy_at_home(orders)
+    link = ToyLink(toy)
+
+    class Cancelling:
+        def report(self, stage, done, total):
+            if stage == "photos" and done >= 1:
+                raise OperationCancelled("by the test")
+
+    with pytest.raises(OperationCancelled):
+        fly(orders, toy, link=link, monitor=Cancelling())
+    assert link.is_closed
+    assert toy.is_flying, "nothing is ordered without the pilot"

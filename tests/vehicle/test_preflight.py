@@ -1,0 +1,159 @@
+"""The list before take-off."""
+
+from dataclasses import replace
+
+import pytest
+
+from groundstation.vehicle.duration import items_duration_s
+from groundstation.vehicle.orders import fence_messages, first_seq, sortie_orders
+from groundstation.vehicle.preflight import OnBoard, Verdict, is_ready, preflight_checks
+from groundstation.vehicle.setup import message_requests, wanted_parameters
+from groundstation.vehicle.state import (
+    BatteryLevel,
+    EstimatorHealth,
+    GnssFix,
+    Motion,
+    Timed,
+    VehicleState,
+    VehicleText,
+)
+from missions.build import missions_from_plan
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import Address
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.scenes import single_panel
+
+NOW_S = 50.0
+ALL_ON_BOARD = OnBoard(mission=True, fence=True)
+
+
+@pytest.fixture(scope="module")
+def orders():
+    model = single_panel()
+    plan = plan_flight(model, PlanRequest(n_views=3, time_budget_s=2.0, profile_id="ardupilot")).plan
+    (mission,) = missions_from_plan(plan, model.site.origin, model.site.home_enu_m)
+    return sortie_orders(plan, model, mission)
+
+
+def ready_state(orders):
+    x, y, z = orders.home_enu_m
+    return VehicleState(
+        address=Address(1, 1),
+        autopilot=Autopilot.ARDUPILOT,
+        heartbeat=Timed(9, NOW_S),
+        motion=Timed(Motion((x + 0.5, y, z), (0.0, 0.0, 0.0), 0.0), NOW_S),
+        fix=Timed(GnssFix(6, 20, 0.014, 0.02), NOW_S),
+        battery=Timed(BatteryLevel(0.98), NOW_S),
+        estimator=Timed(EstimatorHealth(), NOW_S),
+        sensor_problems=Timed((), NOW_S),
+    )
+
+
+def checks(state, orders, on_board=ALL_ON_BOARD, needs_rtk=False):
+    return preflight_checks(state, orders, on_board, NOW_S, needs_rtk=needs_rtk)
+
+
+def test_nothing_is_missing_on_a_vehicle_that_is_ready(orders):
+    assert is_ready(checks(ready_state(orders), orders))
+
+
+def test_before_the_first_heartbeat_everything_is_waited_for(orders):
+    found = {check.code: check.verdict for check in checks(VehicleState(), orders, OnBoard())}
+    assert found.pop("wind") is Verdict.OK
+    assert set(found.values()) == {Verdict.WAIT}
+
+
+def far(metres):
+    def move(state, orders):
+        x, y, z = orders.home_enu_m
+        return replace(state, motion=Timed(Motion((x + metres, y, z), (0.0, 0.0, 0.0), 0.0), NOW_S))
+
+    return move
+
+
+@pytest.mark.parametrize(
+    ("code", "verdict", "change"),
+    [
+        ("link", Verdict.WAIT, lambda s, o: replace(s, heartbeat=Timed(9, NOW_S - 10.0))),
+        ("position", Verdict.WAIT, lambda s, o: replace(s, estimator=Timed(EstimatorHealth("no position yet"), NOW_S))),
+        ("gnss", Verdict.WAIT, lambda s, o: replace(s, fix=Timed(GnssFix(2, 5, None, None), NOW_S))),
+        ("gnss", Verdict.WAIT, lambda s, o: replace(s, fix=Timed(GnssFix(6, 5, None, None), NOW_S - 60.0))),
+        ("home", Verdict.BAD, far(4.0)),
+        ("home", Verdict.BAD, far(4000.0)),
+        ("battery", Verdict.BAD, lambda s, o: replace(s, battery=Timed(BatteryLevel(o.battery_needed - 0.01), NOW_S))),
+        ("battery", Verdict.WAIT, lambda s, o: replace(s, battery=Timed(BatteryLevel(None), NOW_S))),
+        ("sensors", Verdict.WAIT, lambda s, o: replace(s, sensor_problems=Timed(("pre-arm checks",), NOW_S))),
+        ("wind", Verdict.BAD, lambda s, o: replace(s, wind_enu_m_s=Timed((30.0, 0.0, 0.0), NOW_S))),
+    ],
+)
+def test_each_thing_that_is_missing_is_found_and_only_that(orders, code, verdict, change):
+    found = checks(change(ready_state(orders), orders), orders)
+    assert [(check.code, check.verdict) for check in found if check.verdict is not Verdict.OK] == [(code, verdict)]
+
+
+def test_rtk_is_asked_for_only_where_it_is_needed(orders):
+    state = replace(ready_state(orders), fix=Timed(GnssFix(3, 20, 1.5, 2.0), NOW_S))
+    assert is_ready(checks(state, orders))
+    (check,) = [check for check in checks(state, orders, needs_rtk=True) if check.verdict is not Verdict.OK]
+    assert "RTK float is needed" in check.text
+
+
+def test_a_mission_that_is_not_the_one_sent_grounds_the_flight(orders):
+    for on_board, verdict in ((OnBoard(), Verdict.WAIT), (OnBoard(mission=False), Verdict.BAD)):
+        (check,) = [check for check in checks(ready_state(orders), orders, on_board) if check.code == "mission"]
+        assert check.verdict is verdict
+    fenced = replace(orders, fences=(((0.0, 0.0), (0.0, 1.0), (1.0, 0.0)),))
+    codes = [c.code for c in checks(ready_state(orders), fenced, OnBoard(mission=True)) if c.verdict is not Verdict.OK]
+    assert codes == ["geofence"]
+
+
+def test_the_autopilots_own_words_stand_beside_its_refusal(orders):
+    state = replace(
+        ready_state(orders),
+        sensor_problems=Timed(("pre-arm checks",), NOW_S),
+        texts=(VehicleText(1.0, 2, "PreArm: compass not healthy"), VehicleText(2.0, 6, "EKF3 active")),
+    )
+    (check,) = [check for check in checks(state, orders) if check.code == "sensors"]
+    assert "PreArm: compass not healthy" in check.text
+
+
+def test_triggers_are_numbered_as_on_the_vehicle(orders):
+    for autopilot, items in orders.items.items():
+        photos = orders.surroundings[autopilot].photos
+        assert [items[photo.trigger_seq - first_seq(autopilot)].viewpoint_id for photo in photos] == [
+            photo.viewpoint_id for photo in photos
+        ]
+        assert len(photos) == orders.mission.n_photos
+
+
+def test_a_fence_says_at_each_corner_how_many_there_are():
+    fence = ((10.0, 20.0), (10.0, 21.0), (11.0, 20.0))
+    sent = fence_messages((fence,), Autopilot.ARDUPILOT)
+    assert [(item.command, item.param1, item.x, item.y) for item in sent] == [
+        (5002, 3.0, round(lat * 1e7), round(lon * 1e7)) for lat, lon in fence
+    ]
+
+
+def test_parameters_are_in_the_autopilots_units(orders):
+    ardupilot = wanted_parameters(Autopilot.ARDUPILOT, orders.mission)
+    px4 = wanted_parameters(Autopilot.PX4, orders.mission)
+    assert ardupilot["WPNAV_SPEED"] == 100.0 * px4["MPC_XY_CRUISE"] == 100.0 * orders.mission.speed_m_s
+    assert (ardupilot["MNT1_PITCH_MIN"], ardupilot["MNT1_PITCH_MAX"]) == orders.mission.camera.gimbal_pitch_deg
+    assert (ardupilot["WP_YAW_BEHAVIOR"], ardupilot["CAM1_TYPE"]) == (0, 1)
+
+
+def test_every_message_is_asked_for_by_its_interval():
+    for autopilot in Autopilot:
+        *intervals, home = message_requests(autopilot, Address(1, 1))
+        assert (home.command, home.param1) == (512, 242.0)
+        assert all(command.command == 511 and 1e4 < command.param2 <= 2e6 for command in intervals)
+
+
+def test_longer_holds_take_as_much_longer(orders):
+    for autopilot in Autopilot:
+        items = orders.items[autopilot]
+        index = next(i for i, item in enumerate(items) if item.command == 93)
+        longer = replace(items[index], params=(items[index].params[0] + 7.0, *items[index].params[1:]))
+        changed = replace(orders, items={autopilot: (*items[:index], longer, *items[index + 1 :])})
+        assert items_duration_s(changed, autopilot) - items_duration_s(orders, autopilot) == pytest.approx(7.0)

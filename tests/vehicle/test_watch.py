@@ -1,0 +1,262 @@
+"""Warnings: in time, not too early, and without flicker."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from groundstation.vehicle.state import (
+    Angles,
+    BatteryLevel,
+    GnssFix,
+    Landed,
+    MissionProgress,
+    Motion,
+    Timed,
+    VehicleState,
+)
+from groundstation.vehicle.surroundings import ExpectedPhoto, Surroundings
+from groundstation.vehicle.watch import HOLD_S, PHOTO_LATE_S, Watch, WatchRules, stop_point, watched
+from missions.flight.record import TakenPhoto
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import Address
+from planning.findings import Severity
+from planning.plan import Aircraft, FlightRules
+from planning.scenes import single_panel
+from planning.space import unchecked_space
+
+AIRCRAFT = Aircraft("test", 1000.0, 10.0, max_acceleration_m_s2=2.5, max_wind_m_s=10.0, max_descent_m_s=2.0)
+RULES = FlightRules(battery_reserve=0.25, takeoff_landing_s=30.0)
+
+
+@pytest.fixture(scope="module")
+def around():
+    """Before a single pane that looks along its normal; the path leads straight away from it."""
+    space = unchecked_space(single_panel(), 10.0)
+    return Surroundings(space, AIRCRAFT, RULES, np.zeros((0, 3)))
+
+
+@pytest.fixture(scope="module")
+def outwards(around):
+    """Centre of the pane and its outward direction."""
+    corners = around.space.solids.bvh.corners.reshape(-1, 3)
+    centre = corners.mean(axis=0)
+    middle = (around.space.low_enu_m + around.space.high_enu_m) / 2.0
+    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    normal /= np.linalg.norm(normal)
+    return centre, normal if normal @ (middle - centre) > 0 else -normal
+
+
+def flying(place, velocity=(0.0, 0.0, 0.0), mode="AUTO", now_s=100.0, **changes):
+    state = VehicleState(
+        address=Address(1, 1),
+        autopilot=Autopilot.ARDUPILOT,
+        heartbeat=Timed(100, now_s),
+        mode=Timed(mode, now_s),
+        armed=Timed(True, now_s),
+        landed=Timed(Landed.IN_AIR, now_s),
+        motion=Timed(Motion(tuple(map(float, place)), tuple(map(float, velocity)), 20.0), now_s),
+        attitude=Timed(Angles(0.0, 0.0, 0.0), now_s),
+    )
+    return replace(state, **changes)
+
+
+DEFAULTS = WatchRules()
+
+
+def codes(state, around, now_s=100.0, rules=DEFAULTS):
+    return watched(Watch(), state, around, now_s, rules).codes()
+
+
+def test_stop_point_is_where_braking_ends():
+    motion = Motion((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), 0.0)
+    assert stop_point(motion, 2.5, 0.0) == pytest.approx((3.0, 4.0, 0.0))  # 25 / 5 = 5 m ahead
+    assert stop_point(motion, 2.5, 2.0) == pytest.approx((9.0, 12.0, 0.0))
+
+
+def test_a_facade_is_warned_of_while_the_aircraft_can_still_stop(around, outwards):
+    centre, normal = outwards
+    braking_m = 5.0**2 / (2.0 * 2.5)
+    for away_m, expected in ((10.0 + braking_m + 0.1, False), (9.4 + braking_m, True)):
+        state = flying(centre + away_m * normal, -5.0 * normal)
+        assert ("facade-distance" in codes(state, around)) is expected
+        assert "facade-distance" not in codes(flying(centre + away_m * normal, 5.0 * normal), around)
+
+
+def test_without_a_mission_that_brakes_the_pilots_reaction_counts(around, outwards):
+    centre, normal = outwards
+    state = flying(centre + 20.0 * normal, -5.0 * normal)
+    assert "facade-distance" not in codes(state, around)
+    assert "facade-distance" in codes(replace(state, mode=Timed("LOITER", 100.0)), around)
+
+
+def test_too_close_already_is_worse_than_soon(around, outwards):
+    centre, normal = outwards
+    (near,) = [w for w in watched(Watch(), flying(centre + 9 * normal), around, 0.0).warnings if "facade" in w.code]
+    assert (near.severity, near.limit, near.unit) == (Severity.ERROR, 9.5, "m")
+    assert near.value == pytest.approx(9.0, abs=1e-6)
+
+
+def test_hovering_at_the_planned_distance_is_no_warning(around, outwards):
+    centre, normal = outwards
+    assert codes(flying(centre + 9.8 * normal), around) == frozenset()
+
+
+def test_on_the_ground_nothing_is_too_near(around, outwards):
+    centre, normal = outwards
+    state = flying(centre + 5.0 * normal)
+    assert codes(replace(state, landed=Timed(Landed.ON_GROUND, 100.0)), around) == frozenset()
+    assert codes(replace(state, armed=Timed(False, 100.0)), around) == frozenset()
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(distances=st.lists(st.floats(9.3, 9.7), min_size=20, max_size=60))
+def test_warnings_never_flicker(around, outwards, distances):
+    centre, normal = outwards
+    watch, changes, was = Watch(), [], False
+    for i, distance_m in enumerate(distances):
+        now_s = 0.2 * i
+        watch = watched(watch, flying(centre + distance_m * normal, now_s=now_s), around, now_s)
+        is_on = "facade-distance" in watch.codes()
+        if is_on != was:
+            changes.append(now_s)
+        was = is_on
+    # With 0.25 m of slack around 9.5 m nothing in this band takes a warning away again.
+    assert len(changes) <= 1
+
+
+def test_a_warning_goes_only_after_a_while_and_with_slack(around, outwards):
+    centre, normal = outwards
+    watch = watched(Watch(), flying(centre + 9.0 * normal, now_s=0.0), around, 0.0)
+    for now_s, away_m, expected in ((1.0, 12.0, True), (HOLD_S, 9.6, True), (HOLD_S, 12.0, False)):
+        after = watched(watch, flying(centre + away_m * normal, now_s=now_s), around, now_s)
+        assert ("facade-distance" in after.codes()) is expected
+
+
+def test_wind_is_spoken_of_before_the_limit_and_loudly_above(around, outwards):
+    centre, normal = outwards
+    place = centre + 20.0 * normal
+    for wind_m_s, severity in ((8.0, None), (9.0, Severity.WARNING), (10.5, Severity.ERROR)):
+        state = flying(place, wind_enu_m_s=Timed((0.0, -wind_m_s, 0.0), 100.0))
+        found = [w.severity for w in watched(Watch(), state, around, 100.0).warnings if w.code == "wind"]
+        assert found == ([severity] if severity else [])
+
+
+def test_the_battery_must_hold_the_way_home(around):
+    home = around.space.home_enu_m
+    place = home + np.array([0.0, 0.0, 40.0])
+    needed = 0.25 + (40.0 / 2.0 + 15.0) / 1000.0
+    assert around.way_home_s(tuple(place)) == pytest.approx(35.0)
+    cases = (
+        (needed + 0.06, None),
+        (needed + 0.03, Severity.WARNING),
+        (needed - 0.01, Severity.ERROR),
+        (0.2, Severity.ERROR),
+    )
+    for level, severity in cases:
+        state = flying(place, battery=Timed(BatteryLevel(level), 100.0))
+        found = [w.severity for w in watched(Watch(), state, around, 100.0).warnings if w.code == "battery"]
+        assert found == ([severity] if severity else [])
+
+
+def test_a_battery_that_says_nothing_is_not_judged(around, outwards):
+    centre, normal = outwards
+    assert codes(flying(centre + 20 * normal, battery=Timed(BatteryLevel(None), 100.0)), around) == frozenset()
+
+
+def test_the_airspace_is_warned_of_on_the_way_out(around):
+    low, high = around.space.low_enu_m, around.space.high_enu_m
+    edge = (low + high) / 2.0
+    edge[0] = high[0] - 2.0
+    assert "airspace" not in codes(flying(edge), around)
+    assert "airspace" in codes(flying(edge, (6.0, 0.0, 0.0)), around)
+    outside = edge + np.array([4.0, 0.0, 0.0])
+    (warning,) = [w for w in watched(Watch(), flying(outside), around, 0.0).warnings if w.code == "airspace"]
+    assert "2.0 m outside" in warning.text
+
+
+def test_taking_off_below_the_floor_is_no_breach(around):
+    home = around.space.home_enu_m
+    assert "airspace" not in codes(flying(home + np.array([0.5, 0.0, 0.5]), (0.0, 0.0, 2.0)), around)
+
+
+def test_a_fix_is_missed_as_far_as_it_is_needed(around, outwards):
+    centre, normal = outwards
+    place = centre + 20.0 * normal
+    for fix_type, needs_rtk, severity in ((3, False, None), (3, True, Severity.WARNING), (2, False, Severity.ERROR)):
+        state = flying(place, fix=Timed(GnssFix(fix_type, 12, None, None), 100.0))
+        found = watched(Watch(), state, around, 100.0, WatchRules(needs_rtk)).warnings
+        assert [w.severity for w in found if w.code == "gnss"] == ([severity] if severity else [])
+
+
+def test_a_fix_that_is_not_heard_of_any_more_is_lost(around, outwards):
+    centre, normal = outwards
+    state = flying(centre + 20.0 * normal, fix=Timed(GnssFix(6, 12, None, None), 90.0))
+    assert "gnss" in codes(state, around)
+
+
+def test_losing_the_link_shows_and_says_nothing_else(around, outwards):
+    centre, normal = outwards
+    state = flying(centre + 9.0 * normal, fix=Timed(GnssFix(6, 12, None, None), 100.0), now_s=100.0)
+    assert codes(state, around, 120.0) == {"link-lost"}
+
+
+def test_the_deviation_from_the_planned_path_is_that_of_its_nearest_leg(around, outwards):
+    centre, normal = outwards
+    start, end = centre + 20.0 * normal, centre + 30.0 * normal
+    on_path = replace(around, path_enu_m=np.array([start, end, end]))
+    beside = start + 5.0 * normal + np.array([0.0, 0.0, 3.0])
+    assert on_path.off_path_m(tuple(beside)) == pytest.approx(3.0)
+    assert on_path.off_path_m(tuple(end + normal)) == pytest.approx(1.0)
+    assert "off-path" in codes(flying(beside), on_path)
+    assert "off-path" not in codes(flying(beside, mode="RTL"), on_path)
+
+
+def test_a_photo_that_stays_away_is_named(around, outwards):
+    centre, normal = outwards
+    places = [tuple(centre + (20.0 + 4.0 * i) * normal) for i in range(3)]
+    photos = tuple(ExpectedPhoto(f"v{i}", place, 10 + 5 * i) for i, place in enumerate(places))
+    expecting = replace(around, photos=photos)
+    taken = (TakenPhoto(1, 0.0, places[0]),)
+    state = flying(places[1], photos=taken, mission=Timed(MissionProgress(18, 30), 100.0))
+    watch = watched(Watch(), state, expecting, 100.0)
+    assert watch.passed_s == (("v1", 100.0),)
+    assert "photo-missing" not in watch.codes(), "it may still be on its way"
+    later = 100.1 + PHOTO_LATE_S
+    watch = watched(watch, state, expecting, later)
+    (warning,) = [w for w in watch.warnings if w.code == "photo-missing"]
+    assert "'v1'" in warning.text
+    found = replace(state, photos=(*taken, TakenPhoto(2, 0.0, places[1])))
+    assert watched(watch, found, expecting, later + HOLD_S).codes() <= {"link-lost"}
+
+
+def test_a_photo_is_not_missed_before_its_item_is_passed(around, outwards):
+    centre, normal = outwards
+    expecting = replace(around, photos=(ExpectedPhoto("v0", tuple(centre + 20 * normal), 10),))
+    for current, n_missing in ((9, 0), (10, 0), (11, 0), (12, 1)):
+        state = flying(centre + 20 * normal, mission=Timed(MissionProgress(current, 30), 100.0))
+        assert len(watched(Watch(), state, expecting, 100.0).passed_s) == n_missing
+
+
+def test_watching_is_cheap(around, outwards):
+    import time
+
+    centre, normal = outwards
+    state = flying(centre + 15.0 * normal, -2.0 * normal, fix=Timed(GnssFix(6, 12, None, None), 100.0))
+    watched(Watch(), state, around, 100.0)
+    started = time.perf_counter()
+    for i in range(200):
+        watched(Watch(), state, around, 100.0 + 0.01 * i)
+    assert (time.perf_counter() - started) / 200 < 0.01
+
+
+def test_distances_ahead_are_those_of_many_points_on_the_way(around, outwards):
+    centre, normal = outwards
+    a, b = centre + 12.0 * normal + np.array([0.0, 0.0, 4.0]), centre + 6.0 * normal
+    points = a + np.linspace(0.0, 1.0, 500)[:, None] * (b - a)
+    slow = min(around.facade_distance_m(tuple(p), tuple(p)) for p in points)
+    assert around.facade_distance_m(tuple(a), tuple(b)) == pytest.approx(slow, abs=0.01)
+    assert math.isfinite(slow)
