@@ -51,6 +51,7 @@ pictures: setup
 	cp pictures/1280x720/plan-hemispheres.png docs/window.png
 	cp pictures/1280x720/site.png docs/window-site.png
 	cp pictures/1280x720/mission-2.png docs/window-mission.png
+	cp pictures/1280x720/fly-paused.png docs/window-fly.png
 
 format: setup
 	$(PY) -m ruff format .

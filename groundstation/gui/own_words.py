@@ -21,6 +21,7 @@ def phrasebook() -> Phrasebook:
     """All templates; read when the first sentence is told."""
     from groundstation.gui.sentences import (
         dji,
+        fly,
         insight,
         mission,
         parts,
@@ -31,7 +32,7 @@ def phrasebook() -> Phrasebook:
         stages,
     )
 
-    tables = (dji, insight, mission, parts, plan, project, site, site_import, stages)
+    tables = (dji, fly, insight, mission, parts, plan, project, site, site_import, stages)
     return Phrasebook(source for table in tables for source in table.SENTENCES)
 
 

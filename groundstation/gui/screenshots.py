@@ -16,9 +16,11 @@ from PySide6.QtCore import QEventLoop, QObject, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
 from groundstation.gui.desk import Desk
+from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.questions import Answer, Questions
 from groundstation.gui.stage import StagePage
 from groundstation.services.document import Item, ItemKind
+from groundstation.services.live_sortie import TakeOff
 from groundstation.services.settings import CONFIG_VARIABLE, Language, Theme
 from groundstation.services.site_sources import open_site
 from groundstation.services.units import UnitSystem
@@ -33,6 +35,9 @@ SETTLE_MS = 400
 
 TIMEOUT_S = 240.0
 
+FLY_SPEED_UP, FLY_PHOTOS = 30.0, 12
+"""Of the simulated flight, and after how many photos it is broken off."""
+
 
 class _NoQuestions(Questions):
     """Nobody is there to answer."""
@@ -42,6 +47,16 @@ class _NoQuestions(Questions):
 
     def recover(self, parent: QWidget, when: str, changes: tuple[str, ...], is_of_saved_state: bool) -> Answer:
         return Answer.NO
+
+
+class _ReadyToFly(FlightQuestions):
+    """Everybody is clear of the simulated aircraft."""
+
+    def start(self, parent: QWidget, take_off: TakeOff, units: UnitSystem) -> bool:
+        return True
+
+    def leave_in_flight(self, parent: QWidget) -> bool:
+        return True
 
 
 def take_screenshots(folder: Path, site: Path | None = None, sizes_px: tuple[tuple[int, int], ...] = SIZES_PX) -> int:
@@ -110,6 +125,7 @@ class _Photographer(QObject):
         self._planned()
         self._by_hand()
         self._mission()
+        self._fly()
         self._error()
         self._looks()
         desk.window.close()
@@ -225,6 +241,46 @@ class _Photographer(QObject):
         self._take("mission-map")
         window.stage.show_page(StagePage.SCENE)
 
+    def _fly(self) -> None:
+        """A simulated flight that is broken off, from connecting to the top-up that closes what it missed."""
+        from groundstation.gui.fly.fly_page import FlyPage
+        from groundstation.services.live_choice import ConnectionChoice
+        from groundstation.services.live_events import Request
+
+        window = self._desk.window
+        window.show_tab("fly")
+        page = window.tab("fly")
+        assert isinstance(page, FlyPage)
+        page.questions = _ReadyToFly()
+        self._desk.workspace.select(None)
+        scene = window.stage.scene()
+        assert scene is not None
+        scene.look_at_all()
+        self._wait_until_idle()
+        self._take("fly-disconnected")
+        page.desk.set_choice(ConnectionChoice(speed_up=FLY_SPEED_UP))
+        page.desk.connect_vehicle()
+        for request, name in ((Request.UPLOAD, "fly-connected"), (Request.START, "fly-ready")):
+            button = page.buttons.button(request)
+            self._wait_for(button.isEnabled)
+            self._take(name)
+            button.click()
+        self._wait_for(lambda: page.n_photos() >= FLY_PHOTOS // 2)
+        window.stage.show_page(StagePage.MAP)
+        self._take("fly-map")
+        window.stage.show_page(StagePage.SCENE)
+        self._wait_for(lambda: page.n_photos() >= FLY_PHOTOS)
+        page.buttons.button(Request.PAUSE).click()
+        self._wait_for(page.buttons.button(Request.RESUME).isEnabled)
+        self._take("fly-paused")
+        page.band.show_lost(7.0)
+        self._take("fly-link-lost", rest_ms=0)
+        page.buttons.button(Request.RETURN).click()
+        self._wait_for(lambda: page.report.top_up.isEnabled())
+        self._take("fly-report")
+        page.desk.disconnect_vehicle()
+        self._wait_for(lambda: not page.desk.is_connected)
+
     def _error(self) -> None:
         damaged = self._scratch / "damaged"
         damaged.mkdir(exist_ok=True)
@@ -244,7 +300,7 @@ class _Photographer(QObject):
         ):
             desk.choose(**changes)
             self._wait_for(lambda: desk.window.stage.scene() is not None)
-            for tab in ("site", "plan", "mission"):
+            for tab in ("site", "plan", "mission", "fly"):
                 desk.window.show_tab(tab)
                 self._wait_until_idle()
                 self._take(f"{name}-{tab}")
@@ -252,8 +308,8 @@ class _Photographer(QObject):
 
     # The camera
 
-    def _take(self, name: str, widget: QWidget | None = None) -> None:
-        self._rest(SETTLE_MS)
+    def _take(self, name: str, widget: QWidget | None = None, rest_ms: int = SETTLE_MS) -> None:
+        self._rest(rest_ms)
         path = self._folder / f"{name}.png"
         if not (self._desk.window if widget is None else widget).grab().save(str(path)):
             raise InputError(f"{path}: the picture cannot be written")

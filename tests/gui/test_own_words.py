@@ -11,7 +11,7 @@ from PySide6.QtCore import QTranslator
 from groundstation.gui import sentences
 from groundstation.gui.languages import FOLDER
 from groundstation.gui.own_words import own_words, phrasebook
-from groundstation.gui.sentences import dji, insight, mission, parts, plan, project, site, site_import, stages
+from groundstation.gui.sentences import dji, fly, insight, mission, parts, plan, project, site, site_import, stages
 from groundstation.services.sentences import Template
 from groundstation.services.site_findings import site_findings
 from groundstation.services.site_sources import preview_import
@@ -30,7 +30,7 @@ from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
-FROM_SOURCES = (dji, insight, mission, plan, project, site, site_import, stages)
+FROM_SOURCES = (dji, fly, insight, mission, plan, project, site, site_import, stages)
 """Tables of whole sentences; `parts` holds words and what Python says."""
 
 NOT_SHOWN = {
@@ -41,6 +41,26 @@ NOT_SHOWN = {
     "groundstation/services/brief_pictures.py": "drawings; their words come from brief_html.py",
     "groundstation/services/import_words.py": "patterns, and English for what the import says otherwise",
     "missions/dji/xml_text.py": "file content",
+    "missions/simulator/ardupilot_scheduler.py": "texts of an autopilot, which no vehicle translates",
+    "missions/simulator/px4_scheduler.py": "texts of an autopilot",
+    "missions/simulator/commands.py": "texts of an autopilot",
+    "missions/simulator/failsafe.py": "texts of an autopilot",
+    "missions/simulator/mission_store.py": "texts of an autopilot",
+    "missions/simulator/modes.py": "texts of an autopilot",
+    "missions/simulator/server.py": "the window closes the link itself",
+    "missions/simulator/stored_item.py": "names of MAVLink",
+    "missions/flight/flight_file.py": "the window writes flight files and reads none",
+    "missions/flight/logs/flights.py": "the window reads no logs; its own records have no such faults",
+    "missions/flight/logs/ardupilot.py": "the window reads no logs",
+    "missions/flight/logs/dataflash.py": "the window reads no logs",
+    "missions/flight/logs/raw.py": "notes in the record of a flight, which the window keeps and does not show",
+    "missions/flight/logs/read.py": "the window reads no logs",
+    "missions/flight/logs/tlog.py": "the window reads no logs",
+    "missions/flight/logs/ulog.py": "the window reads no logs",
+    "missions/flight/report_rules.py": "findings of the report, for the command line; the window has a table",
+    "missions/mavlink/areas.py": "the window makes fences of no-fly volumes, which are right",
+    "missions/mavlink/signing.py": "the window signs nothing",
+    "missions/mavlink/transfer/wire_items.py": "plans have no such items",
 }
 """Files that the window imports, but whose sentences nobody reads there, and why."""
 
@@ -58,6 +78,19 @@ NO_SENTENCE = {
     ),
     "content of files": ("QGC WPL 110", '<?xml version="1.0" encoding="UTF-8"?>'),
     "names of things, the same in every language": ("EPSG:{0} ({1})", "template.kml, imageFormat", "{0} min"),
+    "notes in the record of a flight, which the window keeps and does not show": (
+        *("{0} was {1} and is {2} now", "{0} is {1}; the plan was made for {2}", "{0} items, read back and equal"),
+        *("{0} photos were reported", "had that value already", "the vehicle does not know it"),
+        *("the vehicle keeps another value", "the ground station disconnected; the aircraft went on by itself"),
+        *("simulated {0}", "simulation, {0} times as fast"),
+    ),
+    "names of states, for which the window has its own words or none": (
+        *("on the ground", "in the air", "taking off", "to come", "RTK float", "RTK fixed", "Exchange | None"),
+    ),
+    "said on the command line only": (
+        *("{0}; what was flown before is in {1}", "sortie {0}: ", ", asked for"),
+        "{0}nothing was recorded: the vehicle sent no positions in flight",
+    ),
     "options, for which `import_words` puts the label of a field": (
         *("--rows {0} --columns {1}", "--panel-grid {0}", "--gap {0}"),
     ),

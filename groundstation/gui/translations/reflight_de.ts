@@ -2,6 +2,37 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="de_DE">
 <context>
+    <name>AfterFlight</name>
+    <message>
+        <source>Nothing is missing: the photos show all that was planned.</source>
+        <translation>Nichts fehlt: Die Fotos zeigen alles, was geplant war.</translation>
+    </message>
+    <message>
+        <source>Top-up planned, photos: {0}; it closes {1} of {2} missing sections</source>
+        <translation>Ergänzungsflug geplant, Fotos: {0}; er schließt {1} von {2} fehlenden Sektoren</translation>
+    </message>
+    <message>
+        <source>Top-up</source>
+        <translation>Ergänzung</translation>
+    </message>
+    <message>
+        <source>Top-up flight</source>
+        <translation>Ergänzungsflug</translation>
+    </message>
+    <message>
+        <source>Rest of sortie {0} planned, photos: {1}</source>
+        <translation>Rest von Einsatz {0} geplant, Fotos: {1}</translation>
+    </message>
+    <message>
+        <source>Rest of sortie {0}</source>
+        <translation>Rest von Einsatz {0}</translation>
+    </message>
+    <message>
+        <source>Resume sortie</source>
+        <translation>Einsatz fortsetzen</translation>
+    </message>
+</context>
+<context>
     <name>AircraftBox</name>
     <message>
         <source>From a file ...</source>
@@ -665,6 +696,49 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
+    <name>ConnectionBox</name>
+    <message>
+        <source>Simulation</source>
+        <translation>Simulation</translation>
+    </message>
+    <message>
+        <source>UDP</source>
+        <translation>UDP</translation>
+    </message>
+    <message>
+        <source>TCP</source>
+        <translation>TCP</translation>
+    </message>
+    <message>
+        <source>Serial port</source>
+        <translation>Serielle Schnittstelle</translation>
+    </message>
+    <message>
+        <source>Vehicle</source>
+        <translation>Fluggerät</translation>
+    </message>
+    <message>
+        <source>Autopilot</source>
+        <translation>Autopilot</translation>
+    </message>
+    <message>
+        <source>Speed-up</source>
+        <translation>Zeitraffer</translation>
+    </message>
+    <message>
+        <source>Address</source>
+        <translation>Adresse</translation>
+    </message>
+    <message>
+        <source>Disconnect</source>
+        <translation>Trennen</translation>
+    </message>
+    <message>
+        <source>Connect</source>
+        <translation>Verbinden</translation>
+    </message>
+</context>
+<context>
     <name>Desk</name>
     <message>
         <source>{0}. The settings of the first start are used; the file stays as it is.</source>
@@ -1007,6 +1081,249 @@ Blickrichtung: {2}</translation>
     <message>
         <source>NOT ready to fly</source>
         <translation>NICHT flugbereit</translation>
+    </message>
+</context>
+<context>
+    <name>FlightButtons</name>
+    <message>
+        <source>{0} ({1})</source>
+        <translation>{0} ({1})</translation>
+    </message>
+    <message>
+        <source>Upload</source>
+        <translation>Hochladen</translation>
+    </message>
+    <message>
+        <source>Send the mission, and read it back</source>
+        <translation>Die Mission senden und zurücklesen</translation>
+    </message>
+    <message>
+        <source>Start</source>
+        <translation>Start</translation>
+    </message>
+    <message>
+        <source>Take off and fly the mission; asks first</source>
+        <translation>Abheben und die Mission fliegen; fragt vorher</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Pause</translation>
+    </message>
+    <message>
+        <source>Stop on the spot and hover</source>
+        <translation>Auf der Stelle anhalten und schweben</translation>
+    </message>
+    <message>
+        <source>Resume</source>
+        <translation>Fortsetzen</translation>
+    </message>
+    <message>
+        <source>Go on with the mission</source>
+        <translation>Mit der Mission weitermachen</translation>
+    </message>
+    <message>
+        <source>Return</source>
+        <translation>Heimkehr</translation>
+    </message>
+    <message>
+        <source>Fly home and land there</source>
+        <translation>Zum Startplatz fliegen und dort landen</translation>
+    </message>
+    <message>
+        <source>Land</source>
+        <translation>Landen</translation>
+    </message>
+    <message>
+        <source>Land here and now</source>
+        <translation>Hier und jetzt landen</translation>
+    </message>
+</context>
+<context>
+    <name>FlightNotes</name>
+    <message>
+        <source>What happened in the flight</source>
+        <translation>Was im Flug geschah</translation>
+    </message>
+</context>
+<context>
+    <name>FlightQuestions</name>
+    <message>
+        <source>Start the flight</source>
+        <translation>Den Flug starten</translation>
+    </message>
+    <message>
+        <source>The motors will start. The aircraft climbs up to {0} above take-off, flies {1} in about {2}, </source>
+        <translation>Die Motoren laufen an. Das Fluggerät steigt bis {0} über den Startplatz, fliegt {1} in etwa {2}, </translation>
+    </message>
+    <message>
+        <source>takes {0} photos, comes no closer than {1} to anything, returns and lands.</source>
+        <translation>macht {0} Fotos, kommt nichts näher als {1}, kehrt zurück und landet.</translation>
+    </message>
+    <message>
+        <source>It uses about {0:.0%} of a full battery.</source>
+        <translation>Es braucht etwa {0:.0%} eines vollen Akkus.</translation>
+    </message>
+    <message>
+        <source>Is everybody clear of the aircraft?</source>
+        <translation>Halten alle Abstand vom Fluggerät?</translation>
+    </message>
+    <message>
+        <source>The aircraft is in the air</source>
+        <translation>Das Fluggerät ist in der Luft</translation>
+    </message>
+    <message>
+        <source>It goes on with what it does now, without this window: nothing will warn you, and you fly it by the remote control. What was recorded so far is kept. Leave it?</source>
+        <translation>Es macht mit dem weiter, was es gerade tut, ohne dieses Fenster: Nichts warnt Sie, und Sie fliegen mit der Fernsteuerung. Was bisher aufgezeichnet wurde, bleibt. Verlassen?</translation>
+    </message>
+</context>
+<context>
+    <name>FlyDesk</name>
+    <message>
+        <source>Prepare the flight</source>
+        <translation>Flug vorbereiten</translation>
+    </message>
+    <message>
+        <source>connecting</source>
+        <translation>Verbindung wird aufgebaut</translation>
+    </message>
+    <message>
+        <source>autopilot: {0}</source>
+        <translation>Autopilot: {0}</translation>
+    </message>
+    <message>
+        <source>link lost</source>
+        <translation>Verbindung verloren</translation>
+    </message>
+    <message>
+        <source>link lost: {0}</source>
+        <translation>Verbindung verloren: {0}</translation>
+    </message>
+    <message>
+        <source>link alive</source>
+        <translation>Verbindung steht</translation>
+    </message>
+    <message>
+        <source>link found again</source>
+        <translation>Verbindung wieder da</translation>
+    </message>
+    <message>
+        <source>disconnected</source>
+        <translation>getrennt</translation>
+    </message>
+    <message>
+        <source>landed</source>
+        <translation>gelandet</translation>
+    </message>
+    <message>
+        <source>Look at the flight</source>
+        <translation>Flug betrachten</translation>
+    </message>
+</context>
+<context>
+    <name>FlyPage</name>
+    <message>
+        <source>Sortie to be flown</source>
+        <translation>Zu fliegender Einsatz</translation>
+    </message>
+    <message>
+        <source>Flight</source>
+        <translation>Flug</translation>
+    </message>
+    <message>
+        <source>Simulation</source>
+        <translation>Simulation</translation>
+    </message>
+    <message>
+        <source>Photos</source>
+        <translation>Fotos</translation>
+    </message>
+    <message>
+        <source>Report</source>
+        <translation>Bericht</translation>
+    </message>
+    <message>
+        <source>Sortie {0}: photos: {1}, {2}</source>
+        <translation>Einsatz {0}: Fotos: {1}, {2}</translation>
+    </message>
+    <message>
+        <source>Simulation, {0:g} times as fast</source>
+        <translation>Simulation, {0:g}-mal so schnell</translation>
+    </message>
+    <message>
+        <source>Open or import a site first, on the Site tab.</source>
+        <translation>Zuerst auf der Seite „Standort“ einen Standort öffnen oder importieren.</translation>
+    </message>
+    <message>
+        <source>Plan a flight first, on the Plan tab.</source>
+        <translation>Zuerst auf der Seite „Planung“ einen Flug planen.</translation>
+    </message>
+    <message>
+        <source>The flight is being prepared ...</source>
+        <translation>Der Flug wird vorbereitet ...</translation>
+    </message>
+    <message>
+        <source>Not connected.</source>
+        <translation>Nicht verbunden.</translation>
+    </message>
+    <message>
+        <source>The link is being opened ...</source>
+        <translation>Die Verbindung wird geöffnet ...</translation>
+    </message>
+    <message>
+        <source>The link is open; no vehicle was heard yet.</source>
+        <translation>Die Verbindung ist offen; noch kein Fluggerät gehört.</translation>
+    </message>
+    <message>
+        <source>Connected. Upload the mission.</source>
+        <translation>Verbunden. Die Mission hochladen.</translation>
+    </message>
+    <message>
+        <source>Connecting ...</source>
+        <translation>Verbindung wird aufgebaut ...</translation>
+    </message>
+    <message>
+        <source>The vehicle is being prepared ...</source>
+        <translation>Das Fluggerät wird vorbereitet ...</translation>
+    </message>
+    <message>
+        <source>Uploading ...</source>
+        <translation>Hochladen ...</translation>
+    </message>
+    <message>
+        <source>On board. Waiting for the list.</source>
+        <translation>An Bord. Warten auf die Liste.</translation>
+    </message>
+    <message>
+        <source>Ready for take-off.</source>
+        <translation>Startbereit.</translation>
+    </message>
+    <message>
+        <source>Starting ...</source>
+        <translation>Start läuft ...</translation>
+    </message>
+    <message>
+        <source>Flying.</source>
+        <translation>Im Flug.</translation>
+    </message>
+    <message>
+        <source>Landed.</source>
+        <translation>Gelandet.</translation>
+    </message>
+    <message>
+        <source>This connection is for another plan. Disconnect, and connect for the plan that is shown.</source>
+        <translation>Diese Verbindung ist für einen anderen Plan. Trennen und für den gezeigten Plan verbinden.</translation>
+    </message>
+    <message>
+        <source>{0} {1} ({2:.0f} of {3:.0f})</source>
+        <translation>{0} {1} ({2:.0f} von {3:.0f})</translation>
+    </message>
+    <message>
+        <source>{0} Mode: {1}</source>
+        <translation>{0} Modus: {1}</translation>
+    </message>
+    <message>
+        <source>In flight; the list comes back after the landing.</source>
+        <translation>Im Flug; die Liste kommt nach der Landung wieder.</translation>
     </message>
 </context>
 <context>
@@ -1372,6 +1689,24 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Cancel: {0}</source>
         <translation>Abbrechen: {0}</translation>
+    </message>
+</context>
+<context>
+    <name>LinkBand</name>
+    <message>
+        <source>LINK LOST. It is opened again; the aircraft goes on by itself.</source>
+        <translation>VERBINDUNG VERLOREN. Sie wird wieder geöffnet; das Fluggerät macht selbst weiter.</translation>
+    </message>
+    <message>
+        <source>LINK LOST for {0:.0f} s. What is shown is old; the aircraft goes on by itself.</source>
+        <translation>VERBINDUNG VERLOREN seit {0:.0f} s. Die Anzeige ist veraltet; das Fluggerät macht selbst weiter.</translation>
+    </message>
+</context>
+<context>
+    <name>LivePictures</name>
+    <message>
+        <source>Flown of what is planned</source>
+        <translation>Geflogen vom Geplanten</translation>
     </message>
 </context>
 <context>
@@ -2001,6 +2336,53 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>PhotoStrip</name>
+    <message>
+        <source>Photos of the sortie</source>
+        <translation>Fotos des Einsatzes</translation>
+    </message>
+    <message>
+        <source>still to come</source>
+        <translation>kommt noch</translation>
+    </message>
+    <message>
+        <source>next</source>
+        <translation>als Nächstes</translation>
+    </message>
+    <message>
+        <source>taken</source>
+        <translation>aufgenommen</translation>
+    </message>
+    <message>
+        <source>taken, but not where it was planned</source>
+        <translation>aufgenommen, aber nicht am geplanten Ort</translation>
+    </message>
+    <message>
+        <source>passed without a photo</source>
+        <translation>ohne Foto vorbeigeflogen</translation>
+    </message>
+    <message>
+        <source>{0}: {1}</source>
+        <translation>{0}: {1}</translation>
+    </message>
+    <message>
+        <source>place off by {0}</source>
+        <translation>Ort weicht ab um {0}</translation>
+    </message>
+    <message>
+        <source>heading off by {0:.1f} deg</source>
+        <translation>Richtung weicht ab um {0:.1f} Grad</translation>
+    </message>
+    <message>
+        <source>pitch off by {0:.1f} deg</source>
+        <translation>Neigung weicht ab um {0:.1f} Grad</translation>
+    </message>
+    <message>
+        <source>new sections: {0}</source>
+        <translation>neue Sektoren: {0}</translation>
+    </message>
+</context>
+<context>
     <name>PlanDesk</name>
     <message>
         <source>Only “Greedy with proof” can keep viewpoints. Choose it, or release those kept: {0}</source>
@@ -2478,6 +2860,49 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>PreflightList</name>
+    <message>
+        <source>{0}: {1}</source>
+        <translation>{0}: {1}</translation>
+    </message>
+    <message>
+        <source>Link</source>
+        <translation>Verbindung</translation>
+    </message>
+    <message>
+        <source>Position</source>
+        <translation>Position</translation>
+    </message>
+    <message>
+        <source>GNSS</source>
+        <translation>GNSS</translation>
+    </message>
+    <message>
+        <source>Home</source>
+        <translation>Startplatz</translation>
+    </message>
+    <message>
+        <source>Battery</source>
+        <translation>Akku</translation>
+    </message>
+    <message>
+        <source>Sensors</source>
+        <translation>Sensoren</translation>
+    </message>
+    <message>
+        <source>Wind</source>
+        <translation>Wind</translation>
+    </message>
+    <message>
+        <source>Mission on board</source>
+        <translation>Mission an Bord</translation>
+    </message>
+    <message>
+        <source>Geofence on board</source>
+        <translation>Geofence an Bord</translation>
+    </message>
+</context>
+<context>
     <name>ProfileChart</name>
     <message>
         <source>over time</source>
@@ -2633,6 +3058,180 @@ Take it over?</source>
     <message>
         <source>Sections that are not covered</source>
         <translation>Nicht abgedeckte Sektoren</translation>
+    </message>
+</context>
+<context>
+    <name>ReadoutsView</name>
+    <message>
+        <source>above take-off</source>
+        <translation>über Start</translation>
+    </message>
+    <message>
+        <source>speed</source>
+        <translation>Tempo</translation>
+    </message>
+    <message>
+        <source>to facade</source>
+        <translation>Fassade</translation>
+    </message>
+    <message>
+        <source>photos</source>
+        <translation>Fotos</translation>
+    </message>
+    <message>
+        <source>battery</source>
+        <translation>Akku</translation>
+    </message>
+    <message>
+        <source>to reserve</source>
+        <translation>bis Reserve</translation>
+    </message>
+    <message>
+        <source>wind</source>
+        <translation>Wind</translation>
+    </message>
+    <message>
+        <source>GNSS</source>
+        <translation>GNSS</translation>
+    </message>
+    <message>
+        <source>{0} missing</source>
+        <translation>{0} fehlen</translation>
+    </message>
+    <message>
+        <source>min {0}</source>
+        <translation>min {0}</translation>
+    </message>
+    <message>
+        <source>from {0:.0f}°</source>
+        <translation>aus {0:.0f}°</translation>
+    </message>
+    <message>
+        <source>{0} sat</source>
+        <translation>{0} Sat</translation>
+    </message>
+    <message>
+        <source>coverage: no photo yet</source>
+        <translation>Abdeckung: noch kein Foto</translation>
+    </message>
+    <message>
+        <source>coverage {0:.1f} % of planned ({1} of {2})</source>
+        <translation>Abdeckung {0:.1f} % vom Geplanten ({1} von {2})</translation>
+    </message>
+</context>
+<context>
+    <name>ReportView</name>
+    <message>
+        <source>Views of the flight</source>
+        <translation>Aufnahmen des Flugs</translation>
+    </message>
+    <message>
+        <source>Top-up flight</source>
+        <translation>Ergänzungsflug</translation>
+    </message>
+    <message>
+        <source>Plan the shortest flight that closes what is missing, with the battery left</source>
+        <translation>Den kürzesten Flug planen, der schließt, was fehlt, mit dem Rest des Akkus</translation>
+    </message>
+    <message>
+        <source>Resume sortie</source>
+        <translation>Einsatz fortsetzen</translation>
+    </message>
+    <message>
+        <source>Plan the rest of the sortie that was interrupted, for a full battery</source>
+        <translation>Den Rest des unterbrochenen Einsatzes für einen vollen Akku planen</translation>
+    </message>
+    <message>
+        <source>After the landing, the flight report stands here.</source>
+        <translation>Nach der Landung steht hier der Flugbericht.</translation>
+    </message>
+    <message>
+        <source>Photos: {0} of {1} views; sections covered: {2} of {3} planned ({4:.1f} %)</source>
+        <translation>Fotos: {0} von {1} Aufnahmen; abgedeckte Sektoren: {2} von {3} geplanten ({4:.1f} %)</translation>
+    </message>
+    <message>
+        <source>Flown: {0}</source>
+        <translation>Geflogen: {0}</translation>
+    </message>
+    <message>
+        <source>Battery used: {0:.0%}</source>
+        <translation>Akku verbraucht: {0:.0%}</translation>
+    </message>
+    <message>
+        <source>Smallest distance kept: {0}</source>
+        <translation>Kleinster Abstand: {0}</translation>
+    </message>
+    <message>
+        <source>Panels that no photo shows: {0}</source>
+        <translation>Scheiben, die kein Foto zeigt: {0}</translation>
+    </message>
+    <message>
+        <source>Kept in {0}</source>
+        <translation>Abgelegt in {0}</translation>
+    </message>
+    <message>
+        <source>View</source>
+        <translation>Aufnahme</translation>
+    </message>
+    <message>
+        <source>Sortie</source>
+        <translation>Einsatz</translation>
+    </message>
+    <message>
+        <source>Photo</source>
+        <translation>Foto</translation>
+    </message>
+    <message>
+        <source>Place off</source>
+        <translation>Ort</translation>
+    </message>
+    <message>
+        <source>Heading off, deg</source>
+        <translation>Richtung, Grad</translation>
+    </message>
+    <message>
+        <source>Pitch off, deg</source>
+        <translation>Neigung, Grad</translation>
+    </message>
+    <message>
+        <source>Blur, px</source>
+        <translation>Unschärfe, px</translation>
+    </message>
+    <message>
+        <source>Distance</source>
+        <translation>Abstand</translation>
+    </message>
+    <message>
+        <source>taken</source>
+        <translation>aufgenommen</translation>
+    </message>
+    <message>
+        <source>sortie not flown</source>
+        <translation>Einsatz nicht geflogen</translation>
+    </message>
+    <message>
+        <source>not reached</source>
+        <translation>nicht erreicht</translation>
+    </message>
+    <message>
+        <source>no answer of the camera</source>
+        <translation>Kamera antwortete nicht</translation>
+    </message>
+    <message>
+        <source>taken too far away</source>
+        <translation>zu weit weg aufgenommen</translation>
+    </message>
+    <message>
+        <source>looks elsewhere</source>
+        <translation>blickt woandershin</translation>
+    </message>
+    <message>
+        <source>flight ended before</source>
+        <translation>Flug endete vorher</translation>
+    </message>
+    <message>
+        <source>place not known</source>
+        <translation>Ort unbekannt</translation>
     </message>
 </context>
 <context>
@@ -3935,6 +4534,50 @@ Take it over?</source>
     <message>
         <source> and </source>
         <translation> und </translation>
+    </message>
+    <message>
+        <source>done</source>
+        <translation>erledigt</translation>
+    </message>
+    <message>
+        <source>denied</source>
+        <translation>verweigert</translation>
+    </message>
+    <message>
+        <source>failed</source>
+        <translation>misslungen</translation>
+    </message>
+    <message>
+        <source>cancelled</source>
+        <translation>abgebrochen</translation>
+    </message>
+    <message>
+        <source>pausing</source>
+        <translation>anhalten</translation>
+    </message>
+    <message>
+        <source>arming</source>
+        <translation>scharfschalten</translation>
+    </message>
+    <message>
+        <source>mission</source>
+        <translation>Mission</translation>
+    </message>
+    <message>
+        <source>geofence</source>
+        <translation>Geofence</translation>
+    </message>
+    <message>
+        <source>{0}: done</source>
+        <translation>{0}: erledigt</translation>
+    </message>
+    <message>
+        <source>wind</source>
+        <translation>Wind</translation>
+    </message>
+    <message>
+        <source>multipath</source>
+        <translation>Mehrwegeempfang</translation>
     </message>
     <message>
         <source>sortie {0:n}</source>
@@ -5652,6 +6295,777 @@ Take it over?</source>
         <source>starting</source>
         <translation>wird gestartet</translation>
     </message>
+    <message>
+        <source>no flight through missing sections was found that fits {0}&apos;s waypoint limit and the {1} s that the battery allows; change the battery</source>
+        <translation>kein Flug durch fehlende Sektoren gefunden, der zur Wegpunktgrenze von {0} und den {1} s passt, die der Akku erlaubt; Akku wechseln</translation>
+    </message>
+    <message>
+        <source>shortening the flight</source>
+        <translation>Flug wird verkürzt</translation>
+    </message>
+    <message>
+        <source>the battery is at {0}; a reserve of {1} and {2} s for take-off and landing leave nothing to fly on; change the battery</source>
+        <translation>der Akku steht bei {0}; eine Reserve von {1} und {2} s für Start und Landung lassen nichts zum Fliegen; Akku wechseln</translation>
+    </message>
+    <message>
+        <source>none of the {0} missing sections can be seen from any allowed place that was found on the site as it is now; check its no-fly volumes and obstacles, or lower the minimum distance</source>
+        <translation>keiner der {0} fehlenden Sektoren ist von einem erlaubten Ort aus zu sehen, der am Standort, wie er jetzt ist, gefunden wurde; Flugverbotszonen und Hindernisse prüfen oder den Mindestabstand verkleinern</translation>
+    </message>
+    <message>
+        <source> of a battery at {0}</source>
+        <translation> eines Akkus bei {0}</translation>
+    </message>
+    <message>
+        <source>{0} of the {1} missing sections can be seen, but none within the {2} s{3} that are left above the reserve; move home closer</source>
+        <translation>{0} der {1} fehlenden Sektoren sind zu sehen, aber keiner innerhalb der {2} s{3}, die über der Reserve bleiben; den Startplatz näher legen</translation>
+    </message>
+    <message>
+        <source>{0} of the {1} missing sections can be seen, but none within the {2} s{3} that are left above the reserve; change the battery</source>
+        <translation>{0} der {1} fehlenden Sektoren sind zu sehen, aber keiner innerhalb der {2} s{3}, die über der Reserve bleiben; Akku wechseln</translation>
+    </message>
+    <message>
+        <source>comparing the flight</source>
+        <translation>Flug wird verglichen</translation>
+    </message>
+    <message>
+        <source>the link is closed</source>
+        <translation>die Verbindung ist geschlossen</translation>
+    </message>
+    <message>
+        <source>the other end closed the link</source>
+        <translation>die Gegenseite hat die Verbindung geschlossen</translation>
+    </message>
+    <message>
+        <source>the UDP link broke: {0}</source>
+        <translation>die UDP-Verbindung ist abgebrochen: {0}</translation>
+    </message>
+    <message>
+        <source>the TCP link to {0} broke: {1}</source>
+        <translation>die TCP-Verbindung zu {0} ist abgebrochen: {1}</translation>
+    </message>
+    <message>
+        <source>{0} closed the TCP link</source>
+        <translation>{0} hat die TCP-Verbindung geschlossen</translation>
+    </message>
+    <message>
+        <source>serial links need the package pyserial; install it, or use a UDP or TCP link</source>
+        <translation>serielle Verbindungen brauchen das Paket pyserial; es installieren oder eine UDP- oder TCP-Verbindung benutzen</translation>
+    </message>
+    <message>
+        <source>the serial line {0} cannot be opened: {1}</source>
+        <translation>die serielle Leitung {0} lässt sich nicht öffnen: {1}</translation>
+    </message>
+    <message>
+        <source>the serial line {0} broke: {1}</source>
+        <translation>die serielle Leitung {0} ist abgebrochen: {1}</translation>
+    </message>
+    <message>
+        <source>link &apos;{0}&apos;: expected serial:DEVICE:BAUD, such as serial:/dev/ttyUSB0:57600</source>
+        <translation>Verbindung &apos;{0}&apos;: erwartet serial:GERÄT:BAUD, etwa serial:/dev/ttyUSB0:57600</translation>
+    </message>
+    <message>
+        <source>link &apos;{0}&apos;: expected KIND:HOST:PORT, such as tcp:127.0.0.1:5760; kinds are {1}</source>
+        <translation>Verbindung &apos;{0}&apos;: erwartet ART:RECHNER:PORT, etwa tcp:127.0.0.1:5760; Arten sind {1}</translation>
+    </message>
+    <message>
+        <source>no answer within {0} s; is the address right?</source>
+        <translation>keine Antwort in {0} s; stimmt die Adresse?</translation>
+    </message>
+    <message>
+        <source>{0} cannot be opened: {1}; is the address right?</source>
+        <translation>{0} lässt sich nicht öffnen: {1}; stimmt die Adresse?</translation>
+    </message>
+    <message>
+        <source>reading back</source>
+        <translation>wird zurückgelesen</translation>
+    </message>
+    <message>
+        <source>{0} items were sent, {1} are on the vehicle</source>
+        <translation>{0} Einträge wurden gesendet, {1} sind auf dem Fluggerät</translation>
+    </message>
+    <message>
+        <source>item {0}, {1}: sent {2}, on the vehicle {3}</source>
+        <translation>Eintrag {0}, {1}: gesendet {2}, auf dem Fluggerät {3}</translation>
+    </message>
+    <message>
+        <source>what is on the vehicle now could not be read: do not fly before it was</source>
+        <translation>was jetzt auf dem Fluggerät ist, ließ sich nicht lesen: vorher nicht fliegen</translation>
+    </message>
+    <message>
+        <source>nothing is on the vehicle now</source>
+        <translation>auf dem Fluggerät ist jetzt nichts</translation>
+    </message>
+    <message>
+        <source>; and {0} more</source>
+        <translation>; und {0} weitere</translation>
+    </message>
+    <message>
+        <source>{0} items are on the vehicle, and not those that were sent ({1})</source>
+        <translation>{0} Einträge sind auf dem Fluggerät, und nicht die gesendeten ({1})</translation>
+    </message>
+    <message>
+        <source>the list could not be cleared</source>
+        <translation>die Liste ließ sich nicht löschen</translation>
+    </message>
+    <message>
+        <source> at item {0}</source>
+        <translation> bei Eintrag {0}</translation>
+    </message>
+    <message>
+        <source>the vehicle refused the upload{0} ({1})</source>
+        <translation>das Fluggerät lehnte das Hochladen ab{0} ({1})</translation>
+    </message>
+    <message>
+        <source>the vehicle accepted every item</source>
+        <translation>das Fluggerät nahm jeden Eintrag an</translation>
+    </message>
+    <message>
+        <source>every item was sent, but the vehicle did not confirm them</source>
+        <translation>jeder Eintrag wurde gesendet, aber das Fluggerät bestätigte sie nicht</translation>
+    </message>
+    <message>
+        <source>the vehicle stopped answering{0}</source>
+        <translation>das Fluggerät antwortete nicht mehr{0}</translation>
+    </message>
+    <message>
+        <source>the upload did not get on{0}</source>
+        <translation>das Hochladen kam nicht voran{0}</translation>
+    </message>
+    <message>
+        <source>the vehicle did not keep to the items{0}</source>
+        <translation>das Fluggerät hielt sich nicht an die Einträge{0}</translation>
+    </message>
+    <message>
+        <source>sortie {0} is complete: all {1} views have a photo, so there is nothing to resume</source>
+        <translation>Einsatz {0} ist vollständig: Alle {1} Aufnahmen haben ein Foto, es gibt nichts fortzusetzen</translation>
+    </message>
+    <message>
+        <source>the rest of sortie {0} cannot be flown as it was planned{1}: {2}; plan a top-up instead, which finds its own views and ways</source>
+        <translation>der Rest von Einsatz {0} lässt sich nicht wie geplant fliegen{1}: {2}; stattdessen einen Ergänzungsflug planen, der eigene Aufnahmen und Wege findet</translation>
+    </message>
+    <message>
+        <source>the sortie cannot be resumed on the site as it is now: {0}</source>
+        <translation>der Einsatz lässt sich am Standort, wie er jetzt ist, nicht fortsetzen: {0}</translation>
+    </message>
+    <message>
+        <source>there is no effect &apos;{0}&apos; of the flight; known are: {1}</source>
+        <translation>es gibt keinen Effekt &apos;{0}&apos; des Flugs; bekannt sind: {1}</translation>
+    </message>
+    <message>
+        <source>barometer drift</source>
+        <translation>Barometerdrift</translation>
+    </message>
+    <message>
+        <source>m at the shutter</source>
+        <translation>m bei der Auslösung</translation>
+    </message>
+    <message>
+        <source>the height comes from the GNSS receiver</source>
+        <translation>die Höhe kommt vom GNSS-Empfänger</translation>
+    </message>
+    <message>
+        <source>the weather drifts by {0} hPa an hour over a flight of {1} s</source>
+        <translation>das Wetter driftet um {0} hPa je Stunde über einen Flug von {1} s</translation>
+    </message>
+    <message>
+        <source>battery sag</source>
+        <translation>Akkueinbruch</translation>
+    </message>
+    <message>
+        <source>of the battery</source>
+        <translation>des Akkus</translation>
+    </message>
+    <message>
+        <source>{0} of the flight is hovered in {1} m/s of wind: {2} of the power for which the endurance is stated</source>
+        <translation>{0} des Flugs wird bei {1} m/s Wind geschwebt: {2} der Leistung, für die die Flugdauer angegeben ist</translation>
+    </message>
+    <message>
+        <source>gimbal lag</source>
+        <translation>Gimbalverzug</translation>
+    </message>
+    <message>
+        <source>deg at the shutter</source>
+        <translation>Grad bei der Auslösung</translation>
+    </message>
+    <message>
+        <source>there are no views</source>
+        <translation>es gibt keine Aufnahmen</translation>
+    </message>
+    <message>
+        <source>turns of up to {0} deg have {1} s to settle</source>
+        <translation>Drehungen bis {0} Grad haben {1} s zum Beruhigen</translation>
+    </message>
+    <message>
+        <source>GNSS noise</source>
+        <translation>GNSS-Rauschen</translation>
+    </message>
+    <message>
+        <source>an RTK fix</source>
+        <translation>RTK-Fix</translation>
+    </message>
+    <message>
+        <source>RTK without fixed ambiguities</source>
+        <translation>RTK ohne fixierte Mehrdeutigkeiten</translation>
+    </message>
+    <message>
+        <source>no RTK</source>
+        <translation>kein RTK</translation>
+    </message>
+    <message>
+        <source>{0} m horizontally</source>
+        <translation>{0} m waagerecht</translation>
+    </message>
+    <message>
+        <source>link loss</source>
+        <translation>Verbindungsverlust</translation>
+    </message>
+    <message>
+        <source>of the messages</source>
+        <translation>der Nachrichten</translation>
+    </message>
+    <message>
+        <source>{0} of the messages and {1} s are said to be lost</source>
+        <translation>{0} der Nachrichten und {1} s sollen verloren gehen</translation>
+    </message>
+    <message>
+        <source>no loss is said to be expected</source>
+        <translation>kein Verlust angegeben</translation>
+    </message>
+    <message>
+        <source>at the views {0} of the sky are mirrored in glass and {1} hidden, carrier phase counts</source>
+        <translation>an den Aufnahmen spiegeln sich {0} des Himmels im Glas und {1} sind verdeckt, die Trägerphase zählt</translation>
+    </message>
+    <message>
+        <source>at the views {0} of the sky are mirrored in glass and {1} hidden, code counts</source>
+        <translation>an den Aufnahmen spiegeln sich {0} des Himmels im Glas und {1} sind verdeckt, der Code zählt</translation>
+    </message>
+    <message>
+        <source>photo latency and blur</source>
+        <translation>Auslöseverzug und Unschärfe</translation>
+    </message>
+    <message>
+        <source>px of blur</source>
+        <translation>px Unschärfe</translation>
+    </message>
+    <message>
+        <source>photos are taken at rest, where gusts leave {0} m/s; the shutter is open for {1} ms, a pixel is {2} mm on the glass</source>
+        <translation>Fotos entstehen in Ruhe, wo Böen {0} m/s lassen; der Verschluss ist {1} ms offen, ein Pixel misst {2} mm auf dem Glas</translation>
+    </message>
+    <message>
+        <source>wind of {0} m/s carries the aircraft away, which leans {1} deg at most and so flies {2} m/s through the air; wait for less wind</source>
+        <translation>Wind von {0} m/s trägt das Fluggerät davon, das sich höchstens {1} Grad neigt und so mit {2} m/s durch die Luft fliegt; auf weniger Wind warten</translation>
+    </message>
+    <message>
+        <source>no wind is expected</source>
+        <translation>kein Wind erwartet</translation>
+    </message>
+    <message>
+        <source>wind of {0} m/s with gusts of {1} m/s (1 sigma) at {2} m</source>
+        <translation>Wind von {0} m/s mit Böen von {1} m/s (1 Sigma) in {2} m Höhe</translation>
+    </message>
+    <message>
+        <source>no answer</source>
+        <translation>keine Antwort</translation>
+    </message>
+    <message>
+        <source>not now</source>
+        <translation>jetzt nicht</translation>
+    </message>
+    <message>
+        <source>not supported</source>
+        <translation>nicht unterstützt</translation>
+    </message>
+    <message>
+        <source>only as COMMAND_LONG</source>
+        <translation>nur als COMMAND_LONG</translation>
+    </message>
+    <message>
+        <source>only as COMMAND_INT</source>
+        <translation>nur als COMMAND_INT</translation>
+    </message>
+    <message>
+        <source>frame not supported</source>
+        <translation>Bezugssystem nicht unterstützt</translation>
+    </message>
+    <message>
+        <source>result {0}</source>
+        <translation>Ergebnis {0}</translation>
+    </message>
+    <message>
+        <source>the vehicle refused {0} ({1})</source>
+        <translation>das Fluggerät verweigert: {0} ({1})</translation>
+    </message>
+    <message>
+        <source>the vehicle did not answer to {0}</source>
+        <translation>das Fluggerät antwortete nicht auf: {0}</translation>
+    </message>
+    <message>
+        <source>preparing the vehicle</source>
+        <translation>Fluggerät wird vorbereitet</translation>
+    </message>
+    <message>
+        <source>checking before take-off</source>
+        <translation>Prüfung vor dem Start</translation>
+    </message>
+    <message>
+        <source>ready for take-off</source>
+        <translation>startbereit</translation>
+    </message>
+    <message>
+        <source>resuming the mission</source>
+        <translation>Mission fortsetzen</translation>
+    </message>
+    <message>
+        <source>returning home</source>
+        <translation>Heimkehr</translation>
+    </message>
+    <message>
+        <source>landing here</source>
+        <translation>hier landen</translation>
+    </message>
+    <message>
+        <source>the vehicle is heard again</source>
+        <translation>das Fluggerät ist wieder zu hören</translation>
+    </message>
+    <message>
+        <source>no heartbeat; the aircraft goes on by itself</source>
+        <translation>kein Lebenszeichen; das Fluggerät macht selbst weiter</translation>
+    </message>
+    <message>
+        <source>mode {0}.{1}</source>
+        <translation>Modus {0}.{1}</translation>
+    </message>
+    <message>
+        <source>mode {0}</source>
+        <translation>Modus {0}</translation>
+    </message>
+    <message>
+        <source>pre-arm checks</source>
+        <translation>Prüfungen vor dem Scharfschalten</translation>
+    </message>
+    <message>
+        <source>no autopilot was heard yet</source>
+        <translation>noch kein Autopilot gehört</translation>
+    </message>
+    <message>
+        <source>no heartbeat for {0} s</source>
+        <translation>kein Lebenszeichen seit {0} s</translation>
+    </message>
+    <message>
+        <source>{0} answers</source>
+        <translation>{0} antwortet</translation>
+    </message>
+    <message>
+        <source>the autopilot does not know where it is yet</source>
+        <translation>der Autopilot weiß noch nicht, wo er ist</translation>
+    </message>
+    <message>
+        <source>the autopilot has {0}</source>
+        <translation>dem Autopiloten fehlt: {0}</translation>
+    </message>
+    <message>
+        <source>the autopilot sends no position</source>
+        <translation>der Autopilot sendet keine Position</translation>
+    </message>
+    <message>
+        <source>the autopilot knows where it is</source>
+        <translation>der Autopilot weiß, wo er ist</translation>
+    </message>
+    <message>
+        <source>the GNSS receiver is silent</source>
+        <translation>der GNSS-Empfänger schweigt</translation>
+    </message>
+    <message>
+        <source>fix: {0}, {1} satellites</source>
+        <translation>Fix: {0}, {1} Satelliten</translation>
+    </message>
+    <message>
+        <source>; {0} is needed</source>
+        <translation>; {0} ist nötig</translation>
+    </message>
+    <message>
+        <source>where the aircraft stands is not known yet</source>
+        <translation>wo das Fluggerät steht, ist noch nicht bekannt</translation>
+    </message>
+    <message>
+        <source>the aircraft stands {0} m from the planned home, outside the airspace; put it at {1}</source>
+        <translation>das Fluggerät steht {0} m vom geplanten Startplatz, außerhalb des Luftraums; auf {1} stellen</translation>
+    </message>
+    <message>
+        <source>the aircraft stands {0} m from the planned home; put it at {1}, or plan from here</source>
+        <translation>das Fluggerät steht {0} m vom geplanten Startplatz; auf {1} stellen oder von hier aus planen</translation>
+    </message>
+    <message>
+        <source>{0} m from the planned home</source>
+        <translation>{0} m vom geplanten Startplatz</translation>
+    </message>
+    <message>
+        <source>the battery&apos;s charge is not known</source>
+        <translation>die Ladung des Akkus ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>the battery holds {0}; the sortie and the reserve take {1}: put in a full one</source>
+        <translation>der Akku hält {0}; Einsatz und Reserve brauchen {1}: einen vollen einsetzen</translation>
+    </message>
+    <message>
+        <source>{0}; {1} are needed</source>
+        <translation>{0}; {1} sind nötig</translation>
+    </message>
+    <message>
+        <source>it does not say why</source>
+        <translation>er sagt nicht, warum</translation>
+    </message>
+    <message>
+        <source>the autopilot cannot be armed yet ({0})</source>
+        <translation>der Autopilot lässt sich noch nicht scharfschalten ({0})</translation>
+    </message>
+    <message>
+        <source>it can be armed, but has trouble with: </source>
+        <translation>er lässt sich scharfschalten, hat aber Mühe mit: </translation>
+    </message>
+    <message>
+        <source>the autopilot is content with all sensors</source>
+        <translation>der Autopilot ist mit allen Sensoren zufrieden</translation>
+    </message>
+    <message>
+        <source>not measured on the ground; look up</source>
+        <translation>am Boden nicht gemessen; nach oben schauen</translation>
+    </message>
+    <message>
+        <source>{0} m/s, more than the {1} m/s of {2}; wait</source>
+        <translation>{0} m/s, mehr als die {1} m/s von {2}; warten</translation>
+    </message>
+    <message>
+        <source>the {0} was not uploaded yet</source>
+        <translation>noch nicht hochgeladen: {0}</translation>
+    </message>
+    <message>
+        <source>what the vehicle holds is not this {0}: upload it again</source>
+        <translation>auf dem Fluggerät ist etwas anderes als diese {0}: noch einmal hochladen</translation>
+    </message>
+    <message>
+        <source>the {0} is on board, read back and equal</source>
+        <translation>an Bord, zurückgelesen und gleich: {0}</translation>
+    </message>
+    <message>
+        <source>the mission on board could not be read again ({0})</source>
+        <translation>die Mission an Bord ließ sich nicht noch einmal lesen ({0})</translation>
+    </message>
+    <message>
+        <source>the vehicle has another mission now: {0}</source>
+        <translation>das Fluggerät hat jetzt eine andere Mission: {0}</translation>
+    </message>
+    <message>
+        <source>the mission on board is the one that was uploaded</source>
+        <translation>die Mission an Bord ist die hochgeladene</translation>
+    </message>
+    <message>
+        <source>no ArduPilot or PX4 was heard within {0} s; is the vehicle on, and the address right?</source>
+        <translation>weder ArduPilot noch PX4 in {0} s gehört; ist das Fluggerät an und die Adresse richtig?</translation>
+    </message>
+    <message>
+        <source>expected {0}, found {1}; name the other autopilot</source>
+        <translation>erwartet {0}, gefunden {1}; den anderen Autopiloten nennen</translation>
+    </message>
+    <message>
+        <source>the vehicle is armed already; land and disarm it first</source>
+        <translation>das Fluggerät ist schon scharf; zuerst landen und sichern</translation>
+    </message>
+    <message>
+        <source>sending telemetry</source>
+        <translation>Telemetrie senden</translation>
+    </message>
+    <message>
+        <source>the vehicle is heard but does not answer; does the link go both ways?</source>
+        <translation>das Fluggerät ist zu hören, antwortet aber nicht; geht die Verbindung in beide Richtungen?</translation>
+    </message>
+    <message>
+        <source>{0}; {1} take effect after a reboot only: restart the vehicle</source>
+        <translation>{0}; {1} wirken erst nach einem Neustart: das Fluggerät neu starten</translation>
+    </message>
+    <message>
+        <source>the autopilot restarts, so that {0} take effect</source>
+        <translation>der Autopilot startet neu, damit {0} wirken</translation>
+    </message>
+    <message>
+        <source>the vehicle did not come back within {0} s of its reboot</source>
+        <translation>das Fluggerät kam in {0} s nach seinem Neustart nicht wieder</translation>
+    </message>
+    <message>
+        <source>the vehicle was not rebooted; {0} take effect then: restart it</source>
+        <translation>das Fluggerät wurde nicht neu gestartet; {0} wirken erst dann: neu starten</translation>
+    </message>
+    <message>
+        <source>the {0} is not on the vehicle: {1}</source>
+        <translation>nicht auf dem Fluggerät: {0}: {1}</translation>
+    </message>
+    <message>
+        <source>not ready for take-off: </source>
+        <translation>nicht startbereit: </translation>
+    </message>
+    <message>
+        <source>not ready for take-off after {0} s: </source>
+        <translation>nach {0} s nicht startbereit: </translation>
+    </message>
+    <message>
+        <source>the mode {0}</source>
+        <translation>der Modus {0}</translation>
+    </message>
+    <message>
+        <source>starting the mission</source>
+        <translation>Mission starten</translation>
+    </message>
+    <message>
+        <source>the vehicle is in mode {0} and not in {1}</source>
+        <translation>das Fluggerät ist im Modus {0} und nicht in {1}</translation>
+    </message>
+    <message>
+        <source>the aircraft did not take off{0}</source>
+        <translation>das Fluggerät hob nicht ab{0}</translation>
+    </message>
+    <message>
+        <source>the vehicle was not heard for {0} s in flight; what was recorded ends there</source>
+        <translation>das Fluggerät war im Flug {0} s nicht zu hören; die Aufzeichnung endet dort</translation>
+    </message>
+    <message>
+        <source>the aircraft is armed for longer than any battery lasts; look at what it does</source>
+        <translation>das Fluggerät ist länger scharf, als ein Akku hält; nachsehen, was es tut</translation>
+    </message>
+    <message>
+        <source>its measurements contradict each other</source>
+        <translation>Messungen, die zueinander passen</translation>
+    </message>
+    <message>
+        <source>no position yet</source>
+        <translation>noch keine Position</translation>
+    </message>
+    <message>
+        <source>no height yet</source>
+        <translation>noch keine Höhe</translation>
+    </message>
+    <message>
+        <source>no velocity yet</source>
+        <translation>noch keine Geschwindigkeit</translation>
+    </message>
+    <message>
+        <source>this log exists already; name another file</source>
+        <translation>dieses Protokoll gibt es schon; eine andere Datei nennen</translation>
+    </message>
+    <message>
+        <source>the telemetry log cannot be made ({0})</source>
+        <translation>das Telemetrieprotokoll lässt sich nicht anlegen ({0})</translation>
+    </message>
+    <message>
+        <source>the disk is full</source>
+        <translation>der Datenträger ist voll</translation>
+    </message>
+    <message>
+        <source>the telemetry log may lack its end ({0})</source>
+        <translation>dem Telemetrieprotokoll fehlt vielleicht das Ende ({0})</translation>
+    </message>
+    <message>
+        <source>the telemetry log cannot be written ({0}); free some space, and it goes on by itself</source>
+        <translation>das Telemetrieprotokoll lässt sich nicht schreiben ({0}); Platz schaffen, dann geht es von selbst weiter</translation>
+    </message>
+    <message>
+        <source>the folder for telemetry logs cannot be made ({0})</source>
+        <translation>der Ordner für Telemetrieprotokolle lässt sich nicht anlegen ({0})</translation>
+    </message>
+    <message>
+        <source>no heartbeat for {0} s: what is shown is old; the aircraft goes on by itself</source>
+        <translation>kein Lebenszeichen seit {0} s: die Anzeige ist veraltet; das Fluggerät macht selbst weiter</translation>
+    </message>
+    <message>
+        <source>the facade is {0} m away and will be {1} m away where the aircraft can stop</source>
+        <translation>die Fassade ist {0} m entfernt und wird {1} m entfernt sein, wo das Fluggerät anhalten kann</translation>
+    </message>
+    <message>
+        <source>the wind is {0} m/s; {1} may fly in up to {2} m/s</source>
+        <translation>der Wind hat {0} m/s; {1} darf bis {2} m/s fliegen</translation>
+    </message>
+    <message>
+        <source>the battery holds {0}, less than the reserve of {1}: land</source>
+        <translation>der Akku hält {0}, weniger als die Reserve von {1}: landen</translation>
+    </message>
+    <message>
+        <source>the way home would use the reserve: {0} left, {1} needed</source>
+        <translation>der Heimweg würde die Reserve brauchen: {0} übrig, {1} nötig</translation>
+    </message>
+    <message>
+        <source>the battery holds {0}; at {1} the aircraft must turn home</source>
+        <translation>der Akku hält {0}; bei {1} muss das Fluggerät umkehren</translation>
+    </message>
+    <message>
+        <source>the airspace ends {0} m from where the aircraft can stop</source>
+        <translation>der Luftraum endet {0} m von der Stelle, wo das Fluggerät anhalten kann</translation>
+    </message>
+    <message>
+        <source>the aircraft is {0} m outside the airspace</source>
+        <translation>das Fluggerät ist {0} m außerhalb des Luftraums</translation>
+    </message>
+    <message>
+        <source>a no-fly zone is {0} m from where the aircraft can stop</source>
+        <translation>eine Flugverbotszone ist {0} m von der Stelle, wo das Fluggerät anhalten kann</translation>
+    </message>
+    <message>
+        <source>the GNSS receiver has lost its fix: fly by hand or land</source>
+        <translation>der GNSS-Empfänger hat seinen Fix verloren: von Hand fliegen oder landen</translation>
+    </message>
+    <message>
+        <source>RTK is lost</source>
+        <translation>RTK ist verloren</translation>
+    </message>
+    <message>
+        <source>no photo came from viewpoint &apos;{0}&apos;; {1} of this sortie are missing</source>
+        <translation>von Aufnahmepunkt &apos;{0}&apos; kam kein Foto; {1} dieses Einsatzes fehlen</translation>
+    </message>
+    <message>
+        <source>the aircraft is {0} m beside its planned path</source>
+        <translation>das Fluggerät ist {0} m neben seinem geplanten Weg</translation>
+    </message>
+    <message>
+        <source>the plan was made for the site &apos;{0}&apos; as it was then, and this is another site &apos;{1}&apos;; name the site file that it was made for, or plan again</source>
+        <translation>der Plan wurde für den Standort &apos;{0}&apos; gemacht, wie er damals war, und dies ist ein anderer Standort &apos;{1}&apos;; dessen Datei nennen oder neu planen</translation>
+    </message>
+    <message>
+        <source>the plan was made for the site &apos;{0}&apos; as it was then, and this is a changed site &apos;{1}&apos;; name the site file that it was made for, or plan again</source>
+        <translation>der Plan wurde für den Standort &apos;{0}&apos; gemacht, wie er damals war, und dies ist ein geänderter Standort &apos;{1}&apos;; dessen Datei nennen oder neu planen</translation>
+    </message>
+    <message>
+        <source>nothing can be uploaded now: the vehicle must be heard, on the ground and disarmed</source>
+        <translation>jetzt lässt sich nichts hochladen: Das Fluggerät muss zu hören, am Boden und gesichert sein</translation>
+    </message>
+    <message>
+        <source>the pre-flight list is not all well, or nothing was uploaded yet</source>
+        <translation>die Liste vor dem Flug ist nicht ganz in Ordnung, oder es wurde noch nichts hochgeladen</translation>
+    </message>
+    <message>
+        <source>the vehicle does not fly its mission, so there is nothing to pause</source>
+        <translation>das Fluggerät fliegt seine Mission nicht, es gibt nichts anzuhalten</translation>
+    </message>
+    <message>
+        <source>the vehicle is not in flight, so there is nothing to resume</source>
+        <translation>das Fluggerät ist nicht im Flug, es gibt nichts fortzusetzen</translation>
+    </message>
+    <message>
+        <source>no vehicle was heard yet, so none can return</source>
+        <translation>noch kein Fluggerät gehört, keines kann heimkehren</translation>
+    </message>
+    <message>
+        <source>no vehicle was heard yet, so none can land</source>
+        <translation>noch kein Fluggerät gehört, keines kann landen</translation>
+    </message>
+    <message>
+        <source>there is no link</source>
+        <translation>es gibt keine Verbindung</translation>
+    </message>
+    <message>
+        <source>the mission is on board, read back and equal</source>
+        <translation>die Mission ist an Bord, zurückgelesen und gleich</translation>
+    </message>
+    <message>
+        <source>the aircraft flies its mission</source>
+        <translation>das Fluggerät fliegt seine Mission</translation>
+    </message>
+    <message>
+        <source>the flight could not be watched any longer ({0}: {1}); please report it</source>
+        <translation>der Flug ließ sich nicht weiter beobachten ({0}: {1}); bitte melden</translation>
+    </message>
+    <message>
+        <source>disconnected in flight; the aircraft goes on by itself, what was recorded ends there</source>
+        <translation>im Flug getrennt; das Fluggerät macht selbst weiter, die Aufzeichnung endet dort</translation>
+    </message>
+    <message>
+        <source>preparing the flight</source>
+        <translation>Flug wird vorbereitet</translation>
+    </message>
+    <message>
+        <source>the plan breaks {0:n} pre-flight rules, such as: {1}; correct it before it is flown</source>
+        <translation>der Plan verletzt {0:n} Regeln vor dem Flug, etwa: {1}; ihn vor dem Flug berichtigen</translation>
+    </message>
+    <message>
+        <source>cannot be seen from any allowed place that was found on the site as it is now</source>
+        <translation>sind von keinem erlaubten Ort aus zu sehen, der am Standort, wie er jetzt ist, gefunden wurde</translation>
+    </message>
+    <message>
+        <source>can be seen, but the batteries allowed do not last for them; change the battery</source>
+        <translation>sind zu sehen, aber die erlaubten Akkus reichen nicht für sie; Akku wechseln</translation>
+    </message>
+    <message>
+        <source>can only be seen from places closer together than aircraft accept</source>
+        <translation>sind nur von Orten zu sehen, die dichter beieinander liegen, als Fluggeräte annehmen</translation>
+    </message>
+    <message>
+        <source>flight (&apos;{0}&apos;), plan (&apos;{1}&apos;) and site (&apos;{2}&apos;) do not have the same origin; name the plan and the site file that this flight was flown with</source>
+        <translation>Flug (&apos;{0}&apos;), Plan (&apos;{1}&apos;) und Standort (&apos;{2}&apos;) haben nicht denselben Ursprung; Plan und Standortdatei nennen, mit denen geflogen wurde</translation>
+    </message>
+    <message>
+        <source>its plan has another checksum</source>
+        <translation>sein Plan hat eine andere Prüfsumme</translation>
+    </message>
+    <message>
+        <source>none of its {0} photos was taken near a view of it</source>
+        <translation>keines seiner {0} Fotos entstand nahe einer seiner Aufnahmen</translation>
+    </message>
+    <message>
+        <source>this is a flight of another plan: {0}; name the plan file that it was flown with, as it was then</source>
+        <translation>dies ist ein Flug eines anderen Plans: {0}; die Plandatei nennen, mit der geflogen wurde, wie sie damals war</translation>
+    </message>
+    <message>
+        <source>the site file has changed since the plan was made; what is missing is planned on the site as it is now</source>
+        <translation>die Standortdatei hat sich seit dem Plan geändert; was fehlt, wird am Standort geplant, wie er jetzt ist</translation>
+    </message>
+    <message>
+        <source>{0} photos belong to no view, and nothing says where they look; what they show counts as missing</source>
+        <translation>{0} Fotos gehören zu keiner Aufnahme, und nichts sagt, wohin sie blicken; was sie zeigen, gilt als fehlend</translation>
+    </message>
+    <message>
+        <source>{0} of the {1} missing sections (on {2} panels) {3}</source>
+        <translation>{0} der {1} fehlenden Sektoren (auf {2} Scheiben) {3}</translation>
+    </message>
+    <message>
+        <source>no sortie of this plan was interrupted: those that were flown are complete; the next one is flown from the plan itself</source>
+        <translation>kein Einsatz dieses Plans wurde unterbrochen: Die geflogenen sind vollständig; der nächste wird vom Plan selbst geflogen</translation>
+    </message>
+    <message>
+        <source>sortie: expected 1 to {0}, got {1}</source>
+        <translation>Einsatz: erwartet 1 bis {0}, gefunden {1}</translation>
+    </message>
+    <message>
+        <source>the rest of sortie {0} takes {1} s, but a battery at {2} allows {3} s above the reserve; change the battery, or plan a top-up, which fits it</source>
+        <translation>der Rest von Einsatz {0} dauert {1} s, aber ein Akku bei {2} erlaubt {3} s über der Reserve; Akku wechseln oder einen Ergänzungsflug planen, der passt</translation>
+    </message>
+    <message>
+        <source>{0} views were photographed, but the camera&apos;s reports were lost on the radio; what they show counts as missing. The autopilot&apos;s log (.BIN, .ulg) tells of them: name it instead of the flight file</source>
+        <translation>{0} Aufnahmen wurden gemacht, aber die Meldungen der Kamera gingen über Funk verloren; was sie zeigen, gilt als fehlend. Das Protokoll des Autopiloten (.BIN, .ulg) weiß davon: es statt der Flugdatei nennen</translation>
+    </message>
+</context>
+<context>
+    <name>SimulationPage</name>
+    <message>
+        <source>RTK fixed</source>
+        <translation>RTK fixiert</translation>
+    </message>
+    <message>
+        <source>RTK float</source>
+        <translation>RTK Float</translation>
+    </message>
+    <message>
+        <source>without RTK</source>
+        <translation>ohne RTK</translation>
+    </message>
+    <message>
+        <source>Wind</source>
+        <translation>Wind</translation>
+    </message>
+    <message>
+        <source>Wind from</source>
+        <translation>Wind aus</translation>
+    </message>
+    <message>
+        <source>GNSS</source>
+        <translation>GNSS</translation>
+    </message>
 </context>
 <context>
     <name>SiteDetail</name>
@@ -6034,14 +7448,6 @@ Größe: {3}; Dreiecke: {4}</translation>
 <context>
     <name>Tabs</name>
     <message>
-        <source>Flying from this window is not built yet.</source>
-        <translation>Fliegen aus diesem Fenster gibt es noch nicht.</translation>
-    </message>
-    <message>
-        <source>Export the mission on the Mission tab and fly it with DJI Pilot 2, QGroundControl or Mission Planner.</source>
-        <translation>Die Mission im Reiter Mission exportieren und mit DJI Pilot 2, QGroundControl oder Mission Planner fliegen.</translation>
-    </message>
-    <message>
         <source>Fly</source>
         <translation>Fliegen</translation>
     </message>
@@ -6265,6 +7671,21 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Click a panel first, then the viewpoint, then Aim.</source>
         <translation>Erst eine Scheibe anklicken, dann den Aufnahmepunkt, dann „Ausrichten“.</translation>
+    </message>
+</context>
+<context>
+    <name>WarningsView</name>
+    <message>
+        <source>No warnings.</source>
+        <translation>Keine Warnungen.</translation>
+    </message>
+    <message>
+        <source>Danger: {0}</source>
+        <translation>Gefahr: {0}</translation>
+    </message>
+    <message>
+        <source>Warning: {0}</source>
+        <translation>Warnung: {0}</translation>
     </message>
 </context>
 <context>

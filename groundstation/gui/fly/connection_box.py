@@ -1,0 +1,129 @@
+"""How to reach the vehicle: the embedded simulation, or a link."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
+
+from groundstation.gui.inputs import NumberBox
+from groundstation.services.live_choice import USUAL_ADDRESS, ConnectionChoice, LinkKind
+from missions.mavlink.autopilots import Autopilot
+
+MAX_SPEED_UP = 50.0
+
+
+class ConnectionBox(QWidget):
+    """Edits a `ConnectionChoice`.
+
+    Signals
+    -------
+    valueChanged(ConnectionChoice)
+    connectRequested(), disconnectRequested()
+    """
+
+    valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+    connectRequested = Signal()  # noqa: N815
+    disconnectRequested = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._value = ConnectionChoice()
+        self._addresses = dict(USUAL_ADDRESS)
+        self._is_connected = False
+        self.kind, self.autopilot, self.address = QComboBox(), QComboBox(), QLineEdit()
+        self.speed_up = NumberBox(1.0, MAX_SPEED_UP, 1.0, " x", 0)
+        self.button = QPushButton()
+        self._says = QLabel()
+        self._says.setWordWrap(True)
+        self._says.setProperty("role", "muted")
+        for kind, text in (
+            (LinkKind.SIMULATION, self.tr("Simulation")),
+            (LinkKind.UDP, self.tr("UDP")),
+            (LinkKind.TCP, self.tr("TCP")),
+            (LinkKind.SERIAL, self.tr("Serial port")),
+        ):
+            self.kind.addItem(text, kind)
+        self.autopilot.addItem("ArduPilot", Autopilot.ARDUPILOT)
+        self.autopilot.addItem("PX4", Autopilot.PX4)
+        self._form = QFormLayout()
+        self._form.setContentsMargins(0, 0, 0, 0)
+        self._form.addRow(self.tr("Vehicle"), self.kind)
+        self._form.addRow(self.tr("Autopilot"), self.autopilot)
+        self._form.addRow(self.tr("Speed-up"), self.speed_up)
+        self._form.addRow(self.tr("Address"), self.address)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(self._form)
+        layout.addWidget(self._says)
+        layout.addWidget(self.button)
+        self.kind.currentIndexChanged.connect(self._kind_chosen)
+        self.autopilot.currentIndexChanged.connect(self._edited)
+        self.speed_up.valueChanged.connect(self._edited)
+        self.address.editingFinished.connect(self._edited)
+        self.button.clicked.connect(self._pressed)
+        self._show()
+
+    def value(self) -> ConnectionChoice:
+        """What is chosen."""
+        return self._value
+
+    def setValue(self, value: ConnectionChoice) -> None:  # noqa: N802
+        """Show another choice."""
+        self._value = value
+        if value.address:
+            self._addresses[value.kind] = value.address
+        self._show()
+
+    def set_connected(self, *, is_connected: bool, says: str) -> None:
+        """Show that a connection is open, so that only closing it is offered; `says` stands below."""
+        self._is_connected = is_connected
+        self._says.setText(says)
+        self._show()
+
+    def set_possible(self, *, is_possible: bool) -> None:
+        """Whether there is a sortie to connect for."""
+        self.button.setEnabled(is_possible or self._is_connected)
+
+    def _show(self) -> None:
+        value = self._value
+        boxes = (self.kind, self.autopilot, self.speed_up, self.address)
+        blockers = [QSignalBlocker(box) for box in boxes]
+        self.kind.setCurrentIndex(self.kind.findData(value.kind))
+        self.autopilot.setCurrentIndex(self.autopilot.findData(value.autopilot))
+        self.speed_up.setValue(value.speed_up)
+        self.address.setText(value.address or self._addresses[value.kind])
+        del blockers
+        is_simulation = value.kind is LinkKind.SIMULATION
+        for box, is_shown in (
+            (self.kind, True),
+            (self.autopilot, is_simulation),
+            (self.speed_up, is_simulation),
+            (self.address, not is_simulation),
+        ):
+            self._form.setRowVisible(box, is_shown and not self._is_connected)
+        self._says.setVisible(bool(self._says.text()))
+        self.button.setText(self.tr("Disconnect") if self._is_connected else self.tr("Connect"))
+        self.button.setProperty("primary", not self._is_connected)
+        self.button.style().polish(self.button)
+
+    def _kind_chosen(self) -> None:
+        kind = LinkKind(self.kind.currentData())
+        self._take(replace(self._value, kind=kind, address=self._addresses[kind]))
+
+    def _edited(self) -> None:
+        kind = self._value.kind
+        address = "" if kind is LinkKind.SIMULATION else self.address.text().strip()
+        self._addresses[kind] = address or self._addresses[kind]
+        autopilot = Autopilot(self.autopilot.currentData())
+        self._take(replace(self._value, address=address, autopilot=autopilot, speed_up=self.speed_up.value()))
+
+    def _take(self, value: ConnectionChoice) -> None:
+        if value != self._value:
+            self._value = value
+            self._show()
+            self.valueChanged.emit(value)
+
+    def _pressed(self) -> None:
+        (self.disconnectRequested if self._is_connected else self.connectRequested).emit()

@@ -1,0 +1,365 @@
+"""What the Fly tab does: connect, ask, follow, and plan what comes after. It belongs to the workspace, not to a window.
+
+Events of a flight come from its thread as Qt signals, in the window's thread; nothing here waits for the link.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from PySide6.QtCore import QObject, Signal
+
+from groundstation.gui.fly.after_flight import AfterFlight
+from groundstation.gui.workspace import Workspace
+from groundstation.services.effects import EffectChoice
+from groundstation.services.jobs import JobContext
+from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice, write_choice
+from groundstation.services.live_connection import CALM, Connection, Simulation, VehicleAt
+from groundstation.services.live_events import (
+    Answered,
+    FlightChanged,
+    FlightEnded,
+    LinkChanged,
+    LinkState,
+    LiveEvent,
+    LiveView,
+    LogProblem,
+    PhotoCounted,
+    Request,
+    WarningCleared,
+    WarningRaised,
+)
+from groundstation.services.live_flight import LiveFlight
+from groundstation.services.live_readouts import BEFORE_TAKE_OFF
+from groundstation.services.live_record import flights_folder
+from groundstation.services.live_sortie import LiveSortie, prepare_sortie, simulation_effects
+from missions.simulator.scene import Conditions
+from planning.checks.case import Case
+from planning.effects import Wish
+from planning.errors import InputError
+from planning.findings import Severity
+from planning.frames import Vec3
+from planning.plan import Plan
+
+BEFORE_FLIGHT = (Request.UPLOAD, Request.START)
+
+CLOSE_S = 5.0
+"""Longest wait for a flight's thread when the window closes; it notices within a twentieth of a second."""
+
+
+@dataclass(slots=True)
+class FlightInHand:
+    """What is known of the flight that is shown, also after it ended.
+
+    Parameters
+    ----------
+    track_enu_m
+        Where the aircraft was, ten times a second at most.
+    photos
+        By the view that they are of.
+    notes
+        What happened: the vehicle's time, how severe, and the text.
+    """
+
+    sortie: LiveSortie
+    view: LiveView | None = None
+    link: LinkState = LinkState.OPENING
+    track_enu_m: list[Vec3] = field(default_factory=list)
+    photos: dict[str, PhotoCounted] = field(default_factory=dict)
+    counted: PhotoCounted | None = None
+    ended: FlightEnded | None = None
+    notes: list[tuple[float | None, Severity, str]] = field(default_factory=list)
+    last_text_s: float = -math.inf
+    battery: float | None = None
+
+
+class FlyDesk(QObject):
+    """One vehicle at a time.
+
+    Signals
+    -------
+    stateChanged()
+        Connected, disconnected, or another sortie.
+    viewChanged(LiveView), photoCounted(PhotoCounted), linkChanged(LinkState), flightEnded(FlightEnded)
+        As the flight publishes them.
+    effectsChanged(tuple of EffectChoice)
+        What the simulation would take into account.
+    noted(object, Severity, str)
+        Something to be remembered: the vehicle's time (or None), how severe, and the text.
+    """
+
+    stateChanged = Signal()  # noqa: N815  (Qt's own way of naming)
+    viewChanged = Signal(object)  # noqa: N815
+    photoCounted = Signal(object)  # noqa: N815
+    linkChanged = Signal(object)  # noqa: N815
+    flightEnded = Signal(object)  # noqa: N815
+    effectsChanged = Signal(object)  # noqa: N815
+    noted = Signal(object, object, str)
+    _published = Signal(int, object)
+
+    def __init__(self, workspace: Workspace) -> None:
+        super().__init__(workspace)
+        self._workspace = workspace
+        self._flight: LiveFlight | None = None
+        self._ids = itertools.count(1)
+        self._flight_id = 0
+        self._case: Case | None = None
+        self._preparing_id = self._looking_id = 0
+        self.choice = read_choice(choice_path())
+        self.conditions: Conditions = CALM
+        self.wishes: dict[str, Wish] = {}
+        self.number = 1
+        self.in_hand: FlightInHand | None = None
+        self.after = AfterFlight(workspace, self)
+        self._published.connect(self._take)
+
+    @classmethod
+    def of(cls, workspace: Workspace) -> FlyDesk:
+        """The desk of a workspace: windows come and go, the flight goes on."""
+        known = workspace.findChild(cls)
+        return cls(workspace) if known is None else known
+
+    # What there is
+
+    @property
+    def plan(self) -> Plan | None:
+        """The current plan, where there is a site to fly it on."""
+        document = self._workspace.document
+        return None if document.site is None or document.current is None else document.current.plan
+
+    @property
+    def is_connected(self) -> bool:
+        """Whether a link is open, or being opened."""
+        return self._flight is not None
+
+    @property
+    def is_for_shown_plan(self) -> bool:
+        """Whether the connection was made for the plan that is shown; only that one may be uploaded and started."""
+        return self.in_hand is not None and self.in_hand.sortie.case.plan is self.plan
+
+    @property
+    def is_preparing(self) -> bool:
+        """Whether a connection is about to be made."""
+        return self._runs(self._preparing_id)
+
+    @property
+    def is_in_flight(self) -> bool:
+        """Whether an aircraft is in the air, as far as is known."""
+        return self._flight is not None and self._flight.is_in_flight
+
+    # Connecting
+
+    def set_choice(self, choice: ConnectionChoice) -> None:
+        """Connect in another way the next time; kept for the next start of the program too."""
+        self.choice = choice
+        try:
+            write_choice(choice_path(), choice)
+        except InputError as error:
+            self._say(Severity.WARNING, str(error))
+
+    def set_sortie(self, number: int) -> None:
+        """Fly another sortie of the plan, from 1; connected, it becomes the next one."""
+        self.number = number
+        if self._flight is not None and self.is_for_shown_plan:
+            self._prepare(self._take_on)
+        self.stateChanged.emit()
+
+    def connect_vehicle(self) -> None:
+        """Prepare the sortie, then open the link."""
+        if self._flight is None:
+            self._prepare(self._connect)
+
+    def disconnect_vehicle(self) -> None:
+        """Close the link; the aircraft goes on by itself."""
+        self.request(Request.DISCONNECT)
+
+    def request(self, request: Request) -> None:
+        """Ask the flight for something."""
+        if self._flight is not None and (self.is_for_shown_plan or request not in BEFORE_FLIGHT):
+            self._flight.request(request)
+
+    def close(self) -> None:
+        """End the flight's thread; what was flown is kept."""
+        flight, self._flight = self._flight, None
+        self._flight_id = 0
+        if flight is not None:
+            flight.close(CLOSE_S)
+
+    def _prepare(self, then: Callable[[LiveSortie], None]) -> None:
+        plan, site_model, number, known = self.plan, self._workspace.document.site, self.number, self._case
+        if plan is None or site_model is None or self.is_preparing:
+            return
+
+        def work(context: JobContext) -> LiveSortie:
+            return prepare_sortie(plan, site_model, number, known, context)
+
+        def done(sortie: LiveSortie) -> None:
+            self._case = sortie.case
+            then(sortie)
+            self.stateChanged.emit()
+
+        self._preparing_id = self._workspace.start(self.tr("Prepare the flight"), work, done).id
+        self.stateChanged.emit()
+
+    def _runs(self, job_id: int) -> bool:
+        return any(job.id == job_id for job in self._workspace.jobs())
+
+    def _take_on(self, sortie: LiveSortie) -> None:
+        in_hand = self.in_hand
+        is_free = in_hand is not None and in_hand.view is not None and in_hand.view.phase in BEFORE_TAKE_OFF
+        if self._flight is not None and is_free and not self.is_in_flight and self.is_for_shown_plan:
+            self._flight.take_on(sortie)
+            self.in_hand = FlightInHand(sortie)
+
+    def _connect(self, sortie: LiveSortie) -> None:
+        if self._flight is not None:
+            return
+        plan = sortie.case.plan
+        self._flight_id = flight_id = next(self._ids)
+        self.in_hand = FlightInHand(sortie)
+        self._flight = LiveFlight(
+            sortie,
+            self._connection(sortie),
+            lambda event: self._published.emit(flight_id, event),
+            flights_folder(self._workspace.session.folder),
+            flown=self.after.flown(plan),
+        )
+        self._flight.start()
+        self._note(Severity.NOTE, self.tr("connecting"))
+
+    def _connection(self, sortie: LiveSortie) -> Connection:
+        choice, case = self.choice, sortie.case
+        if choice.kind is not LinkKind.SIMULATION:
+            return VehicleAt(choice.url)
+        return Simulation(
+            case.plan,
+            case.site_model,
+            autopilot=choice.autopilot,
+            speed_up=choice.speed_up,
+            conditions=self.conditions,
+            wishes=dict(self.wishes),
+        )
+
+    # Events
+
+    def _take(self, flight_id: int, event: LiveEvent) -> None:
+        in_hand = self.in_hand
+        if flight_id != self._flight_id or in_hand is None:
+            return
+        match event:
+            case FlightChanged():
+                self._take_view(in_hand, event.view)
+            case PhotoCounted():
+                in_hand.counted = event
+                if event.view_id:
+                    in_hand.photos[event.view_id] = event
+                self.photoCounted.emit(event)
+            case LinkChanged():
+                self._take_link(in_hand, event)
+            case Answered():
+                self._note(Severity.OK if event.is_accepted else Severity.ERROR, self._words(event.text))
+                if not event.is_accepted:
+                    self._say(Severity.ERROR, event.text)
+            case WarningRaised():
+                self._note(event.warning.severity, self._words(event.warning.text))
+            case WarningCleared():
+                pass
+            case LogProblem():
+                self._note(Severity.WARNING, self._words(event.text))
+                self._say(Severity.WARNING, event.text)
+            case FlightEnded():
+                self._take_end(in_hand, event)
+
+    def _take_view(self, in_hand: FlightInHand, view: LiveView) -> None:
+        in_hand.view = view
+        state = view.state
+        if state.motion is not None and view.link is LinkState.ALIVE:
+            place = state.motion.value.position_enu_m
+            if not in_hand.track_enu_m or in_hand.track_enu_m[-1] != place:
+                in_hand.track_enu_m.append(place)
+        if view.readouts.battery is not None:
+            in_hand.battery = view.readouts.battery
+        self._take_texts(in_hand, view)
+        self.viewChanged.emit(view)
+
+    def _take_texts(self, in_hand: FlightInHand, view: LiveView) -> None:
+        """Note the autopilot's texts that are new; those that are kept are the last ones of all."""
+        texts = [text for text in view.state.texts if text.time_s > in_hand.last_text_s]
+        for text in texts:
+            in_hand.last_text_s = text.time_s
+            severity = (
+                Severity.ERROR if text.severity <= 3 else Severity.WARNING if text.severity == 4 else Severity.NOTE
+            )
+            self._note(severity, self.tr("autopilot: {0}").format(text.text))
+
+    def _take_link(self, in_hand: FlightInHand, event: LinkChanged) -> None:
+        before, in_hand.link = in_hand.link, event.link
+        text = self._words(event.text)
+        if event.link is LinkState.LOST:
+            self._note(Severity.ERROR, self.tr("link lost") if not text else self.tr("link lost: {0}").format(text))
+        elif event.link is LinkState.ALIVE:
+            self._note(
+                Severity.OK, self.tr("link alive") if before is not LinkState.LOST else self.tr("link found again")
+            )
+        elif event.link is LinkState.CLOSED:
+            self._note(Severity.NOTE, self.tr("disconnected"))
+            if text:
+                self._say(Severity.ERROR, event.text)
+            self._flight = None
+            self.stateChanged.emit()
+        self.linkChanged.emit(event.link)
+
+    def _take_end(self, in_hand: FlightInHand, event: FlightEnded) -> None:
+        in_hand.ended = event
+        if event.record is not None:
+            self.after.add(in_hand.sortie.case.plan, event.record, in_hand.battery)
+        if event.error is not None:
+            self._note(Severity.ERROR, self._words(str(event.error)))
+            self._say(Severity.ERROR, str(event.error))
+        else:
+            self._note(Severity.OK, self.tr("landed"))
+        if event.problem:
+            self._say(Severity.WARNING, event.problem)
+        self.flightEnded.emit(event)
+
+    def _note(self, severity: Severity, text: str) -> None:
+        in_hand = self.in_hand
+        view = None if in_hand is None else in_hand.view
+        when = None if view is None else view.state.boot_time_s
+        if in_hand is not None:
+            in_hand.notes.append((when, severity, text))
+        self.noted.emit(when, severity, text)
+
+    def _say(self, severity: Severity, text: str) -> None:
+        self._workspace.say(severity, self._words(text))
+
+    def _words(self, text: str) -> str:
+        words: str = self._workspace.words(text)
+        return words
+
+    # The simulation
+
+    def set_simulation(self, conditions: Conditions, wishes: dict[str, Wish]) -> None:
+        """Simulate in other conditions the next time."""
+        self.conditions, self.wishes = conditions, wishes
+        self.look_at_effects()
+
+    def look_at_effects(self) -> None:
+        """Find out what the simulation of the chosen sortie takes into account."""
+        plan, site_model = self.plan, self._workspace.document.site
+        if plan is None or site_model is None or self.number > len(plan.sorties) or self._runs(self._looking_id):
+            return
+        asked = (self.number, self.conditions, dict(self.wishes))
+
+        def work(_context: JobContext) -> tuple[EffectChoice, ...]:
+            return simulation_effects(plan, site_model, *asked)
+
+        def done(choices: tuple[EffectChoice, ...]) -> None:
+            self.effectsChanged.emit(choices)
+            if asked != (self.number, self.conditions, self.wishes):
+                self.look_at_effects()
+
+        self._looking_id = self._workspace.start(self.tr("Look at the flight"), work, done).id

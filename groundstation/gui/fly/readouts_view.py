@@ -1,0 +1,159 @@
+"""What the pilot reads at a glance, in large figures."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QProgressBar, QSizePolicy, QVBoxLayout, QWidget
+
+from groundstation.services.live_events import LiveView, PhotoCounted, Readouts, ViewState
+from groundstation.services.units import UnitSystem, length_unit, minutes_text, per_cent, speed_unit
+from groundstation.vehicle.preflight import FIX_NAMES
+
+UNKNOWN = "-"
+FIGURE_SCALE = 1.7
+DONE = (ViewState.TAKEN, ViewState.OFF)
+
+
+class ReadoutsView(QWidget):
+    """Two columns of figures; those that a warning is about are shown in its colour."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._units = UnitSystem.METRIC
+        self._view: LiveView | None = None
+        self._tiles: dict[str, _Tile] = {}
+        self._coverage = QProgressBar()
+        self._coverage.setRange(0, 1000)
+        self._coverage.setTextVisible(False)
+        self._covered = QLabel()
+        self._covered.setWordWrap(True)
+        self._counted: PhotoCounted | None = None
+        layout = QGridLayout(self)
+        layout.setContentsMargins(4, 4, 4, 4)
+        layout.setSpacing(4)
+        for number, (name, caption) in enumerate(self._captions()):
+            tile = self._tiles[name] = _Tile(caption)
+            layout.addWidget(tile, number // 2, number % 2)
+        for column in (0, 1):
+            layout.setColumnStretch(column, 1)
+        layout.addWidget(self._covered, len(self._tiles) // 2 + 1, 0, 1, 2)
+        layout.addWidget(self._coverage, len(self._tiles) // 2 + 2, 0, 1, 2)
+        self._show()
+
+    def _captions(self) -> tuple[tuple[str, str], ...]:
+        return (
+            ("height", self.tr("above take-off")),
+            ("speed", self.tr("speed")),
+            ("facade", self.tr("to facade")),
+            ("photos", self.tr("photos")),
+            ("battery", self.tr("battery")),
+            ("left", self.tr("to reserve")),
+            ("wind", self.tr("wind")),
+            ("gnss", self.tr("GNSS")),
+        )
+
+    def set_view(self, view: LiveView | None) -> None:
+        """Show a flight as it stands."""
+        self._view = view
+        self._show()
+
+    def set_counted(self, counted: PhotoCounted | None) -> None:
+        """Show the coverage after a photo."""
+        self._counted = counted
+        self._show_coverage()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths and speeds in other units."""
+        self._units = units
+        self._show()
+
+    def text(self) -> str:
+        """Everything that is shown."""
+        return "\n".join([*(tile.text() for tile in self._tiles.values()), self._covered.text()])
+
+    def _show(self) -> None:
+        view = self._view
+        shown = Readouts() if view is None else view.readouts
+        length, speed = length_unit(self._units), speed_unit(self._units)
+        codes = {} if view is None else {warning.code: warning.severity.value for warning in view.warnings}
+        states = () if view is None else view.view_states
+        n_done = sum(state in DONE for _, state in states)
+        n_missing = sum(state is ViewState.MISSING for _, state in states)
+        photos = f"{n_done}/{len(states)}" if states else UNKNOWN
+        self._tiles["photos"].set_text(
+            photos, "" if n_missing == 0 else "warning", self.tr("{0} missing").format(n_missing) if n_missing else ""
+        )
+        fix = UNKNOWN if shown.fix_type is None else FIX_NAMES.get(shown.fix_type, str(shown.fix_type))
+        for name, text, code in (
+            ("height", UNKNOWN if shown.height_m is None else length.text(shown.height_m), "airspace"),
+            ("speed", UNKNOWN if shown.speed_m_s is None else speed.text(shown.speed_m_s), "off-path"),
+            ("facade", UNKNOWN if shown.facade_m is None else length.text(shown.facade_m), "facade-distance"),
+            ("battery", UNKNOWN if shown.battery is None else f"{shown.battery:.0%}", "battery"),
+            ("left", UNKNOWN if shown.battery_left_s is None else minutes_text(shown.battery_left_s), "battery"),
+            ("wind", UNKNOWN if shown.wind_m_s is None else speed.text(shown.wind_m_s), "wind"),
+            ("gnss", fix, "gnss"),
+        ):
+            self._tiles[name].set_text(text, codes.get(code, ""), self._note(name, shown))
+        self._show_coverage()
+
+    def _note(self, name: str, shown: Readouts) -> str:
+        if name == "facade" and shown.least_facade_m > 0.0:
+            return self.tr("min {0}").format(length_unit(self._units).text(shown.least_facade_m))
+        if name == "wind" and shown.wind_from_deg is not None and shown.wind_m_s:
+            return self.tr("from {0:.0f}°").format(shown.wind_from_deg)
+        if name == "gnss" and shown.n_satellites is not None:
+            return self.tr("{0} sat").format(shown.n_satellites)
+        return ""
+
+    def _show_coverage(self) -> None:
+        counted = self._counted
+        if counted is None or counted.covered_planned == 0:
+            self._coverage.setValue(0)
+            self._covered.setText(self.tr("coverage: no photo yet"))
+            return
+        share = per_cent(counted.covered, counted.covered_planned)
+        self._coverage.setValue(min(1000, round(10 * share)))
+        self._covered.setText(
+            self.tr("coverage {0:.1f} % of planned ({1} of {2})").format(
+                share, counted.covered, counted.covered_planned
+            )
+        )
+
+
+class _Tile(QFrame):
+    """A figure, what it is, and a note."""
+
+    def __init__(self, caption: str) -> None:
+        super().__init__()
+        self.setFrameShape(QFrame.Shape.StyledPanel)
+        self._figure, self._caption_text = QLabel(UNKNOWN), caption
+        self._caption = QLabel(caption)
+        self._caption.setProperty("role", "muted")
+        font = self._figure.font()
+        font.setPointSizeF(FIGURE_SCALE * font.pointSizeF())
+        font.setBold(True)
+        self._figure.setFont(font)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(6, 2, 6, 2)
+        layout.setSpacing(0)
+        for label in (self._figure, self._caption):
+            label.setAlignment(Qt.AlignmentFlag.AlignLeft)
+            # A longer figure does not make its column wider.
+            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+            layout.addWidget(label)
+
+    def set_text(self, figure: str, severity: str, note: str = "") -> None:
+        """Show a figure; `severity` of the warning about it, empty for none."""
+        role = severity if severity in ("error", "warning") else ""
+        if self._figure.text() != figure:
+            self._figure.setText(figure)
+        caption = f"{self._caption_text}, {note}" if note else self._caption_text
+        if self._caption.text() != caption:
+            self._caption.setText(caption)
+        if self._figure.property("role") != role:
+            self._figure.setProperty("role", role)
+            self._figure.style().polish(self._figure)
+
+    def text(self) -> str:
+        """What it says."""
+        return f"{self._caption.text()}: {self._figure.text()}"

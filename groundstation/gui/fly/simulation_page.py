@@ -1,0 +1,94 @@
+"""What the embedded simulation flies in: wind, GNSS, and the effects that the flight calls for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QVBoxLayout, QWidget
+
+from groundstation.gui.inputs import NumberBox, SpeedBox
+from groundstation.gui.plan.effects_panel import EffectsPanel
+from groundstation.services.effects import EffectChoice
+from groundstation.services.units import UnitSystem
+from missions.simulator.scene import Conditions
+from planning.effects import Wish
+
+MAX_WIND_M_S = 20.0
+
+
+class SimulationPage(QWidget):
+    """Edits `Conditions` and the wishes for effects.
+
+    Signals
+    -------
+    valueChanged()
+    """
+
+    valueChanged = Signal()  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._conditions = Conditions()
+        self._wishes: dict[str, Wish] = {}
+        self.wind, self.wind_from = SpeedBox(0.0, MAX_WIND_M_S), NumberBox(0.0, 360.0, 10.0, "\u00b0", 0)
+        self.fix, self.effects = QComboBox(), EffectsPanel()
+        for kind, text in (
+            ("rtk-fixed", self.tr("RTK fixed")),
+            ("rtk-float", self.tr("RTK float")),
+            ("single", self.tr("without RTK")),
+        ):
+            self.fix.addItem(text, kind)
+        form = QFormLayout()
+        form.addRow(self.tr("Wind"), self.wind)
+        form.addRow(self.tr("Wind from"), self.wind_from)
+        form.addRow(self.tr("GNSS"), self.fix)
+        layout = QVBoxLayout(self)
+        # The cards need the whole width beside a scroll bar.
+        for one in (layout, self.effects.layout()):
+            one.setContentsMargins(2, 4, 2, 4)
+        layout.addLayout(form)
+        layout.addWidget(self.effects, 1)
+        self.wind.valueChanged.connect(self._edited)
+        self.wind_from.valueChanged.connect(self._edited)
+        self.fix.currentIndexChanged.connect(self._edited)
+        self.effects.wishChanged.connect(self._wished)
+        self.setValue(self._conditions, {})
+
+    def value(self) -> tuple[Conditions, dict[str, Wish]]:
+        """Conditions, and wishes by the name of an effect."""
+        return self._conditions, dict(self._wishes)
+
+    def setValue(self, conditions: Conditions, wishes: dict[str, Wish]) -> None:  # noqa: N802
+        """Show other conditions."""
+        self._conditions, self._wishes = conditions, dict(wishes)
+        blockers = [QSignalBlocker(box) for box in (self.wind_from, self.fix)]
+        self.wind.setValue(conditions.wind_m_s)
+        self.wind_from.setValue(conditions.wind_from_deg)
+        self.fix.setCurrentIndex(self.fix.findData(conditions.fix))
+        del blockers
+
+    def set_effects(self, choices: tuple[EffectChoice, ...]) -> None:
+        """Show what was decided about each effect."""
+        self.effects.set_effects(choices)
+        # Long names take two lines: a scroll bar stands beside the cards.
+        for label in self.effects.findChildren(QLabel):
+            label.setWordWrap(True)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show speeds in other units."""
+        self.wind.set_units(units)
+        self.effects.set_units(units)
+
+    def _edited(self, *_value: object) -> None:
+        self._conditions = replace(
+            self._conditions,
+            wind_m_s=self.wind.value(),
+            wind_from_deg=self.wind_from.value(),
+            fix=self.fix.currentData(),
+        )
+        self.valueChanged.emit()
+
+    def _wished(self, effect: str, wish: Wish) -> None:
+        self._wishes[effect] = wish
+        self.valueChanged.emit()

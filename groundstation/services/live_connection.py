@@ -1,0 +1,166 @@
+"""What a live flight talks to: a vehicle at the end of a link, or a simulated one in this process."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from groundstation.services.flying_truth import TruthRecorder
+from groundstation.vehicle.orders import SortieOrders
+from groundstation.vehicle.recorder import Recorder
+from missions.flight.record import FlightRecord
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.link import FrameObserver, Link, memory_pair, open_link
+from missions.mavlink.messages import Message
+from missions.simulator.airframe import Airframe
+from missions.simulator.build import make_airframe
+from missions.simulator.effects.link_loss import through_air
+from missions.simulator.scene import Conditions
+from missions.simulator.server import MAX_SPEEDUP, serve
+from missions.simulator.vehicle import SimulatedVehicle
+from planning.effects import Decision, Wish
+from planning.plan import Plan
+from planning.progress import Clock
+from planning.site import Origin, SiteModel
+
+SAMPLE_S = 0.1
+"""Simulated time between two notes of where the aircraft truly is."""
+
+CALM = Conditions()
+"""No wind, RTK, no loss."""
+
+
+class SampledVehicle(SimulatedVehicle):
+    """A simulated vehicle that notes where it truly is, on the thread that flies it."""
+
+    def __init__(self, autopilot: Autopilot, airframe: Airframe, origin: Origin) -> None:
+        super().__init__(autopilot, airframe, origin, is_ready=True)
+        self._lock = threading.Lock()
+        self._truth = TruthRecorder(self)
+
+    def step(self, duration_s: float) -> list[Message]:
+        """Fly on for a simulated time; what the vehicle says meanwhile."""
+        said: list[Message] = []
+        with self._lock:
+            n_steps = max(1, math.ceil(duration_s / SAMPLE_S))
+            for _ in range(n_steps):
+                said += super().step(duration_s / n_steps)
+                self._truth.sample()
+        return said
+
+    def true_record(self, recorder: Recorder, orders: SortieOrders) -> FlightRecord | None:
+        """The last flight as it really was; None where nothing flew."""
+        with self._lock:
+            return self._truth.record(recorder, orders)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenedLink:
+    """A link that is open, and what is known of its other end.
+
+    Parameters
+    ----------
+    effects
+        Decisions of the simulation; none for a real vehicle.
+    simulated
+        The vehicle, where the other end is the embedded simulation.
+    """
+
+    link: Link
+    effects: tuple[Decision, ...] = ()
+    simulated: SampledVehicle | None = None
+
+
+class Connection(Protocol):
+    """How to reach a vehicle; opened again each time the link breaks."""
+
+    @property
+    def name(self) -> str:
+        """For messages and the flight record."""
+
+    @property
+    def speed_up(self) -> float:
+        """Simulated seconds in a real one; 1 for a real vehicle."""
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether nothing real moves: its parameters may be set without asking."""
+
+    def open(self, orders: SortieOrders, clock: Clock, observe: FrameObserver) -> OpenedLink:
+        """Open the link; every frame of it is shown to `observe`.
+
+        Raises
+        ------
+        InputError, LinkError
+            It cannot be opened.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleAt:
+    """A vehicle, or another program's simulation, at a url of `missions.mavlink.link`."""
+
+    url: str
+    speed_up: float = 1.0
+    is_simulated: bool = False
+
+    @property
+    def name(self) -> str:
+        """The url."""
+        return self.url
+
+    def open(self, _orders: SortieOrders, clock: Clock, observe: FrameObserver) -> OpenedLink:
+        """Open the url."""
+        link = open_link(self.url, clock=clock)
+        link.observe(observe)
+        return OpenedLink(link)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Simulation:
+    """The embedded simulation of a plan's aircraft.
+
+    Parameters
+    ----------
+    wishes
+        On, off or auto by the name of an effect.
+    seed
+        The same seed gives the same errors.
+    """
+
+    plan: Plan
+    site_model: SiteModel
+    autopilot: Autopilot = Autopilot.ARDUPILOT
+    speed_up: float = 1.0
+    conditions: Conditions = CALM
+    wishes: Mapping[str, Wish] = field(default_factory=dict)
+    seed: int = 0
+    is_simulated: bool = True
+
+    def __post_init__(self) -> None:
+        if not 0.1 <= self.speed_up <= MAX_SPEEDUP:
+            raise ValueError(f"speed_up: expected 0.1 to {MAX_SPEEDUP:g}, got {self.speed_up:g}")
+
+    @property
+    def name(self) -> str:
+        """For the flight record."""
+        return f"simulation, {self.speed_up:g} times as fast"
+
+    def open(self, orders: SortieOrders, clock: Clock, observe: FrameObserver) -> OpenedLink:
+        """Put the aircraft at home, switched on a while ago."""
+        sortie = self.plan.sorties[orders.number - 1]
+        airframe, decisions = make_airframe(
+            self.plan, self.site_model, sortie, conditions=self.conditions, wishes=self.wishes, seed=self.seed
+        )
+        vehicle = SampledVehicle(self.autopilot, airframe, self.site_model.site.origin)
+        ground, air = memory_pair(vehicle=vehicle.address, clock=clock)
+        ground.observe(observe)
+        link = through_air(ground, decisions, self.conditions, lambda: vehicle.now_s, self.seed)
+        # It ends when the link is closed.
+        threading.Thread(
+            target=serve, args=(vehicle, [air], self.speed_up), name="simulated-vehicle", daemon=True
+        ).start()
+        return OpenedLink(link, decisions, vehicle)

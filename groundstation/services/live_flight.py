@@ -1,0 +1,363 @@
+"""One vehicle on one link, from connecting to landing: flown on a thread of its own, told by events.
+
+The thread owns the link and the state machines of `groundstation.vehicle`; whoever watches gets frozen events and puts
+requests into a queue. Each request is answered by an event. A link that breaks is opened again for as long as it takes;
+the aircraft flies on meanwhile, and so does the sortie. Every frame goes into a telemetry log, every sortie into a
+flight file, also one that ends with the program.
+"""
+
+from __future__ import annotations
+
+import math
+import queue
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from groundstation.services.live_connection import Connection, OpenedLink
+from groundstation.services.live_coverage import LiveCoverage
+from groundstation.services.live_events import (
+    Answered,
+    FlightChanged,
+    FlightEnded,
+    LinkChanged,
+    LinkState,
+    LiveEvent,
+    LiveView,
+    LogProblem,
+    Request,
+)
+from groundstation.services.live_listener import Listener
+from groundstation.services.live_news import FlightNews
+from groundstation.services.live_readouts import BEFORE_TAKE_OFF, allowed_requests, link_state, readouts
+from groundstation.services.live_record import keep_flight, open_log
+from groundstation.services.live_requests import DONE, ORDERS, REACHED, REFUSALS
+from groundstation.services.live_sortie import USUAL, FlightSettings, LiveSortie
+from groundstation.vehicle.duration import items_duration_s
+from groundstation.vehicle.flight_run import FlightRun
+from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
+from groundstation.vehicle.run_records import Phase, RunOptions
+from groundstation.vehicle.state import VehicleState
+from groundstation.vehicle.telemetry import LocalFrame
+from groundstation.vehicle.telemetry_log import TelemetryLog
+from groundstation.vehicle.watch import PHOTO_LATE_S, Watch
+from missions.flight.record import FlightRecord
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import Message
+from planning.errors import GroundStationError, LinkError
+from planning.progress import Clock
+
+VIEW_EVERY_S = 0.1
+"""Shortest time between two views, unless what a pilot reacts to has changed."""
+
+WAIT_S = 0.05
+"""How soon a request is taken up."""
+
+RETRY_S = 1.0
+"""Pause before a link that broke is opened again."""
+
+MAX_BATCH = 200
+"""Messages taken before the flight is shown again: none is behind by more than some milliseconds."""
+
+
+class LiveFlight:
+    """A vehicle that is connected, and the sorties that it flies.
+
+    Parameters
+    ----------
+    publish
+        Called with each event, on the flight's own thread; must return at once.
+    folder
+        Where telemetry log and flight file go; where it cannot be written, the user's data folder takes its place.
+    flown
+        Records of the same plan from before, such as on another battery; photos and coverage count on.
+    clock, unix_clock
+        Real time, also for simulations: the vehicle's own time runs ahead of it, and is in its messages.
+    """
+
+    def __init__(
+        self,
+        sortie: LiveSortie,
+        connection: Connection,
+        publish: Callable[[LiveEvent], None],
+        folder: Path,
+        *,
+        flown: tuple[FlightRecord, ...] = (),
+        settings: FlightSettings = USUAL,
+        clock: Clock = time.perf_counter,
+        unix_clock: Clock = time.time,
+    ) -> None:
+        self._connection, self._publish, self._folder = connection, publish, folder
+        self._settings, self._clock, self._unix_clock = settings, clock, unix_clock
+        self._asked: queue.SimpleQueue[Request | LiveSortie] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._live, name="live-flight", daemon=True)
+        self._is_closing = False
+        self._opened: OpenedLink | None = None
+        self._retry_s = 0.0
+        self._log: TelemetryLog | None = None
+        self._log_problem = ""
+        self._records = flown
+        self._expected_s: dict[int, float] = {}
+        self._link = LinkState.OPENING
+        self._view: LiveView | None = None
+        self._shown_s = -math.inf
+        self._coverage = LiveCoverage(sortie.case)
+        self._run: FlightRun | None = None
+        self._awaited: Request | None = None
+        self._ordered: deque[Request] = deque()
+        self._news = FlightNews(publish, self._coverage)
+        self._put_in_hand(sortie, VehicleState())
+        for record in flown:
+            for photo in record.photos:
+                self._coverage.add(photo, self._plan_order())
+
+    # For whoever watches, from any thread
+
+    def start(self) -> None:
+        """Open the link, and go on until `close`."""
+        self._thread.start()
+
+    def request(self, request: Request) -> None:
+        """Ask for something; `Answered` says what became of it."""
+        self._asked.put(request)
+
+    def take_on(self, sortie: LiveSortie) -> None:
+        """Fly another sortie of the same plan next; passed over while one is under way."""
+        self._asked.put(sortie)
+
+    def close(self, timeout_s: float = 10.0) -> bool:
+        """Disconnect, keep what was flown; True where that was done in time. The aircraft goes on with what it does."""
+        self._is_closing = True
+        if self._thread.ident is not None:
+            self._thread.join(timeout_s)
+        return not self._thread.is_alive()
+
+    @property
+    def is_in_flight(self) -> bool:
+        """Whether the vehicle was armed when it was last heard."""
+        return self._view is not None and self._view.state.is_armed
+
+    # The thread
+
+    def _live(self) -> None:
+        problem = ""
+        self._log, self._log_problem = open_log(self._folder, self._unix_clock())
+        if self._log_problem:
+            self._publish(LogProblem(self._log_problem))
+        try:
+            self._open()
+            while not self._is_closing:
+                self._take_requests()
+                self._serve()
+                self._notice()
+        except GroundStationError as error:
+            problem = str(error)
+        except Exception as error:
+            problem = f"the flight could not be watched any longer ({type(error).__name__}: {error}); please report it"
+            raise
+        finally:
+            self._keep_unfinished()
+            if self._opened is not None:
+                self._opened.link.close()
+            if self._log is not None:
+                self._log.close()
+            self._say_link(LinkState.CLOSED, problem)
+
+    def _open(self) -> None:
+        self._opened = self._connection.open(self._sortie.orders, self._clock, self._frame_passed)
+
+    def _frame_passed(self, frame: bytes, _is_sent: bool, _time_s: float) -> None:
+        if self._log is None:
+            return
+        self._log.write(frame, self._unix_clock())
+        if self._log.problem != self._log_problem:
+            self._log_problem = self._log.problem
+            if self._log_problem:
+                self._publish(LogProblem(self._log_problem))
+
+    def _serve(self) -> None:
+        """Take what came in, and let time pass; a broken link is opened again."""
+        try:
+            if self._opened is None:
+                time.sleep(WAIT_S)
+                if self._clock() >= self._retry_s:
+                    self._open()
+            for message in self._exchange():
+                if self._opened is not None:
+                    self._opened.link.send(message)
+        except LinkError as error:
+            self._retry_s = self._clock() + RETRY_S
+            if self._opened is not None:
+                self._opened.link.close()
+                self._opened = None
+                self._say_link(LinkState.LOST, str(error))
+
+    def _exchange(self) -> Iterator[Message]:
+        """What the machine wants to be sent, from what was received and the time; without a link only time passes."""
+        wait_s = WAIT_S
+        for _ in range(MAX_BATCH):
+            received = None if self._opened is None else self._opened.link.receive(wait_s)
+            if received is None:
+                break
+            wait_s = 0.0
+            yield from self._machine.receive(received)
+        yield from self._machine.tick(self._clock())
+
+    @property
+    def _machine(self) -> FlightRun | Listener:
+        return self._listener if self._run is None else self._run
+
+    # Requests
+
+    def _take_requests(self) -> None:
+        while not self._asked.empty():
+            asked = self._asked.get()
+            if isinstance(asked, LiveSortie):
+                if self._run is None or self._run.phase in BEFORE_TAKE_OFF:
+                    self._put_in_hand(asked, self._machine.state)
+            elif asked not in self._now().may:
+                self._publish(Answered(asked, False, REFUSALS[asked]))
+            else:
+                self._do(asked)
+
+    def _do(self, request: Request) -> None:
+        if request is Request.DISCONNECT:
+            self._is_closing = True
+        elif request is Request.UPLOAD:
+            self._begin_run()
+        elif request is Request.START and self._run is not None:
+            self._awaited = request
+            self._run.begin()
+        elif request in ORDERS:
+            self._ordered.append(request)
+            self._machine.order(ORDERS[request])
+
+    def _begin_run(self) -> None:
+        settings, connection = self._settings, self._connection
+        options = RunOptions(
+            sets_parameters=settings.sets_parameters or connection.is_simulated,
+            starts_itself=False,
+            needs_rtk=settings.needs_rtk,
+        )
+        run = FlightRun(self._sortie.orders, options, connection.name)
+        run.state = replace(self._machine.state, photos=())
+        self._run, self._awaited = run, Request.UPLOAD
+        self._ordered.clear()
+        self._news.begin()
+        self._coverage.add_sortie(self._sortie.viewpoint_ids)
+        for message in run.start(self._clock()):
+            if self._opened is not None:
+                self._opened.link.send(message)
+
+    # What has happened
+
+    def _notice(self) -> None:
+        """Publish what is new."""
+        self._notice_link()
+        machine, run = self._machine, self._run
+        self._news.photos(machine.state.photos, self._sortie.viewpoint_ids)
+        for outcome in self._news.new_answers(machine.answers):
+            self._answer(self._ordered.popleft(), outcome.is_accepted, outcome.text)
+        self._news.warnings(() if run is None else run.watch.warnings)
+        if run is not None:
+            awaited = self._awaited
+            if awaited is not None and run.phase in REACHED[awaited]:
+                self._answer(awaited, True, DONE[awaited])
+            if run.outcome is not None:
+                self._end_run(run)
+        now_s = self._clock()
+        if now_s >= self._shown_s + VIEW_EVERY_S:
+            self._shown_s = now_s
+            self._view = self._now()
+            self._publish(FlightChanged(self._view))
+
+    def _notice_link(self) -> None:
+        link = link_state(self._machine.state, self._clock(), is_open=self._opened is not None)
+        if link is not self._link:
+            text = "the vehicle is heard again" if self._link is LinkState.LOST else ""
+            self._say_link(link, text if link is LinkState.ALIVE else "")
+
+    def _say_link(self, link: LinkState, text: str) -> None:
+        self._link = link
+        self._publish(LinkChanged(link, text))
+
+    def _answer(self, request: Request, is_accepted: bool, text: str) -> None:
+        if request is self._awaited:
+            self._awaited = None
+        self._publish(Answered(request, is_accepted, text))
+
+    def _end_run(self, run: FlightRun) -> None:
+        assert run.outcome is not None
+        error, record, awaited = run.outcome.error, run.outcome.record, self._awaited
+        if awaited is not None:
+            self._answer(awaited, False, str(error))
+        self._put_in_hand(self._sortie, run.state)
+        if awaited is not Request.UPLOAD:
+            self._end_flight(run, record, error)
+
+    def _end_flight(self, run: FlightRun, record: FlightRecord | None, error: GroundStationError | None) -> None:
+        """Keep what was flown, and tell."""
+        number = run.orders.number
+        if record is None:
+            self._publish(FlightEnded(number, error, None, None, None))
+            return
+        opened, orders = self._opened, run.orders
+        if opened is not None and opened.simulated is not None and run.recorder is not None:
+            true = opened.simulated.true_record(run.recorder, orders)
+            record = replace(record if true is None else true, vehicle=record.vehicle, effects=opened.effects)
+        self._records = (*self._records, record)
+        autopilot = run.state.autopilot or Autopilot.ARDUPILOT
+        self._expected_s = {**self._expected_s, number: items_duration_s(orders, autopilot)}
+        name = f"flight-{self._unix_clock():.0f}" if self._log is None else self._log.path.stem
+        path = self._folder / f"{name}.json"
+        report, kept, problem = keep_flight(self._sortie.case, self._records, self._expected_s, path)
+        self._publish(FlightEnded(number, error, record, report, kept, problem))
+
+    def _keep_unfinished(self) -> None:
+        """Keep what was flown of a sortie that is not over."""
+        run = self._run
+        if run is not None and run.recorder is not None and run.phase is Phase.FLYING:
+            run.note("disconnected", "the ground station disconnected; the aircraft went on by itself")
+            record = run.recorder.record(run.orders.site, run.orders.number)
+            error = LinkError("disconnected in flight; the aircraft goes on by itself, what was recorded ends there")
+            self._end_flight(run, record, error)
+
+    # What is in hand
+
+    def _put_in_hand(self, sortie: LiveSortie, state: VehicleState) -> None:
+        """Listen, with this sortie to be flown next."""
+        orders = sortie.orders
+        frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
+        self._sortie, self._listener = sortie, Listener(frame, replace(state, photos=()))
+        self._run = self._awaited = None
+        self._ordered.clear()
+        self._news.begin()
+
+    def _plan_order(self) -> tuple[str, ...]:
+        return tuple(view_id for sortie in self._sortie.case.plan.sorties for view_id in sortie.viewpoint_ids)
+
+    def _now(self) -> LiveView:
+        """The flight as it stands."""
+        run, state, now_s = self._run, self._machine.state, self._clock()
+        orders, on_board = self._sortie.orders, OnBoard() if run is None else run.on_board
+        checks = preflight_checks(state, orders, on_board, now_s, needs_rtk=self._settings.needs_rtk)
+        phase, watch = (None, Watch()) if run is None else (run.phase, run.watch)
+        link = link_state(state, now_s, is_open=self._opened is not None)
+        missing = [view_id for view_id, since_s in watch.passed_s if now_s - since_s > PHOTO_LATE_S]
+        return LiveView(
+            link=link,
+            silent_s=None if state.heartbeat is None else state.heartbeat.age_s(now_s),
+            phase=phase,
+            state=state,
+            checks=() if state.is_armed else checks,
+            warnings=watch.warnings,
+            on_board=on_board,
+            doing=("", 0.0, 0.0) if run is None else run.view().doing,
+            may=allowed_requests(link, phase, state, is_ready=is_ready(checks)),
+            readouts=readouts(state, orders.surroundings[state.autopilot or Autopilot.ARDUPILOT]),
+            view_states=self._coverage.states(self._sortie.viewpoint_ids, missing),
+            speed_up=self._connection.speed_up,
+        )

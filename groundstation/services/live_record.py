@@ -1,0 +1,60 @@
+"""What a live flight leaves behind: its telemetry log, and the flight file with record and report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from groundstation.services.settings import data_folder
+from groundstation.vehicle.telemetry_log import TelemetryLog, new_log_path
+from missions.flight.flight_file import flight_of, write_flight
+from missions.flight.outcome import FlightReport
+from missions.flight.record import FlightRecord
+from missions.flight.report import report_case
+from planning.checks.case import Case
+from planning.errors import InputError
+
+FLIGHTS = "flights"
+"""Folder of a project, or of the user's data where there is no project."""
+
+
+def flights_folder(project: Path | None) -> Path:
+    """Where flights are kept."""
+    return (data_folder() if project is None else project) / FLIGHTS
+
+
+def open_log(folder: Path, unix_time_s: float) -> tuple[TelemetryLog | None, str]:
+    """A new telemetry log: in the folder, else in the user's data folder; and what went wrong, else empty."""
+    problem = ""
+    for place in dict.fromkeys((folder, flights_folder(None))):
+        try:
+            return TelemetryLog(new_log_path(place, unix_time_s)), problem
+        except InputError as error:
+            problem = problem or str(error)
+    return None, problem
+
+
+def keep_flight(
+    case: Case, records: tuple[FlightRecord, ...], expected_s: Mapping[int, float], path: Path
+) -> tuple[FlightReport, Path | None, str]:
+    """Report on what was flown, and write both; returns where, and why not where it could not be.
+
+    Parameters
+    ----------
+    expected_s
+        How long the items of sorties take by their number; plans reckon with an aircraft that turns at its waypoints.
+    """
+    plan = case.plan
+    sorties = (replace(s, duration_s=expected_s.get(n, s.duration_s)) for n, s in enumerate(plan.sorties, 1))
+    report = report_case(case.with_plan(replace(plan, sorties=tuple(sorties))), records)
+    problem = ""
+    for place in dict.fromkeys((path, flights_folder(None) / path.name)):
+        try:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            write_flight(place, flight_of(case.plan, case.site_model, records, report))
+        except (InputError, OSError) as error:
+            problem = problem or str(error)
+        else:
+            return report, place, problem
+    return report, None, problem

@@ -1,0 +1,294 @@
+"""The Fly tab as a pilot uses it, in the real window, with the embedded simulation."""
+
+import gc
+import time
+
+import pytest
+
+from groundstation.services.document import Document, ItemKind, PlanEntry
+from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice
+from groundstation.services.live_events import LinkState, Request, ViewState
+from groundstation.services.units import UnitSystem
+from missions.mavlink.autopilots import Autopilot
+from planning.findings import Severity
+from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.services.live_cases import Reopening, planned
+
+GAP_S = 0.05
+
+
+class Says:
+    """A pilot whose answers are known before."""
+
+    def __init__(self):
+        self.starts = self.leaves = True
+        self.asked = []
+
+    def start(self, parent, take_off, units):
+        from groundstation.gui.fly.questions import FlightQuestions
+
+        self.asked.append(FlightQuestions().start_text(take_off, units))
+        return self.starts
+
+    def leave_in_flight(self, parent):
+        self.asked.append("leave")
+        return self.leaves
+
+
+@pytest.fixture
+def desk(application, worker, tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
+    from groundstation.gui.desk import Desk
+
+    desk = Desk(application, Answers(), worker)
+    desk.show()
+    desk.window.setGeometry(0, 0, 1280, 720)
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    model, plan = planned()
+    desk.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    desk.window.show_tab("fly")
+    turn_until_idle(application, desk)
+    yield desk
+    desk.window.tab("fly").questions = Says()
+    desk.window.close()
+    desk.close()
+
+
+@pytest.fixture
+def page(desk):
+    page = desk.window.tab("fly")
+    page.questions = Says()
+    return page
+
+
+def press(page, request):
+    page.buttons.button(request).click()
+
+
+def connect(application, page, speed_up=20.0, autopilot=Autopilot.ARDUPILOT):
+    page.desk.set_choice(ConnectionChoice(speed_up=speed_up, autopilot=autopilot))
+    page.connection.setValue(page.desk.choice)
+    page.connection.button.click()
+    turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
+
+
+def take_off(application, page):
+    press(page, Request.UPLOAD)
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+    press(page, Request.START)
+    turn_until(application, lambda: n_photos(page) >= 1)
+
+
+def n_photos(page):
+    return 0 if page.desk.in_hand is None else len(page.desk.in_hand.photos)
+
+
+def has_landed(page):
+    return page.desk.in_hand is not None and page.desk.in_hand.ended is not None
+
+
+def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(application, desk, page):
+    """Ten times as fast; no turn of the event loop is longer than 50 ms but for the first pictures of each kind."""
+    connect(application, page, speed_up=10.0)
+    assert "not uploaded yet" in page.checks.text()
+    assert not page.buttons.button(Request.START).isEnabled()
+    press(page, Request.UPLOAD)
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+    assert page.checks.text().count("\u2713") == len(page.checks.text().splitlines())
+    press(page, Request.START)
+    assert "takes 6 photos" in page.questions.asked[0]
+    turn_until(application, lambda: n_photos(page) >= 1)
+    gc.collect()
+    turns = []
+    while not has_landed(page):
+        started = time.perf_counter()
+        application.processEvents()
+        turns.append(time.perf_counter() - started)
+        time.sleep(0.001)
+    assert max(turns) < GAP_S, f"{max(turns):.3f} s"
+    assert [state for _, state in page.strip.states()] == [ViewState.TAKEN] * 6
+    assert "6/6" in page.readouts.text()
+    assert "Photos: 6 of 6 views" in page.report.text()
+    assert {row[2] for row in page.report.rows()} == {"taken"}
+    assert len(page.desk.in_hand.track_enu_m) > 20
+    assert not page.report.resume.isEnabled()
+    page.report.top_up.click()
+    turn_until_idle(application, desk)
+    assert "Nothing is missing" in desk.window.messages.texts()
+
+
+def test_coverage_is_painted_on_the_panels_as_it_grows(application, desk, page):
+    connect(application, page)
+    take_off(application, page)
+    scene = desk.window.stage.scene()
+    turn_until(application, lambda: scene._panel_values is not None)
+    _, first = scene._panel_values
+    turn_until(application, lambda: n_photos(page) >= 5 and (scene._panel_values[1] > first).any())
+    desk.window.show_tab("site")
+    assert scene._panel_values is None  # the shared view is given back
+
+
+def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(application, desk, page):
+    connect(application, page)
+    take_off(application, page)
+    press(page, Request.PAUSE)
+    turn_until(application, lambda: page.buttons.button(Request.RESUME).isEnabled())
+    press(page, Request.RESUME)
+    turn_until(application, lambda: page.buttons.button(Request.PAUSE).isEnabled())
+    press(page, Request.RETURN)
+    turn_until(application, lambda: has_landed(page))
+    missing = {row[0] for row in page.report.rows() if row[2] != "taken"}
+    assert missing
+    page.report.top_up.click()
+    turn_until_idle(application, desk)
+    plans = desk.workspace.document.plans
+    assert [entry.title for entry in plans] == ["First", "Top-up"]
+    assert 0 < len(plans[-1].plan.viewpoints) <= 6
+    # The plan that is shown is another one now: what is uploaded and what is seen must not differ.
+    turn_until(application, lambda: "for another plan" in page._phase.text())
+    assert not page.buttons.button(Request.UPLOAD).isEnabled()
+    page.connection.button.click()
+    turn_until(application, lambda: not page.desk.is_connected)
+    connect(application, page)
+    assert len(page.strip.states()) == len(plans[-1].plan.viewpoints)
+    page.connection.button.click()
+    turn_until(application, lambda: not page.desk.is_connected)
+    page.desk.after.resume_sortie()
+    turn_until_idle(application, desk)
+    rest = desk.workspace.document.plans[-1]
+    assert rest.title == "Rest of sortie 1"
+    assert {view.id for view in rest.plan.viewpoints} == missing
+
+
+def test_losing_the_link_shows_a_band_and_is_survived(application, desk, page, monkeypatch):
+    radio = Reopening()
+    monkeypatch.setattr(page.desk, "_connection", lambda _sortie: radio)
+    connect(application, page)
+    take_off(application, page)
+    assert page.band.isHidden()
+    radio.cut.is_unplugged.set()
+    turn_until(application, lambda: page.band.isVisible(), 3.0)
+    assert "LINK LOST" in page.band.text()
+    assert page.buttons.button(Request.RETURN).isEnabled()
+    desk.window.show_tab("site")
+    assert page.band.isVisible()
+    desk.window.show_tab("fly")
+    radio.cut.is_unplugged.clear()
+    turn_until(application, lambda: page.band.isHidden() and page.desk.in_hand.link is LinkState.ALIVE)
+    assert "link found again" in page.notes.texts()
+
+
+@pytest.mark.parametrize(
+    ("kind", "address", "words"),
+    [
+        (LinkKind.TCP, "127.0.0.1:1", "cannot be opened"),
+        (LinkKind.UDP, "nowhere", "expected KIND:HOST:PORT"),
+    ],
+)
+def test_an_address_that_leads_nowhere_is_told_and_another_can_be_tried(application, desk, page, kind, address, words):
+    page.desk.set_choice(ConnectionChoice(kind, address))
+    page.connection.setValue(page.desk.choice)
+    page.connection.button.click()
+    turn_until(application, lambda: words in desk.window.messages.texts())
+    turn_until(application, lambda: not page.desk.is_connected)
+    assert page.connection.button.text() == "Connect"
+    assert read_choice(choice_path()) == ConnectionChoice(kind, address)
+    connect(application, page)
+    assert page.desk.is_connected
+
+
+def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page):
+    connect(application, page)
+    press(page, Request.UPLOAD)
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+    page.questions.starts = False
+    press(page, Request.START)
+    assert len(page.questions.asked) == 1
+    end = time.monotonic() + 0.5
+    while time.monotonic() < end:
+        application.processEvents()
+        time.sleep(0.005)
+    assert not page.desk.is_in_flight
+
+
+def test_closing_the_window_in_flight_asks_and_keeps_what_was_flown(application, desk, page, tmp_path):
+    connect(application, page)
+    take_off(application, page)
+    page.questions.leaves = False
+    desk.window.close()
+    assert desk.window.isVisible()
+    assert page.desk.is_connected
+    page.questions.leaves = True
+    desk.window.close()
+    assert not desk.window.isVisible()
+    assert page.questions.asked.count("leave") == 2
+    folder = tmp_path / "data" / "flights"
+    assert list(folder.glob("*.json"))
+    assert list(folder.glob("*.tlog"))
+
+
+def test_a_click_on_a_photo_goes_to_its_view(application, desk, page):
+    from PySide6.QtCore import QPoint, Qt
+    from PySide6.QtTest import QTest
+
+    connect(application, page)
+    turn_until(application, lambda: len(page.strip.states()) == 6)
+    place = page.strip.cell(3).center()
+    QTest.mouseClick(page.strip, Qt.MouseButton.LeftButton, pos=QPoint(int(place.x()), int(place.y())))
+    selection = desk.workspace.selection
+    assert (selection.kind, selection.id) == (ItemKind.VIEWPOINT, page.strip.states()[3][0])
+    assert "still to come" in page.strip.words(3)
+
+
+def test_a_new_window_takes_the_flight_over(application, desk, page):
+    """As when the language changes: the flight belongs to the workspace."""
+    connect(application, page)
+    take_off(application, page)
+    desk._rebuild_window()
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    again = desk.window.tab("fly")
+    again.questions = Says()
+    assert again.desk is page.desk
+    before = n_photos(again)
+    turn_until(application, lambda: n_photos(again) > before)
+    assert again.strip.states()[0][1] is ViewState.TAKEN
+
+
+def test_lengths_are_shown_in_feet_once_they_are_chosen(application, desk, page):
+    connect(application, page)
+    turn_until(application, lambda: "min 10.0 m" in page.readouts.text())
+    desk.workspace.set_units(UnitSystem.IMPERIAL)
+    assert "min 32.8 ft" in page.readouts.text()
+    desk.workspace.set_units(UnitSystem.METRIC)
+
+
+def test_without_a_plan_it_says_what_to_do_first(application, desk, page):
+    desk.workspace.session.open(Document(planned()[0]), None)
+    assert "Plan a flight first" in page._phase.text()
+    assert not page.connection.button.isEnabled()
+
+
+def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(application, desk, page):
+    page.right.setCurrentIndex(1)
+    turn_until(application, lambda: "wind" in page.simulation.effects._cards)
+    assert "no wind" in page.simulation.effects.card("wind").text()
+    page.simulation.wind.box().setValue(8.0)
+    turn_until(application, lambda: "is on" in page.simulation.effects.card("wind").text())
+    card = page.simulation.effects.card("wind")
+    card.wish.setCurrentIndex(card.wish.findData("off"))
+    turn_until(application, lambda: "is off" in page.simulation.effects.card("wind").text())
+    assert page.desk.wishes == {"wind": "off"}
+
+
+def test_what_went_wrong_is_said_as_an_error(application, desk, page):
+    heard = []
+    desk.workspace.messageShown.connect(heard.append)
+    connect(application, page)
+    page.desk.request(Request.START)
+    turn_until(application, lambda: any(message.severity is Severity.ERROR for message in heard))
+    assert "pre-flight list" in heard[-1].text
+
+
+def test_times_of_notes_carry_seconds_into_minutes(application, page):
+    page.notes.add(59.96, Severity.NOTE, "nearly a minute")
+    assert page.notes.texts().endswith("1:00.0  nearly a minute")

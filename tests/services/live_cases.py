@@ -1,0 +1,116 @@
+"""A small plan to be flown live, and somebody who follows the events of a flight."""
+
+import queue
+import threading
+import time
+from dataclasses import replace
+from functools import cache
+
+from groundstation.services.live_connection import Simulation
+from groundstation.services.live_events import FlightChanged, FlightEnded, LinkChanged, LinkState
+from groundstation.services.live_sortie import prepare_sortie
+from planning.errors import LinkError
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from tests.planning.plan_cases import kiosk
+
+
+@cache
+def planned():
+    """A site and a plan of six views in one sortie."""
+    model = kiosk()
+    return model, plan_flight(model, PlanRequest(n_views=6, time_budget_s=2.0)).plan
+
+
+@cache
+def sortie():
+    model, plan = planned()
+    return prepare_sortie(plan, model, 1)
+
+
+SPEED_UP = 40.0
+
+
+def simulation(**changes):
+    model, plan = planned()
+    return Simulation(plan, model, speed_up=SPEED_UP, **changes)
+
+
+class Cut:
+    """A link that can be unplugged, which it says, or jammed, which nobody says."""
+
+    def __init__(self, link):
+        self._link, self.address = link, link.address
+        self.is_unplugged, self.is_jammed = threading.Event(), threading.Event()
+
+    def send(self, message):
+        self._check()
+        if not self.is_jammed.is_set():
+            self._link.send(message)
+
+    def receive(self, timeout_s):
+        self._check()
+        received = self._link.receive(timeout_s)
+        return None if self.is_jammed.is_set() else received
+
+    def close(self):
+        pass  # the vehicle flies on
+
+    def _check(self):
+        if self.is_unplugged.is_set():
+            raise LinkError("the radio was unplugged")
+
+
+class Reopening:
+    """Opens the same simulated vehicle again after its link broke."""
+
+    speed_up, is_simulated, name = SPEED_UP, True, "radio"
+
+    def __init__(self):
+        self._opened = None
+
+    def open(self, orders, clock, observe):
+        if self._opened is None:
+            opened = simulation().open(orders, clock, observe)
+            self._opened = replace(opened, link=Cut(opened.link))
+        if self.cut.is_unplugged.is_set():
+            raise LinkError("there is no radio")
+        return self._opened
+
+    @property
+    def cut(self):
+        return self._opened.link
+
+
+class Follower:
+    """Collects the events of a flight; waits for what they say."""
+
+    def __init__(self):
+        self.events, self.view = [], None
+        self._queue = queue.SimpleQueue()
+
+    def __call__(self, event):
+        self._queue.put(event)
+
+    def until(self, condition, timeout_s=60.0):
+        """Take events until one meets the condition; returns it."""
+        end = time.monotonic() + timeout_s
+        while True:
+            event = self._queue.get(timeout=max(0.01, end - time.monotonic()))
+            self.events.append(event)
+            if isinstance(event, FlightChanged):
+                self.view = event.view
+            if condition(event):
+                return event
+
+    def until_may(self, request):
+        return self.until(lambda event: isinstance(event, FlightChanged) and request in event.view.may)
+
+    def until_closed(self):
+        return self.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.CLOSED)
+
+    def until_ended(self, timeout_s=90.0):
+        return self.until(lambda event: isinstance(event, FlightEnded), timeout_s)
+
+    def of(self, kind):
+        return [event for event in self.events if isinstance(event, kind)]

@@ -1,0 +1,270 @@
+"""A live flight: requests, events, what is kept, and every way in which the link misbehaves."""
+
+import socket
+import time
+from dataclasses import replace
+
+import pytest
+
+from groundstation.services.live_connection import Simulation, VehicleAt
+from groundstation.services.live_events import (
+    Answered,
+    FlightChanged,
+    FlightEnded,
+    LinkChanged,
+    LinkState,
+    LogProblem,
+    PhotoCounted,
+    Request,
+    ViewState,
+)
+from groundstation.services.live_flight import LiveFlight
+from groundstation.services.live_sortie import prepare_sortie
+from groundstation.vehicle.run_records import Phase
+from missions.flight.flight_file import read_flight
+from missions.flight.logs.read import read_log
+from missions.flight.outcome import Reason
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import MissionAck
+from missions.simulator.scene import Conditions
+from planning.errors import MissionError
+from tests.services.live_cases import SPEED_UP, Follower, Reopening, planned, simulation, sortie
+
+
+@pytest.fixture
+def flight(tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
+    flights = []
+
+    def begin(connection=None, folder=None, **options):
+        follower = Follower()
+        flight = LiveFlight(sortie(), connection or simulation(), follower, folder or tmp_path / "flights", **options)
+        flights.append(flight)
+        flight.start()
+        return flight, follower
+
+    yield begin
+    for flight in flights:
+        assert flight.close()
+
+
+def fly(flight, follower):
+    """Upload and start."""
+    follower.until_may(Request.UPLOAD)
+    flight.request(Request.UPLOAD)
+    follower.until_may(Request.START)
+    flight.request(Request.START)
+
+
+@pytest.mark.parametrize("autopilot", Autopilot)
+def test_a_sortie_is_flown_from_connecting_to_the_report(flight, tmp_path, autopilot):
+    live, follower = flight(simulation(autopilot=autopilot))
+    fly(live, follower)
+    ended = follower.until_ended()
+    assert ended.error is None
+    photos = follower.of(PhotoCounted)
+    assert [photo.view_id for photo in photos] == list(sortie().viewpoint_ids)
+    assert all(photo.position_error_m < 0.5 for photo in photos)
+    covered = [photo.covered for photo in photos]
+    assert covered == sorted(covered)
+    assert covered[-1] >= 0.97 * photos[-1].covered_planned
+    assert max(photo.seconds for photo in photos) < 0.05
+    assert all(view.reason is Reason.TAKEN for view in ended.report.views)
+    answered = [(event.request, event.is_accepted) for event in follower.of(Answered)]
+    assert answered == [(Request.UPLOAD, True), (Request.START, True)]
+    kept = read_flight(ended.path)
+    assert len(kept.sorties[0].photos) == len(photos)
+    assert kept.report.summary.n_taken == len(photos)
+    (log,) = (tmp_path / "flights").glob("*.tlog")
+    (logged,) = read_log(log, planned()[0].site).records
+    assert len(logged.photos) == len(photos)
+
+
+def test_views_come_at_most_ten_times_a_second(flight):
+    live, follower = flight()
+    fly(live, follower)
+    follower.until(lambda event: isinstance(event, PhotoCounted))
+    n_before, began = len(follower.of(FlightChanged)), time.monotonic()
+    follower.until(lambda event: isinstance(event, PhotoCounted) and event.number >= 4)
+    n_views = len(follower.of(FlightChanged)) - n_before
+    assert n_views <= 10.0 * (time.monotonic() - began) + 12  # those that had queued up
+    assert n_views > 0
+
+
+def test_pause_resume_and_return_are_acknowledged(flight):
+    live, follower = flight()
+    fly(live, follower)
+    for request, then in ((Request.PAUSE, Request.RESUME), (Request.RESUME, Request.PAUSE)):
+        follower.until_may(request)
+        live.request(request)
+        answer = follower.until(lambda event, request=request: isinstance(event, Answered) and event.request is request)
+        assert answer.is_accepted
+        follower.until_may(then)
+    live.request(Request.RETURN)
+    answer = follower.until(lambda event: isinstance(event, Answered) and event.request is Request.RETURN)
+    assert answer.is_accepted
+    ended = follower.until_ended()
+    assert any(view.reason is not Reason.TAKEN for view in ended.report.views)
+    # The vehicle stays connected, and may be given a mission again.
+    follower.until_may(Request.UPLOAD)
+
+
+def test_what_cannot_be_done_now_is_refused_in_words(flight):
+    live, follower = flight()
+    follower.until_may(Request.UPLOAD)
+    live.request(Request.START)
+    answer = follower.until(lambda event: isinstance(event, Answered))
+    assert not answer.is_accepted
+    assert "pre-flight list" in answer.text
+
+
+def test_start_is_refused_while_the_list_is_not_well(flight):
+    """A wind above the aircraft's limit stands on the list until it calms."""
+    live, follower = flight(simulation(conditions=Conditions(wind_m_s=13.0), wishes={"wind": "on"}))
+    follower.until_may(Request.UPLOAD)
+    live.request(Request.UPLOAD)
+    follower.until(lambda event: isinstance(event, Answered) and event.request is Request.UPLOAD)
+    follower.until(lambda event: isinstance(event, FlightChanged) and event.view.phase is Phase.CHECKING)
+    assert Request.START not in follower.view.may
+    bad = [check.code for check in follower.view.checks if check.verdict.value != "ok"]
+    assert "wind" in bad
+
+
+@pytest.mark.parametrize(
+    ("url", "words"),
+    [
+        ("carrier-pigeon:roof:1", "expected KIND:HOST:PORT"),
+        ("tcp:127.0.0.1:1", "cannot be opened"),
+    ],
+)
+def test_an_address_that_leads_nowhere_is_told_at_once(flight, url, words):
+    _, follower = flight(VehicleAt(url))
+    closed = follower.until_closed()
+    assert words in closed.text
+
+
+def test_a_port_in_use_is_told_at_once(flight):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        _, follower = flight(VehicleAt(f"udp:127.0.0.1:{other.getsockname()[1]}"))
+        assert "cannot be opened" in follower.until_closed().text
+
+
+def test_a_link_that_breaks_in_flight_is_opened_again_and_the_sortie_goes_on(flight):
+    radio = Reopening()
+    live, follower = flight(radio)
+    fly(live, follower)
+    follower.until(lambda event: isinstance(event, PhotoCounted))
+    broke = time.monotonic()
+    radio.cut.is_unplugged.set()
+    lost = follower.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.LOST)
+    assert time.monotonic() - broke < 3.0
+    assert "unplugged" in lost.text
+    follower.until(lambda event: isinstance(event, FlightChanged) and event.view.link is LinkState.LOST)
+    assert {Request.RETURN, Request.LAND} <= follower.view.may
+    radio.cut.is_unplugged.clear()
+    follower.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.ALIVE)
+    assert follower.until_ended().error is None
+
+
+def test_silence_is_shown_within_three_seconds_and_survived(flight):
+    """The radio loses everything for a while; what was photographed meanwhile is in the record all the same."""
+    radio = Reopening()
+    live, follower = flight(radio)
+    fly(live, follower)
+    follower.until(lambda event: isinstance(event, PhotoCounted))
+    radio.cut.is_jammed.set()
+    jammed = time.monotonic()
+    follower.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.LOST)
+    assert 2.0 < time.monotonic() - jammed < 3.5
+    radio.cut.is_jammed.clear()
+    follower.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.ALIVE)
+    ended = follower.until_ended()
+    assert ended.record is not None
+    assert len(ended.record.photos) > len(follower.of(PhotoCounted))
+
+
+def test_disconnecting_in_flight_keeps_what_was_flown(flight):
+    live, follower = flight()
+    fly(live, follower)
+    follower.until(lambda event: isinstance(event, PhotoCounted) and event.number >= 2)
+    assert live.is_in_flight
+    assert live.close()
+    follower.until_closed()
+    (ended,) = follower.of(FlightEnded)
+    assert "goes on by itself" in str(ended.error)
+    assert len(ended.record.photos) >= 2
+    assert read_flight(ended.path).sorties
+
+
+def test_a_folder_that_cannot_be_written_is_told_and_replaced(flight, tmp_path):
+    blocked = tmp_path / "blocked"
+    blocked.write_text("a file where the folder should be")
+    live, follower = flight(folder=blocked)
+    problem = follower.until(lambda event: isinstance(event, LogProblem))
+    assert "blocked" in problem.text
+    fly(live, follower)
+    ended = follower.until_ended()
+    assert ended.path.parent == tmp_path / "config" / "data" / "flights"
+    assert list(ended.path.parent.glob("*.tlog"))
+
+
+class Refusing(Simulation):
+    """A vehicle that says no to every mission."""
+
+    def open(self, orders, clock, observe):
+        opened = super().open(orders, clock, observe)
+        return replace(opened, link=RefusingLink(opened.link))
+
+
+class RefusingLink:
+    def __init__(self, link):
+        self._link, self.address = link, link.address
+
+    def send(self, message):
+        self._link.send(message)
+
+    def receive(self, timeout_s):
+        received = self._link.receive(timeout_s)
+        if received is not None and type(received.message).__name__.startswith("MissionRequest"):
+            message = received.message
+            ack = MissionAck(message.target_system, message.target_component, 4, message.mission_type)
+            return replace(received, message=ack)
+        return received
+
+    def close(self):
+        self._link.close()
+
+
+def test_a_mission_that_the_vehicle_refuses_is_never_called_on_board(flight):
+    model, plan = planned()
+    live, follower = flight(Refusing(plan, model, speed_up=SPEED_UP))
+    follower.until_may(Request.UPLOAD)
+    live.request(Request.UPLOAD)
+    answer = follower.until(lambda event: isinstance(event, Answered))
+    assert not answer.is_accepted
+    assert "not on the vehicle" in answer.text
+    follower.until_may(Request.UPLOAD)
+    assert Request.START not in follower.view.may
+    assert follower.view.on_board.mission is None
+
+
+def test_photos_of_an_earlier_battery_count_on(flight):
+    live, follower = flight()
+    fly(live, follower)
+    follower.until(lambda event: isinstance(event, PhotoCounted) and event.number >= 2)
+    live.request(Request.RETURN)
+    first = follower.until_ended()
+    live.close()
+    again, follower = flight(flown=(first.record,))
+    follower.until_may(Request.UPLOAD)
+    done = [state for _, state in follower.view.view_states if state in (ViewState.TAKEN, ViewState.OFF)]
+    assert len(done) == len(first.record.photos)
+    assert again.close()
+
+
+def test_a_plan_that_breaks_a_rule_is_not_prepared_for_flight():
+    model, plan = planned()
+    wider = replace(plan.constraints, min_distance_m=80.0)
+    with pytest.raises(MissionError, match="pre-flight rules, such as: smallest distance"):
+        prepare_sortie(replace(plan, constraints=wider), model, 1)
