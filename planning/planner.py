@@ -21,6 +21,7 @@ from planning.optimise.budget import best_flights, views_within_budget, with_few
 from planning.optimise.greedy import greedy
 from planning.optimise.locked import locked_views
 from planning.optimise.problem import Goal, Optimiser, ViewProblem, nothing_to_see
+from planning.optimise.restore import with_lost_restored
 from planning.optimise.spacing import merge_close_views
 from planning.plan import (
     HistoryPoint,
@@ -118,11 +119,17 @@ def plan_flight(
     if request.greedy.solid_angle_weights:
         bound = None
     n_locked = len(request.locked)
-    views = merge_close_views(problem, as_written(problem, views, n_locked), n_fixed=n_locked)
+    written = as_written(problem, views, n_locked)
+    views = merged = merge_close_views(problem, written, n_fixed=n_locked)
+    if request.n_batteries is not None:  # else the number of views is what was asked for
+        views = with_lost_restored(problem, written, merged)
     if len(views.heading_rad) == 0:
         raise nothing_to_see()
     watch.lap("views")
     flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
+    if views is not merged and len(flights) > (request.n_batteries or 0):  # what was restored does not fit in
+        views = merged
+        flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
     while request.n_batteries is not None and len(flights) > request.n_batteries:
         flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked)
         if len(flights) > request.n_batteries:  # all of them have locked views

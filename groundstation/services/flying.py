@@ -121,8 +121,8 @@ def fly_files(
     Raises
     ------
     InputError, MissionError, InfeasibleError, LinkError
-        As `fly_plan`, or a file cannot be read or written; nothing is written then, but for sorties that a vehicle at
-        a link had already flown.
+        As `fly_plan`, or a file cannot be read or written; nothing is written then, but for what a vehicle at a link
+        had already flown.
     """
     check_not_index(out)
     check_output(out, [plan_path, site_path])
@@ -170,12 +170,15 @@ def fly_plan(
         if flown and between is not None and wish.link != SIMULATED:
             between(mission.number)
         try:
-            flown.append(case.fly(sortie_orders(plan, site_model, mission)))
+            record, sortie, error = case.fly(sortie_orders(plan, site_model, mission))
         except GroundStationError as failure:
             # A real flight cannot be flown again for its record.
             if not flown or wish.link == SIMULATED or isinstance(failure, OperationCancelled):
                 raise
             error = failure
+            break
+        flown.append((record, sortie))
+        if error is not None:
             break
     records = tuple(record for record, _ in flown)
     sorties = tuple(sortie for _, sortie in flown)
@@ -216,16 +219,19 @@ class _Case:
     show: Show | None
     monitor: Monitor
 
-    def fly(self, orders: SortieOrders) -> tuple[FlightRecord, FlownSortie]:
-        """Fly one; an error says which it was."""
+    def fly(self, orders: SortieOrders) -> tuple[FlightRecord, FlownSortie, GroundStationError | None]:
+        """Fly one; an error says which it was, and is returned where an aircraft at a link has flown all the same."""
         flies = self._simulate if self.wish.link == SIMULATED else self._fly_link
         outcome, record, sortie = flies(orders)
         place = f"sortie {orders.number}: " if len(self.plan.sorties) > 1 else ""
         if outcome.error is not None:
-            raise type(outcome.error)(f"{place}{outcome.error}") from outcome.error
+            error = type(outcome.error)(f"{place}{outcome.error}")
+            if record is None or self.wish.link == SIMULATED:
+                raise error from outcome.error
+            return record, sortie, error
         if record is None:
             raise MissionError(f"{place}nothing was recorded: the vehicle sent no positions in flight")
-        return record, sortie
+        return record, sortie, None
 
     def _simulate(self, orders: SortieOrders) -> tuple[RunOutcome, FlightRecord | None, FlownSortie]:
         """Fly with a vehicle of this process, on a fresh battery."""
@@ -253,7 +259,7 @@ class _Case:
             if self.show is not None:
                 self.show(view)
 
-        link = through_air(direct, effects, conditions, direct.clock, seed)
+        link = through_air(direct, effects, conditions, lambda: vehicle.flight_s, seed)
         outcome = conduct(run, link, direct.clock, show=look, monitor=self.monitor)
         record = None if run.recorder is None else truth.record(run.recorder, orders)
         if record is not None:

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.planning import finding_summary
 from groundstation.services.project_file import check_not_index
-from missions.flight.flight_file import Flight, plan_sha256, read_flight
+from missions.flight.flight_file import Flight, flight_of, plan_sha256, read_flight
+from missions.flight.logs.read import is_log, read_log
 from missions.flight.matching import Matching, match_flight
 from missions.flight.outcome import Reason
-from missions.flight.poses import TakenPoses, taken_poses
+from missions.flight.poses import taken_poses
 from missions.resume import Resumed, resume_sortie
 from planning.errors import InfeasibleError, InputError
 from planning.findings import Finding, Severity
 from planning.json_file import check_output
-from planning.plan import Plan
+from planning.plan import Plan, Viewpoint, viewpoint_arrays
 from planning.plan_file import write_plan
 from planning.prepare import Prepared
 from planning.progress import QUIET, Monitor, Stop, Trace, never
@@ -50,7 +51,7 @@ class FlownPlan:
     plan: Plan
     site_model: SiteModel
     matching: Matching
-    poses: TakenPoses
+    poses: tuple[Viewpoint, ...]
     findings: tuple[Finding, ...]
 
     @property
@@ -74,10 +75,11 @@ def flown_plan(flight: Flight, plan: Plan, site_model: SiteModel) -> FlownPlan:
         The flight belongs to another plan or another place.
     """
     site = site_model.site
-    if flight.origin != site.origin or (plan.origin is not None and plan.origin != site.origin):
+    origins = (flight.origin, plan.origin or site.origin, site.origin)
+    if len({flight.site, plan.site, site.name}) > 1 or len(set(origins)) > 1:
         raise InputError(
-            f"flight ('{flight.site}'), plan ('{plan.site}') and site ('{site.name}') do not have the same origin; "
-            "name the plan and the site file that this flight was flown with"
+            f"flight ('{flight.site}'), plan ('{plan.site}') and site ('{site.name}') do not have the same name and "
+            "origin; name the plan and the site file that this flight was flown with"
         )
     matching = match_flight(plan, flight.sorties)
     n_photos = sum(len(record.photos) for record in flight.sorties)
@@ -92,20 +94,29 @@ def flown_plan(flight: Flight, plan: Plan, site_model: SiteModel) -> FlownPlan:
             f"this is a flight of another plan: {found}; name the plan file that it was flown with, as it was then"
         )
     poses = taken_poses(plan, flight.sorties, matching)
-    return FlownPlan(plan, site_model, matching, poses, tuple(_flight_findings(plan, site_model, poses)))
+    findings = _flight_findings(plan, site_model, matching, n_photos - len(poses))
+    return FlownPlan(plan, site_model, matching, tuple(poses.values()), tuple(findings))
 
 
-def _flight_findings(plan: Plan, site_model: SiteModel, poses: TakenPoses) -> Iterator[Finding]:
+def _flight_findings(
+    plan: Plan, site_model: SiteModel, matching: Matching, n_without_direction: int
+) -> Iterator[Finding]:
     if plan.site_sha256 and plan.site_sha256 != site_model.sha256:
         text = "the site file has changed since the plan was made; what is missing is planned on the site as it is now"
         yield Finding(Severity.WARNING, "site-changed", text)
-    if poses.n_without_direction:
+    n_lost = sum(match.reason is Reason.REPORT_LOST for match in matching.views)
+    if n_lost:
         text = (
-            f"{poses.n_without_direction} photos belong to no view, and nothing says where they look; what they show "
+            f"{n_lost} views were photographed, but the camera's reports were lost on the radio; what they show counts "
+            "as missing. The autopilot's log (.BIN, .ulg) tells of them: name it instead of the flight file"
+        )
+        yield Finding(Severity.WARNING, "reports-lost", text, "", float(n_lost), 0.0, "views")
+    if n_without_direction:
+        text = (
+            f"{n_without_direction} photos belong to no view, and nothing says where they look; what they show "
             "counts as missing"
         )
-        n = float(poses.n_without_direction)
-        yield Finding(Severity.WARNING, "photo-direction", text, "", n, 0.0, "photos")
+        yield Finding(Severity.WARNING, "photo-direction", text, "", float(n_without_direction), 0.0, "photos")
 
 
 def top_up_flight(
@@ -127,7 +138,7 @@ def top_up_flight(
     found = top_up(
         flown.site_model,
         flown.plan,
-        flown.poses.views,
+        viewpoint_arrays(flown.poses),
         request,
         prepared=prepared,
         stop=stop,
@@ -243,7 +254,14 @@ def resume_files(
 def _flown_files(flight_path: Path, plan_path: Path, site_path: Path, out: Path) -> FlownPlan:
     check_not_index(out)
     check_output(out, [flight_path, plan_path, site_path])
-    return flown_plan(read_flight(flight_path), read_given_plan(plan_path), read_given_site(site_path))
+    plan, site_model = read_given_plan(plan_path), read_given_site(site_path)
+    if is_log(flight_path):
+        log = read_log(flight_path, site_model.site)
+        # A log does not say which plan was flown: whether its photos are near the views decides.
+        flight = replace(flight_of(plan, site_model, log.records), plan_sha256="")
+        flown = flown_plan(flight, plan, site_model)
+        return replace(flown, findings=(*log.findings, *flown.findings))
+    return flown_plan(read_flight(flight_path), plan, site_model)
 
 
 def top_up_summary(found: TopUp, findings: tuple[Finding, ...]) -> dict[str, Any]:

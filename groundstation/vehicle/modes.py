@@ -1,4 +1,4 @@
-"""Flight modes by name, and the other numbers by which autopilots tell how they are: `data/vehicle.toml`."""
+"""Flight modes by name, and the sensors of which autopilots tell how they are: `data/vehicle.toml`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import CommandLong
+from missions.mavlink.mode_numbers import mode_numbers, px4_custom_mode, px4_main_and_sub
 from planning.json_file import read_toml
 
 DATA_PATH = Path(__file__).parent / "data" / "vehicle.toml"
@@ -28,28 +29,27 @@ LAND_MODE = {Autopilot.ARDUPILOT: "LAND", Autopilot.PX4: "AUTO.LAND"}
 class VehicleNumbers:
     """What the data file holds; it explains the fields."""
 
-    modes: dict[str, dict[str, int]]
     sensors: dict[str, int]
 
 
 @cache
 def numbers() -> VehicleNumbers:
-    """Modes by autopilot and name, and sensor bits by name."""
+    """Sensor bits by name."""
     return read_toml(DATA_PATH, VehicleNumbers)
 
 
 @cache
 def _names(autopilot: Autopilot) -> dict[int, str]:
-    return {number: name for name, number in numbers().modes[autopilot].items()}
+    return {number: name for name, number in mode_numbers(autopilot).items()}
 
 
 def mode_name(autopilot: Autopilot, custom_mode: int) -> str:
     """Name of the mode in a heartbeat; `mode 42` for one that is not known."""
+    names = _names(autopilot)
     if autopilot is Autopilot.PX4:
-        main, sub = custom_mode >> 16 & 0xFF, custom_mode >> 24 & 0xFF
-        names = _names(autopilot)
-        return names.get(100 * main + sub) or names.get(100 * main) or f"mode {main}.{sub}"
-    return _names(autopilot).get(custom_mode) or f"mode {custom_mode}"
+        main, sub = px4_main_and_sub(custom_mode)
+        return names.get(custom_mode) or names.get(px4_custom_mode(main, 0)) or f"mode {main}.{sub}"
+    return names.get(custom_mode) or f"mode {custom_mode}"
 
 
 def set_mode_command(autopilot: Autopilot, name: str, system: int, component: int) -> CommandLong:
@@ -60,11 +60,11 @@ def set_mode_command(autopilot: Autopilot, name: str, system: int, component: in
     ValueError
         The autopilot has no mode of that name.
     """
-    known = numbers().modes[autopilot]
+    known = mode_numbers(autopilot)
     if name not in known:
         raise ValueError(f"{autopilot.value} has no mode '{name}'; it has {', '.join(known)}")
-    main, sub = (known[name], 0) if autopilot is Autopilot.ARDUPILOT else divmod(known[name], 100)
-    return CommandLong(system, component, MAV_CMD_DO_SET_MODE, CUSTOM_MODE_ENABLED, float(main), float(sub))
+    mode, sub = (known[name], 0) if autopilot is Autopilot.ARDUPILOT else px4_main_and_sub(known[name])
+    return CommandLong(system, component, MAV_CMD_DO_SET_MODE, CUSTOM_MODE_ENABLED, float(mode), float(sub))
 
 
 def sensor_problems(enabled: int, healthy: int) -> tuple[str, ...]:

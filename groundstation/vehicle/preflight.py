@@ -127,7 +127,8 @@ def _battery(state: VehicleState, orders: SortieOrders, now_s: float) -> Preflig
         return PreflightCheck("battery", Verdict.WAIT, "the battery's charge is not known")
     needed = orders.battery_needed
     if level < needed:
-        text = f"the battery holds {level:.0%}; the sortie and the reserve take {needed:.0%}: put in a full one"
+        advice = "put in a full one" if needed <= 1.0 else "none holds that much: plan it again, in shorter sorties"
+        text = f"the battery holds {level:.0%}; the sortie and the reserve take {needed:.0%}: {advice}"
         return PreflightCheck("battery", Verdict.BAD, text, level, needed)
     return PreflightCheck("battery", Verdict.OK, f"{level:.0%}; {needed:.0%} are needed", level, needed)
 
@@ -154,7 +155,8 @@ def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
         return PreflightCheck("wind", Verdict.OK, "not measured on the ground; look up", None, limit_m_s, "m/s")
     wind_m_s = math.hypot(*state.wind_enu_m_s.value[:2])
     if wind_m_s > limit_m_s:
-        text = f"{wind_m_s:.1f} m/s, more than the {limit_m_s:g} m/s of {orders.mission.aircraft.name}; wait"
+        name = orders.mission.aircraft.name
+        text = f"the wind blows with {wind_m_s:.1f} m/s, more than the {limit_m_s:g} m/s of {name}; wait for less"
         return PreflightCheck("wind", Verdict.BAD, text, wind_m_s, limit_m_s, "m/s")
     return PreflightCheck("wind", Verdict.OK, f"{wind_m_s:.1f} m/s", wind_m_s, limit_m_s, "m/s")
 

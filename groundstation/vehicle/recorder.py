@@ -8,14 +8,9 @@ from __future__ import annotations
 import math
 
 from groundstation.vehicle.modes import mode_name
-from groundstation.vehicle.telemetry import (
-    ARMED_FLAG,
-    YAW_IN_EARTH_FRAME,
-    YAW_IN_VEHICLE_FRAME,
-    YAW_LOCK,
-)
+from groundstation.vehicle.telemetry import ARMED_FLAG
 from missions.flight.logs.flights import flights_of
-from missions.flight.logs.raw import RawLog, RawPhoto, camera_angles_rad
+from missions.flight.logs.raw import RawLog, RawPhoto
 from missions.flight.record import FlightEvent, FlightRecord
 from missions.mavlink import messages
 from missions.mavlink.autopilots import Autopilot
@@ -36,7 +31,6 @@ class Recorder:
         self.log = RawLog(vehicle)
         self.now_s: float | None = None
         self._seen: set[tuple[str, int, int]] = set()
-        self._camera: tuple[float, float, float] | None = None
 
     def note(self, code: str, text: str) -> None:
         """Add an event of the ground station, at the vehicle's time."""
@@ -58,7 +52,7 @@ class Recorder:
             case messages.Attitude():
                 log.headings.append((now_s, message.yaw))
             case messages.GimbalDeviceAttitudeStatus():
-                self._gimbal(message, now_s)
+                log.gimbal(now_s, message.q, message.flags)
             case messages.SysStatus() if message.battery_remaining >= 0:
                 log.battery.append((now_s, message.battery_remaining / 100.0))
             case messages.Heartbeat():
@@ -68,19 +62,11 @@ class Recorder:
                 log.events.append(FlightEvent(now_s, "text", message.text))
             case messages.CameraFeedback():
                 self._photo(message, message.img_idx, message.lat, message.lng, message.alt_rel, message.time_usec)
-            case messages.CameraImageCaptured() if message.capture_result == 1:
+            case messages.CameraImageCaptured() if message.capture_result != 1:
+                log.camera_failed(now_s, message.image_index)
+            case messages.CameraImageCaptured():
                 above_m = message.relative_alt / 1000.0
                 self._photo(message, message.image_index, message.lat, message.lon, above_m, message.time_boot_ms)
-
-    def _gimbal(self, message: messages.GimbalDeviceAttitudeStatus, now_s: float) -> None:
-        angles = camera_angles_rad(*message.q)
-        if angles is None:
-            return
-        yaw, pitch = angles
-        is_of_vehicle = bool(message.flags & YAW_IN_VEHICLE_FRAME)
-        is_of_earth = not is_of_vehicle and bool(message.flags & (YAW_IN_EARTH_FRAME | YAW_LOCK))
-        (self.log.gimbal_headings if is_of_earth else self.log.gimbal_yaws).append((now_s, yaw))
-        self.log.gimbal_pitches.append((now_s, pitch))
 
     def _photo(
         self, message: messages.Message, index: int, lat_e7: int, lon_e7: int, above_home_m: float, stamp: int

@@ -24,7 +24,7 @@ from groundstation.vehicle.state import (
     VehicleState,
     VehicleText,
 )
-from missions.flight.logs.raw import camera_angles_rad
+from missions.flight.logs.raw import camera_angles_rad, is_yaw_from_north
 from missions.flight.record import TakenPhoto
 from missions.mavlink import messages
 from missions.mavlink.autopilots import Autopilot, facts
@@ -36,9 +36,6 @@ MAV_COMP_ID_AUTOPILOT1 = 1
 MAV_TYPE_GCS = 6
 ARMED_FLAG = 128
 """MAV_MODE_FLAG_SAFETY_ARMED of HEARTBEAT's base_mode."""
-
-YAW_IN_VEHICLE_FRAME, YAW_IN_EARTH_FRAME, YAW_LOCK = 32, 64, 16
-"""GIMBAL_DEVICE_FLAGS: from where a gimbal counts its yaw. ArduPilot sets the first also where it holds the yaw."""
 
 CAMERA_AGE_S = 1.5
 """A photo gets the gimbal's angles of at most this long ago: gimbals report once a second or more often."""
@@ -139,8 +136,7 @@ def _gimbal(
     if angles is None:
         return state
     heading, pitch = angles
-    is_earth = bool(message.flags & (YAW_IN_EARTH_FRAME | YAW_LOCK)) and not message.flags & YAW_IN_VEHICLE_FRAME
-    if not is_earth:
+    if not is_yaw_from_north(message.flags):
         if state.attitude is None:
             return state
         heading += state.attitude.value.heading_rad

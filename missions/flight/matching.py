@@ -8,13 +8,15 @@ only ever paired with the view that it fits best, or nearly so: one that is miss
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from missions.flight.lost_reports import n_lost_between
 from missions.flight.outcome import Reason
 from missions.flight.record import FlightRecord, TakenPhoto
 from planning.frames import heading_difference_rad
@@ -221,7 +223,24 @@ def _match_sortie(
             reason = reasons[view] if near is None else near[0]
             nearest = None if near is None else refs[left[near[1]]]
             found[view] = ViewMatch(views[view].id, number, reason, None, nearest)
-    return [found[view] for view in range(len(views))]
+    return _with_lost_reports([found[view] for view in range(len(views))], records)
+
+
+def _with_lost_reports(found: list[ViewMatch], records: Sequence[FlightRecord]) -> list[ViewMatch]:
+    """The matches, with the views whose photo was taken but not told of.
+
+    Between two photos of views they are known where the camera counted as many as there are views without any photo;
+    where it counted fewer or more, which of them were photographed is not known.
+    """
+    told = [(view, match.photo) for view, match in enumerate(found) if match.photo is not None]
+    for (before, first), (after, last) in itertools.pairwise(told):
+        silent = [view for view in range(before + 1, after) if found[view].reason is Reason.NO_PHOTO]
+        if not silent or first.record != last.record or first.photo > last.photo:
+            continue
+        if n_lost_between(records[first.record], first.photo, last.photo) == len(silent):
+            for view in silent:
+                found[view] = replace(found[view], reason=Reason.REPORT_LOST)
+    return found
 
 
 def _out_of_order(misfits: Floats, photo_of: dict[int, int], gates: Gates) -> dict[int, int]:

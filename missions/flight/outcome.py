@@ -13,14 +13,16 @@ class Reason(StrEnum):
     """Why a planned view has no photo; `TAKEN` where it has one.
 
     `NOT_FLOWN`: no record belongs to its sortie. `NOT_REACHED`: the aircraft passed it by. `NO_PHOTO`: it was there,
-    but the camera did not answer. `TOO_FAR` and `WRONG_ANGLE`: a photo was taken, but not of this view. `FLIGHT_ENDED`:
-    the sortie was over before. `NO_TRACK`: the record does not say where the aircraft was.
+    but the camera did not answer. `REPORT_LOST`: the camera counted a photo there, but its report did not arrive; from
+    where it was taken is not known. `TOO_FAR` and `WRONG_ANGLE`: a photo was taken, but not of this view.
+    `FLIGHT_ENDED`: the sortie was over before. `NO_TRACK`: the record does not say where the aircraft was.
     """
 
     TAKEN = "taken"
     NOT_FLOWN = "not-flown"
     NOT_REACHED = "not-reached"
     NO_PHOTO = "no-photo"
+    REPORT_LOST = "report-lost"
     TOO_FAR = "too-far"
     WRONG_ANGLE = "wrong-angle"
     FLIGHT_ENDED = "flight-ended"

@@ -3,40 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-
-import numpy as np
 
 from missions.flight.matching import Matching, PhotoRef
-from missions.flight.record import FlightRecord
-from planning.plan import Plan, ViewpointArrays
+from missions.flight.record import FlightRecord, TakenPhoto
+from planning.frames import wrap_heading_deg
+from planning.plan import Plan, Viewpoint
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TakenPoses:
-    """Poses of the photos whose direction is known, and how many others there are."""
+def taken_poses(plan: Plan, records: Sequence[FlightRecord], matching: Matching) -> dict[PhotoRef, Viewpoint]:
+    """Poses of all photos whose direction is known; that of a view has the view's angles where its source does not say.
 
-    views: ViewpointArrays
-    n_without_direction: int
-
-
-def taken_poses(plan: Plan, records: Sequence[FlightRecord], matching: Matching) -> TakenPoses:
-    """Poses of all photos; a photo of a view has the view's angles where its source does not say."""
+    The photos that are missing here belong to no view, and nothing says where they look.
+    """
     by_id = {view.id: view for view in plan.viewpoints}
     view_of = {match.photo: by_id[match.view_id] for match in matching.views if match.photo is not None}
-    poses: list[tuple[float, ...]] = []
-    n_without_direction = 0
-    for record_index, record in enumerate(records):
-        for photo_index, photo in enumerate(record.photos):
-            heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
-            view = view_of.get(PhotoRef(record_index, photo_index))
-            if view is not None:
-                heading_deg = view.heading_deg if heading_deg is None else heading_deg
-                pitch_deg = view.gimbal_pitch_deg if pitch_deg is None else pitch_deg
-            if heading_deg is None or pitch_deg is None:
-                n_without_direction += 1
-            else:
-                poses.append((*photo.position_enu_m, heading_deg, pitch_deg))
-    columns = np.array(poses, np.float64).reshape(-1, 5)
-    angles_rad = np.radians(columns[:, 3:])
-    return TakenPoses(ViewpointArrays(columns[:, :3], angles_rad[:, 0], angles_rad[:, 1]), n_without_direction)
+    refs = (PhotoRef(record, photo) for record, flown in enumerate(records) for photo in range(len(flown.photos)))
+    poses = ((ref, _pose(records[ref.record].photos[ref.photo], view_of.get(ref))) for ref in refs)
+    return {ref: pose for ref, pose in poses if pose is not None}
+
+
+def _pose(photo: TakenPhoto, view: Viewpoint | None) -> Viewpoint | None:
+    heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
+    if view is not None:
+        heading_deg = view.heading_deg if heading_deg is None else heading_deg
+        pitch_deg = view.gimbal_pitch_deg if pitch_deg is None else pitch_deg
+    if heading_deg is None or pitch_deg is None:
+        return None
+    return Viewpoint("photo", photo.position_enu_m, wrap_heading_deg(heading_deg), min(90.0, max(-180.0, pitch_deg)))

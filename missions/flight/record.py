@@ -63,6 +63,8 @@ class TakenPhoto:
         Over the ground at the shutter.
     source
         `camera-feedback`, `image-captured`, `log`, `photo-file`, or `simulation` for the true pose.
+    exposure_s
+        How long the shutter was open.
     """
 
     index: int
@@ -73,6 +75,7 @@ class TakenPhoto:
     speed_m_s: float | None = None
     source: str = "camera-feedback"
     file: str = ""
+    exposure_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from missions.flight.matching import DEFAULT_GATES, Gates, Matching, PhotoRef, ViewMatch, match_flight
 from missions.flight.outcome import FlightReport, SortieOutcome, Summary, ViewOutcome
+from missions.flight.poses import taken_poses
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits, flight_findings
 from planning.checks.case import Case
@@ -80,31 +81,13 @@ class _Shot:
 
 
 def _shots(case: Case, records: Sequence[FlightRecord], matching: Matching) -> dict[PhotoRef, _Shot]:
-    """Every photo whose direction is known; that of a matched one is its view's where the source does not say it."""
-    by_id = {view.id: view for view in case.plan.viewpoints}
-    view_of = {match.photo: by_id[match.view_id] for match in matching.views if match.photo is not None}
-    poses: dict[PhotoRef, Viewpoint] = {}
-    for record_index, record in enumerate(records):
-        for photo_index, photo in enumerate(record.photos):
-            ref = PhotoRef(record_index, photo_index)
-            pose = _pose(photo, view_of.get(ref))
-            if pose is not None:
-                poses[ref] = pose
+    """What every photo shows whose direction is known."""
+    poses = taken_poses(case.plan, records, matching)
     if not poses:
         return {}
     seen = sights(case.model, tuple(poses.values()))
     distances = case.space.solids.clearance_m(np.array([pose.position_enu_m for pose in poses.values()]))
     return {ref: _Shot(sight, float(m)) for ref, sight, m in zip(poses, seen, distances, strict=True)}
-
-
-def _pose(photo: TakenPhoto, view: Viewpoint | None) -> Viewpoint | None:
-    heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
-    if view is not None:
-        heading_deg = view.heading_deg if heading_deg is None else heading_deg
-        pitch_deg = view.gimbal_pitch_deg if pitch_deg is None else pitch_deg
-    if heading_deg is None or pitch_deg is None:
-        return None
-    return Viewpoint("photo", photo.position_enu_m, wrap_heading_deg(heading_deg), min(90.0, max(-180.0, pitch_deg)))
 
 
 def _view_outcome(
@@ -134,7 +117,7 @@ def _view_outcome(
         heading_error_deg=_turned_deg(photo.heading_deg, view.heading_deg),
         gimbal_pitch_error_deg=_turned_deg(photo.gimbal_pitch_deg, view.gimbal_pitch_deg),
         speed_m_s=speed_m_s,
-        blur_px=None if shot is None else _blur_px(case, record.track, photo.time_s, speed_m_s, shot, limits),
+        blur_px=None if shot is None else _blur_px(case, record.track, photo, speed_m_s, shot, limits),
         distance_m=None if shot is None else shot.distance_m,
     )
 
@@ -150,21 +133,23 @@ def _speed_m_s(track: Track, time_s: float) -> float | None:
 
 
 def _blur_px(
-    case: Case, track: Track, time_s: float, speed_m_s: float | None, shot: _Shot, limits: Limits
+    case: Case, track: Track, photo: TakenPhoto, speed_m_s: float | None, shot: _Shot, limits: Limits
 ) -> float | None:
     """Smear during the exposure, in pixels: v t / GSD + w t / (angle of a pixel).
 
     An upper bound: all of the speed is taken as across the line of sight, at the distance of the nearest panel in the
-    picture (of the nearest thing where there is none).
+    picture (of the nearest thing where there is none). The limits' exposure counts where the photo's is not known.
     """
     if speed_m_s is None:
         return None
     camera = case.plan.camera
     distance_m = max(shot.sight.nearest_m if math.isfinite(shot.sight.nearest_m) else abs(shot.distance_m), 0.1)
     turn_rad_s = math.hypot(
-        _rate(track.time_s, track.gimbal_heading_rad, time_s), _rate(track.time_s, track.gimbal_pitch_rad, time_s)
+        _rate(track.time_s, track.gimbal_heading_rad, photo.time_s),
+        _rate(track.time_s, track.gimbal_pitch_rad, photo.time_s),
     )
-    return limits.exposure_s * (speed_m_s / camera.gsd_m(distance_m) + turn_rad_s / camera.pixel_angle_rad)
+    exposure_s = limits.exposure_s if photo.exposure_s is None else photo.exposure_s
+    return exposure_s * (speed_m_s / camera.gsd_m(distance_m) + turn_rad_s / camera.pixel_angle_rad)
 
 
 def _rate(time_s: Floats, angle_rad: Floats, when_s: float) -> float:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from missions.flight.flight_file import Flight, plan_sha256
+from missions.flight.lost_reports import n_lost
 from missions.flight.outcome import Reason, SortieOutcome, Summary, ViewOutcome
 from missions.flight.record import FlightRecord
 from planning.checks.case import Case, judge
@@ -55,6 +56,7 @@ REASONS = {
     Reason.NOT_FLOWN: "their sortie was not flown",
     Reason.NOT_REACHED: "not reached",
     Reason.NO_PHOTO: "reached, but the camera did not answer",
+    Reason.REPORT_LOST: "photographed, but the camera's report was lost",
     Reason.TOO_FAR: "photo taken too far away",
     Reason.WRONG_ANGLE: "photo looks elsewhere",
     Reason.FLIGHT_ENDED: "the flight ended before",
@@ -74,6 +76,7 @@ def flight_findings(
     return (
         *_sorties_known(records, sorties),
         *_views_taken(views, sorties),
+        *_reports_lost(records, views),
         *_poses(views, limits),
         *_coverage(summary, limits),
         *_distances(case, sorties),
@@ -121,9 +124,14 @@ def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome])
     if missing:
         counts = Counter(view.reason for view in missing)
         why = ", ".join(f"{n} {REASONS[reason]}" for reason, n in counts.most_common())
-        text = f"{len(missing)} of {len(views)} views have no photo: {why}; plan a top-up flight for them"
+        is_lost = set(counts) == {Reason.REPORT_LOST}
+        advice = (
+            "look through the photos before planning a top-up flight" if is_lost else "plan a top-up flight for them"
+        )
+        text = f"{len(missing)} of {len(views)} views have no photo that is known of: {why}; {advice}"
+        severity = Severity.WARNING if is_lost else Severity.ERROR
         first = missing[0].view_id
-        yield Finding(Severity.ERROR, "views-taken", text, first, float(n_taken), float(len(views)), "views")
+        yield Finding(severity, "views-taken", text, first, float(n_taken), float(len(views)), "views")
     else:
         text = f"all {len(views)} views have a photo"
         yield Finding(Severity.OK, "views-taken", text, "", float(n_taken), float(len(views)), "views")
@@ -131,6 +139,17 @@ def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome])
     if n_extra:
         text = f"{n_extra} photos belong to no view, or to one that has a better photo; they count for coverage, too"
         yield Finding(Severity.NOTE, "photos-extra", text, "", float(n_extra), 0.0, "photos")
+
+
+def _reports_lost(records: Sequence[FlightRecord], views: Sequence[ViewOutcome]) -> Iterator[Finding]:
+    n = sum(map(n_lost, records))
+    if n:
+        n_of_views = sum(view.reason is Reason.REPORT_LOST for view in views)
+        text = (
+            f"the camera counted {n} photos whose reports did not arrive; {n_of_views} of them are of views that are "
+            "known; the autopilot's own log (.BIN, .ulg) tells of all"
+        )
+        yield Finding(Severity.WARNING, "reports-lost", text, "", float(n), 0.0, "photos")
 
 
 def _poses(views: Sequence[ViewOutcome], limits: Limits) -> Iterator[Finding]:
@@ -152,14 +171,17 @@ def _poses(views: Sequence[ViewOutcome], limits: Limits) -> Iterator[Finding]:
             continue
         worst, where = max(known)
         n_over = sum(value > limit for value, _ in known)
-        advice = f"{n_over} of {len(known)} photos are over it; hover longer, or fly in less wind"
+        cure = (
+            "fly with RTK, hover longer, or in less wind" if code == "position" else "hover longer, or fly in less wind"
+        )
+        advice = f"{n_over} of {len(known)} photos are over it; {cure}"
         yield judge(worst <= limit, code, f"largest {what}", worst, limit, unit, where, advice, severity)
 
 
 def _coverage(summary: Summary, limits: Limits) -> Iterator[Finding]:
     if summary.covered_planned:
         share = summary.covered / summary.covered_planned
-        subject = f"planned sections covered, {summary.covered} of {summary.covered_planned}"
+        subject = f"sections covered, {summary.covered} where {summary.covered_planned} were planned"
         advice = "plan a top-up flight"
         yield judge(
             share >= limits.coverage, "coverage", subject, 100.0 * share, 100.0 * limits.coverage, "%", "", advice,

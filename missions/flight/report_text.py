@@ -42,7 +42,8 @@ def _photos_line(summary: Summary) -> str:
 
 def _coverage_line(summary: Summary) -> str:
     share = f" ({summary.covered / summary.covered_planned:.1%})" if summary.covered_planned else ""
-    text = f"coverage: {summary.covered} of {summary.covered_planned} planned sections{share}, {summary.total} in all"
+    planned = f"where {summary.covered_planned} were planned{share}"
+    text = f"coverage: {summary.covered} sections {planned}, {summary.total} in all"
     return f"{text}; {len(summary.lost_panels)} panels lost" if summary.lost_panels else text
 
 

@@ -12,6 +12,7 @@ UDP knows no broken link: silence is all that can be noticed there.
 
 from __future__ import annotations
 
+import errno
 import queue
 import threading
 import time
@@ -142,6 +143,27 @@ class ChannelLink:
         self.channel.close()
 
 
+def parsed_url(url: str) -> tuple[str, str, int]:
+    """Kind, host or device, and port or baud rate of a url, without opening anything.
+
+    Raises
+    ------
+    InputError
+        The url is not one of those that the module lists.
+    """
+    kind, _, rest = url.partition(":")
+    if kind == "serial":
+        device, _, baud = rest.rpartition(":") if rest.count(":") else (rest, "", str(DEFAULT_BAUD))
+        if not device or not baud.isdecimal():
+            raise InputError(f"link '{url}': expected serial:DEVICE:BAUD, such as serial:/dev/ttyUSB0:57600")
+        return kind, device, int(baud)
+    host, _, port = rest.rpartition(":")
+    if kind not in _SOCKETS or not host or not port.isdecimal() or int(port) > 65535:
+        kinds = ", ".join((*_SOCKETS, "serial"))
+        raise InputError(f"link '{url}': expected KIND:HOST:PORT, such as tcp:127.0.0.1:5760; kinds are {kinds}")
+    return kind, host, int(port)
+
+
 def open_link(
     url: str, address: Address = GROUND_STATION, signer: Signer | None = None, clock: Clock = time.perf_counter
 ) -> ChannelLink:
@@ -154,22 +176,17 @@ def open_link(
     LinkError
         It cannot be opened.
     """
-    kind, _, rest = url.partition(":")
+    kind, place, number = parsed_url(url)
     if kind == "serial":
-        device, _, baud = rest.rpartition(":") if rest.count(":") else (rest, "", str(DEFAULT_BAUD))
-        if not device or not baud.isdecimal():
-            raise InputError(f"link '{url}': expected serial:DEVICE:BAUD, such as serial:/dev/ttyUSB0:57600")
-        return ChannelLink(SerialChannel(device, int(baud)), address, signer, clock)
-    opener = _SOCKETS.get(kind)
-    host, _, port = rest.rpartition(":")
-    if opener is None or not host or not port.isdecimal() or int(port) > 65535:
-        kinds = ", ".join((*_SOCKETS, "serial"))
-        raise InputError(f"link '{url}': expected KIND:HOST:PORT, such as tcp:127.0.0.1:5760; kinds are {kinds}")
+        return ChannelLink(SerialChannel(place, number), address, signer, clock)
     try:
-        return ChannelLink(opener(host.strip("[]"), int(port)), address, signer, clock)
+        return ChannelLink(_SOCKETS[kind](place.strip("[]"), number), address, signer, clock)
     except TimeoutError as error:
         raise LinkTimeout(f"{url}: no answer within {CONNECT_S:g} s; is the address right?") from error
     except OSError as error:
+        if error.errno == errno.EADDRINUSE:
+            text = f"{url} cannot be opened: another program has this port; end it, or take another"
+            raise LinkError(text) from error
         raise LinkError(f"{url} cannot be opened: {error.strerror or error}; is the address right?") from error
 
 

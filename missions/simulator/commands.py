@@ -13,6 +13,7 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.messages import Address, CommandAck, CommandInt, CommandLong, Message, SetMode
+from missions.mavlink.mode_numbers import mode_numbers, px4_custom_mode
 from missions.simulator.actions import Actions
 from missions.simulator.instruments import Instruments
 from missions.simulator.modes import FlightModes
@@ -100,7 +101,8 @@ class Commands:
         return result
 
     def _change_mode(self, number: int) -> int:
-        mode = self.profile.mode_numbered(number)
+        known = mode_numbers(self.autopilot)
+        mode = next((name for name in self.profile.modes if known[name] == number), None)
         if mode is None:
             self.say(mavlink.MAV_SEVERITY_WARNING, f"No such mode {number}")
             return DENIED
@@ -127,7 +129,7 @@ class Commands:
             return DENIED
         number = int(item.param2)
         if self.autopilot is Autopilot.PX4:
-            number = number << 16 | int(item.param3) << 24
+            number = px4_custom_mode(number, int(item.param3))
         return self._change_mode(number)
 
     def mission_start(self, item: StoredItem) -> int:

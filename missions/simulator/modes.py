@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.mode_numbers import mode_numbers
 from missions.simulator.guidance import Guidance
 from missions.simulator.manoeuvres import Manoeuvres
 from missions.simulator.parameters import ParameterTable
@@ -79,7 +80,7 @@ class FlightModes:
     @property
     def number(self) -> int:
         """Custom mode number of the mode."""
-        return self._deck.profile.modes[self.mode].number
+        return mode_numbers(self._deck.autopilot)[self.mode]
 
     @property
     def activity(self) -> Activity:

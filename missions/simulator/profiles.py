@@ -25,9 +25,8 @@ class Activity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """One flight mode: its custom mode number, what is done in it, and whether it may be armed in it."""
+    """One flight mode: what is done in it, and whether it may be armed in it."""
 
-    number: int
     activity: Activity
     armable: bool
 
@@ -53,10 +52,6 @@ class VehicleProfile:
         preferred = ("LOITER", "AUTO.LOITER") if activity is Activity.HOLD else ()
         names = [name for name, mode in self.modes.items() if mode.activity is activity]
         return next((name for name in names if name in preferred), names[0])
-
-    def mode_numbered(self, number: int) -> str | None:
-        """Name of the mode with a custom mode number; None where there is none."""
-        return next((name for name, mode in self.modes.items() if mode.number == number), None)
 
 
 @cache

@@ -45,7 +45,7 @@ class Conditions:
     message_loss
         Share of the messages that the radio loses, each way.
     outages_s
-        Begin and end of times in which it loses all, seconds of flight.
+        Begin and end of times in which it loses all, seconds after take-off.
     """
 
     wind_m_s: float = 0.0

@@ -110,6 +110,7 @@ class SimulatedVehicle:
         self._out: list[Message] = []
         self._reached: int | None = None
         self._n_steps = 0
+        self._lift_off_s = math.inf
         self._owed_s = 0.0
         self._start_s = profile.estimator_ready_s if is_ready else 0.0
         self.parameters = ParameterTable(autopilot, parameters)
@@ -157,6 +158,11 @@ class SimulatedVehicle:
     def now_s(self) -> float:
         """Simulated time since power-up."""
         return self._guidance.now_s
+
+    @property
+    def flight_s(self) -> float:
+        """Simulated time since it first took off; minus infinity before."""
+        return self.now_s - self._lift_off_s
 
     @property
     def is_transferring(self) -> bool:
@@ -209,6 +215,8 @@ class SimulatedVehicle:
         self.camera.tick()
         self._failsafe.update()
         self.modes.update()
+        if self._lift_off_s == math.inf and not self.modes.is_landed:
+            self._lift_off_s = guidance.now_s
         if self.stores.is_receiving:
             self._out += self.stores.tick(guidance.now_s)
         if self._reached is not None:

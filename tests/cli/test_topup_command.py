@@ -1,6 +1,7 @@
 """`topup`: a flight and its plan to a top-up, or to the rest of a sortie."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from missions.flight.flight_file import flight_of, write_flight
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 from planning.plan_file import read_plan
 from planning.site_file import read_site
+from tests.missions.flight.flights import flown_as_planned, never_taken, with_photos
+from tests.missions.flight.log_writers import dataflash
 
 
 @pytest.fixture
@@ -66,6 +69,36 @@ def test_a_complete_flight_needs_no_top_up_and_writes_none(reflight, pane, flown
     assert not out.exists()
 
 
+def test_the_autopilots_log_serves_as_well_as_a_flight_file(reflight, pane, tmp_path):
+    plan, site = read_plan(pane / "plan.json"), read_site(pane / "site.json").site
+    (record,) = flown_as_planned(plan)
+    whole, half = tmp_path / "whole.BIN", tmp_path / "half.BIN"
+    whole.write_bytes(dataflash([record], site))
+    half.write_bytes(dataflash([never_taken(record, 3, 4, 5)], site))
+    out = tmp_path / "topup.plan.json"
+    rest = ("-o", out, "--time-budget", 1, "--json")
+    assert reflight("topup", whole, pane / "plan.json", pane / "site.json", *rest).json["wanted"] == 0
+    assert not out.exists()
+    summary = reflight("topup", half, pane / "plan.json", pane / "site.json", *rest).json
+    assert summary["wanted"] == summary["closed"] > 0
+    elsewhere = replace(site, origin=replace(site.origin, lat_deg=site.origin.lat_deg + 1.0))
+    whole.write_bytes(dataflash([record], elsewhere))
+    refused = reflight("topup", whole, pane / "plan.json", pane / "site.json", "-o", out)
+    assert "km from the site" in refused.error
+
+
+def test_photos_whose_reports_were_lost_are_told_of_with_what_to_do(reflight, pane, tmp_path):
+    plan, model = read_plan(pane / "plan.json"), read_site(pane / "site.json")
+    (record,) = flown_as_planned(plan)
+    heard = with_photos(record, lambda photos: (*photos[:2], *photos[3:]))
+    write_flight(tmp_path / "flight.json", flight_of(plan, model, (heard,)))
+    out = tmp_path / "topup.plan.json"
+    done = reflight("topup", tmp_path / "flight.json", pane / "plan.json", pane / "site.json", "-o", out, "--json")
+    (finding,) = [finding for finding in done.json["findings"] if finding["code"] == "reports-lost"]
+    assert finding["value"] == 1
+    assert ".BIN" in finding["message"]
+
+
 def test_resume_writes_the_rest_of_the_sortie(reflight, pane, flown, tmp_path):
     out = tmp_path / "rest.plan.json"
     arguments = (flown(2), pane / "plan.json", pane / "site.json", "-o", out, "--resume")
@@ -104,6 +137,9 @@ def test_a_flight_of_another_plan_and_a_wrong_file_are_refused(reflight, pane, f
     out = tmp_path / "topup.plan.json"
     other = changed(pane / "plan.json", "seed", 5)
     assert "flight of another plan" in reflight("topup", flown(2), other, pane / "site.json", "-o", out).error
+    # The bundled sites stand at one origin: the name tells them apart.
+    renamed = changed(pane / "site.json", "name", "court")
+    assert "site ('court')" in reflight("topup", flown(2), pane / "plan.json", renamed, "-o", out).error
     swapped = reflight("topup", pane / "plan.json", flown(2), pane / "site.json", "-o", out)
     assert "reflight-flight/1" in swapped.error
     missing = reflight("topup", tmp_path / "no.json", pane / "plan.json", pane / "site.json", "-o", out)

@@ -15,6 +15,7 @@ from planning.catalogue import profile
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.optimise.problem import ViewProblem, take
+from planning.optimise.restore import with_lost_restored
 from planning.optimise.spacing import MAX_LOST, MAX_LOST_SHARE, MIN_SPACING_M, merge_close_views
 from planning.plan import ViewpointArrays
 from planning.positions import aimed_views, spread_positions
@@ -101,3 +102,30 @@ def test_the_caller_s_views_stay_as_they_are() -> None:
     kept = views.positions_enu_m.copy()
     merge_close_views(problem(), views)
     np.testing.assert_array_equal(views.positions_enu_m, kept)
+
+
+@given(seed=st.integers(0, 10_000), n_places=st.integers(1, 6), n_views=st.integers(2, 25))
+@settings(max_examples=60)
+def test_what_moving_lost_is_restored_from_places_of_its_own(seed: int, n_places: int, n_views: int) -> None:
+    before = clustered_views(seed, n_places, n_views, 0.4)
+    after = merge_close_views(problem(), before)
+    restored = with_lost_restored(problem(), before, after)
+    n = len(after.heading_rad)
+    np.testing.assert_array_equal(restored.positions_enu_m[:n], after.positions_enu_m)
+    assert len(restored.heading_rad) == n or covered(restored) > covered(after)
+    for i in range(n, len(restored.heading_rad)):
+        away_m = np.linalg.norm(restored.positions_enu_m[:i] - restored.positions_enu_m[i], axis=1)
+        assert away_m.min() >= MIN_SPACING_M
+
+
+def test_each_section_that_was_lost_gets_a_view_where_it_has_a_witness() -> None:
+    """All views but the first are lost: whatever they showed and has a witness away from that one is shown again."""
+    before = clustered_views(3, 6, 25, 20.0)
+    after = take(before, np.array([0]))
+    restored = with_lost_restored(problem(), before, after)
+    witnesses = problem().reachability.witnesses_enu_m.reshape(-1, 3)
+    is_far = np.linalg.norm(witnesses - after.positions_enu_m, axis=1) >= 1.0
+    lost = problem().model.covered(before) & ~problem().model.covered(after)
+    again = problem().model.covered(restored)
+    assert lost.sum() > 20
+    assert (lost & again).sum() >= 0.95 * (lost & is_far).sum()

@@ -6,17 +6,19 @@ from dataclasses import replace
 import pytest
 
 from groundstation.services.flying import FlightWish, check_site, fly_files, fly_plan
-from groundstation.vehicle.state import LINK_LOST_S
+from groundstation.vehicle.run_records import Phase
+from groundstation.vehicle.state import LINK_LOST_S, Landed
 from missions.flight.flight_file import read_flight
 from missions.flight.outcome import Reason
 from missions.mavlink.autopilots import Autopilot
 from missions.simulator.build import EFFECTS
 from missions.simulator.scene import Conditions
-from planning.errors import InfeasibleError, InputError, LinkRejected, MissionError, OperationCancelled
+from planning.errors import InfeasibleError, InputError, LinkRejected, LinkTimeout, MissionError, OperationCancelled
 from planning.plan_file import read_plan, write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import office, single_panel, write_scene
+from planning.site_file import read_site
 
 BOTH = pytest.mark.parametrize("autopilot", list(Autopilot))
 POSITION_M, HEADING_DEG, PITCH_DEG, COVERED, DURATION = 0.5, 3.0, 2.0, 0.97, 0.10
@@ -122,11 +124,15 @@ def test_a_radio_that_loses_messages_delays_and_loses_nothing_else(small):
 
 def test_an_outage_in_flight_is_shown_and_survived(small):
     site, plan = small
-    outage = (60.0, 60.0 + 3.0 * LINK_LOST_S)
+    outage = (30.0, 30.0 + 3.0 * LINK_LOST_S)
     shown = []
     wish = FlightWish(conditions=Conditions(outages_s=(outage,)))
-    flown = fly_plan(plan, site, wish, show=lambda view: shown.append((view.time_s, view.is_link_alive)))
-    assert any(not alive for time_s, alive in shown if outage[0] + LINK_LOST_S < time_s < outage[1])
+    flown = fly_plan(plan, site, wish, show=shown.append)
+    # Counted from take-off, not from power-up, which is more than 40 s earlier.
+    up_s = min(view.time_s for view in shown if view.state.landed and view.state.landed.value is not Landed.ON_GROUND)
+    dead_s = [view.time_s - up_s for view in shown if view.phase is Phase.FLYING and not view.is_link_alive]
+    assert outage[0] < min(dead_s) < outage[0] + LINK_LOST_S + 1.0
+    assert outage[1] - 1.0 < max(dead_s) < outage[1] + 2.0
     assert len(flown.flight.sorties[0].photos) == len(plan.viewpoints)
     assert {"link-lost", "link-found"} <= {note.code for note in flown.sorties[0].notes}
 
@@ -134,8 +140,6 @@ def test_an_outage_in_flight_is_shown_and_survived(small):
 def test_a_flight_is_written_whole(tmp_path):
     site_path = write_scene("single-panel", tmp_path)
     plan_path, out = tmp_path / "p.plan.json", tmp_path / "f.flight.json"
-    from planning.site_file import read_site
-
     write_plan(plan_path, plan_flight(read_site(site_path), PlanRequest(n_views=3, time_budget_s=2.0)).plan)
     flown = fly_files(plan_path, site_path, out, FlightWish())
     again = read_flight(out)
@@ -168,7 +172,6 @@ def test_what_cannot_be_flown_says_why_and_writes_nothing(small, tmp_path):
 
 def test_sorties_flown_at_a_link_are_kept_when_a_later_one_fails(tmp_path, monkeypatch):
     from groundstation.services import flying
-    from planning.site_file import read_site
 
     site_path = write_scene("single-panel", tmp_path)
     model = read_site(site_path)
@@ -190,6 +193,26 @@ def test_sorties_flown_at_a_link_are_kept_when_a_later_one_fails(tmp_path, monke
         fly_files(plan_path, site_path, out, FlightWish(link="tcp:here:1"), between=asked.append)
     assert asked == [2]
     assert len(read_flight(out).sorties) == 1
+
+
+def test_what_a_vehicle_at_a_link_flew_before_it_vanished_is_kept(tmp_path, monkeypatch):
+    from groundstation.services import flying
+
+    site_path = write_scene("single-panel", tmp_path)
+    plan = plan_flight(read_site(site_path), PlanRequest(n_views=4, time_budget_s=2.0)).plan
+    plan_path, out = tmp_path / "p.plan.json", tmp_path / "f.flight.json"
+    write_plan(plan_path, plan)
+
+    def vanishing(case, orders):
+        outcome, record, sortie = flying._Case._simulate(replace(case, wish=FlightWish()), orders)
+        error = LinkTimeout("the vehicle was not heard for 300 s in flight")
+        return replace(outcome, error=error), replace(record, photos=record.photos[:2], duration_s=None), sortie
+
+    monkeypatch.setattr(flying._Case, "_fly_link", vanishing)
+    with pytest.raises(LinkTimeout, match=r"not heard for 300 s.*flown before is in .*f\.flight\.json"):
+        fly_files(plan_path, site_path, out, FlightWish(link="tcp:here:1"))
+    (record,) = read_flight(out).sorties
+    assert len(record.photos) == 2
 
 
 def test_a_cancelled_flight_is_cancelled(small):

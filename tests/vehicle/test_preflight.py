@@ -157,3 +157,11 @@ def test_longer_holds_take_as_much_longer(orders):
         longer = replace(items[index], params=(items[index].params[0] + 7.0, *items[index].params[1:]))
         changed = replace(orders, items={autopilot: (*items[:index], longer, *items[index + 1 :])})
         assert items_duration_s(changed, autopilot) - items_duration_s(orders, autopilot) == pytest.approx(7.0)
+
+
+def test_a_sortie_that_no_battery_lasts_for_is_not_cured_by_a_full_one(orders):
+    long = replace(orders, battery_needed=1.7)
+    (check,) = [check for check in checks(ready_state(orders), long) if check.verdict is not Verdict.OK]
+    assert (check.code, check.verdict) == ("battery", Verdict.BAD)
+    assert "shorter sorties" in check.text
+    assert "full one" not in check.text

@@ -3,7 +3,6 @@
 from collections import deque
 from dataclasses import dataclass, field, replace
 
-from groundstation.vehicle.modes import numbers
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.messages import (
     Address,
@@ -30,6 +29,7 @@ from missions.mavlink.messages import (
     Statustext,
     SysStatus,
 )
+from missions.mavlink.mode_numbers import mode_numbers
 from planning.errors import LinkError
 
 ACCEPTED, FAILED = 0, 4
@@ -137,9 +137,10 @@ class Toy:
             return result
         match command.command:
             case 176:
-                names = {number: name for name, number in numbers().modes[self.autopilot].items()}
+                names = {number: name for name, number in mode_numbers(self.autopilot).items()}
                 px4 = self.autopilot is Autopilot.PX4
-                self.mode = names[int(command.param2) * (100 if px4 else 1) + (int(command.param3) if px4 else 0)]
+                first, second = int(command.param2), int(command.param3)
+                self.mode = names[first << 16 | second << 24 if px4 else first]
                 if self.mode == "AUTO.MISSION":
                     self.take_off()
             case 400:
@@ -197,8 +198,7 @@ class Toy:
         self.say(GimbalDeviceAttitudeStatus(0, 0, boot_ms, 44, (1.0, 0.0, 0.0, 0.0)))
         self.say(ExtendedSysState(0, 2 if self.is_flying else 1))
         if every_second:
-            main, sub = divmod(numbers().modes[self.autopilot][self.mode], 100)
-            mode = main << 16 | sub << 24 if self.autopilot is Autopilot.PX4 else 100 * main + sub
+            mode = mode_numbers(self.autopilot)[self.mode]
             self.say(Heartbeat(2, facts(self.autopilot).firmware_type, 128 if self.is_armed else 0, mode, 3))
             self.say(SysStatus(0, 0, 0, 0, 15000, 100, self.battery))
             self.say(GpsRawInt(0, self.fix_type, lat, lon, 0, 0, 0, 0, 0, 20, 0, 12, 15))

@@ -134,10 +134,12 @@ def _wish(options: argparse.Namespace) -> FlightWish:
 
 def _check_link(options: argparse.Namespace) -> None:
     """Refuse what would be ignored, and to start what may be an aircraft."""
+    from missions.mavlink.link import parsed_url
+
+    kind, host, _ = parsed_url(options.link)
     if options.effects or options.wind is not None or options.speedup is not None:
         raise InputError("--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own")
-    kind, _, place = options.link.partition(":")
-    is_here = kind in ("tcp", "udpout") and place.rpartition(":")[0] in LOCAL_HOSTS
+    is_here = kind in ("tcp", "udpout") and host in LOCAL_HOSTS
     if not is_here and not options.take_off:
         raise InputError(
             f"--link {options.link}: this could be a real aircraft, and 'simulate' takes off by itself; add --take-off "

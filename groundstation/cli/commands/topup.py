@@ -34,7 +34,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.set_defaults(run=run)
     add = parser.add_argument
-    add("flight", type=Path, metavar="FLIGHT", help="flight file")
+    add("flight", type=Path, metavar="FLIGHT", help="flight file, or a log (.tlog, .BIN, .ulg)")
     add("plan", type=Path, metavar="PLAN", help="plan file that was flown")
     add("site", type=Path, metavar="SITE", help="site file, as the site is now")
     add("-o", "--out", type=Path, required=True, metavar="PLAN", help="plan file to write")

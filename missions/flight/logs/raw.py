@@ -7,6 +7,7 @@ once for all of them, in `flights.py`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,6 +19,9 @@ from planning.findings import Finding, Severity
 Floats = NDArray[np.float64]
 
 NOT_KNOWN = math.nan
+
+YAW_LOCK, YAW_IN_VEHICLE_FRAME, YAW_IN_EARTH_FRAME = 16, 32, 64
+"""GIMBAL_DEVICE_FLAGS: from where a gimbal counts its yaw. ArduPilot sets the second also where it holds the yaw."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,11 +96,31 @@ class RawLog:
             self.armed.append((time_s, is_armed))
             self.events.append(FlightEvent(time_s, "armed" if is_armed else "disarmed", ""))
 
+    def gimbal(self, time_s: float, q_wxyz: Sequence[float], flags: int) -> None:
+        """Note how a gimbal device stands; an attitude that is none is passed over."""
+        angles = camera_angles_rad(*q_wxyz)
+        if angles is not None:
+            heading, pitch = angles
+            (self.gimbal_headings if is_yaw_from_north(flags) else self.gimbal_yaws).append((time_s, heading))
+            self.gimbal_pitches.append((time_s, pitch))
+
+    def camera_failed(self, time_s: float, index: int) -> None:
+        """Note that the camera was told to take a photo and did not."""
+        self.events.append(FlightEvent(time_s, "camera-failed", f"the camera says that photo {index} failed"))
+
     def mode(self, time_s: float, name: str) -> None:
         """Note the flight mode; only changes are kept."""
         last = next((event.text for event in reversed(self.events) if event.code == "mode"), None)
         if name != last:
             self.events.append(FlightEvent(time_s, "mode", name))
+
+
+def is_yaw_from_north(flags: int) -> bool:
+    """Whether a gimbal device counts its yaw from north, not from the nose, by its GIMBAL_DEVICE_FLAGS.
+
+    Without either of the two flags that say so, the yaw is from north while it is locked.
+    """
+    return not flags & YAW_IN_VEHICLE_FRAME and bool(flags & (YAW_IN_EARTH_FRAME | YAW_LOCK))
 
 
 def camera_angles_rad(w: float, x: float, y: float, z: float) -> tuple[float, float] | None:

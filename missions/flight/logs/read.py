@@ -32,6 +32,16 @@ def read_log(path: Path, site: Site, heights: HeightSource = "takeoff", monitor:
     return flights_of(_raw_log(_content(path), str(path), monitor), site, str(path), heights)
 
 
+def is_log(path: Path) -> bool:
+    """Whether a file begins like a flight log; False for one that cannot be read."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD_BYTES)
+    except OSError:
+        return False
+    return looks_like_ulog(head) or looks_binary(head) or looks_like_text(head) or looks_like_tlog(head)
+
+
 def _content(path: Path) -> bytes:
     try:
         status = path.stat()

@@ -35,9 +35,6 @@ ARMED = 128
 GROUND_STATION, NO_AUTOPILOT = 6, 8
 """MAV_MODE_FLAG_SAFETY_ARMED, MAV_TYPE_GCS, MAV_AUTOPILOT_INVALID."""
 
-YAW_LOCK, YAW_IN_VEHICLE_FRAME, YAW_IN_EARTH_FRAME = 16, 32, 64
-"""GIMBAL_DEVICE_FLAGS of message 285; without either of the last two the yaw is the earth's while it is locked."""
-
 NO_LATITUDE = 2**31 - 1
 
 
@@ -189,14 +186,7 @@ class _Reader:
         self.log.gimbal_headings.append((time_s, math.radians(message.yaw_absolute)))
 
     def _gimbal_device_attitude_status(self, message: Any, time_s: float) -> None:
-        angles = camera_angles_rad(*message.q)
-        if angles is None:
-            return
-        yaw, pitch = angles
-        is_of_vehicle = bool(message.flags & YAW_IN_VEHICLE_FRAME)
-        is_of_earth = not is_of_vehicle and bool(message.flags & (YAW_IN_EARTH_FRAME | YAW_LOCK))
-        (self.log.gimbal_headings if is_of_earth else self.log.gimbal_yaws).append((time_s, yaw))
-        self.log.gimbal_pitches.append((time_s, pitch))
+        self.log.gimbal(time_s, message.q, message.flags)
 
     def _statustext(self, message: Any, time_s: float) -> None:
         text, number = message.text, getattr(message, "id", 0)
@@ -227,8 +217,7 @@ class _Reader:
 
     def _camera_image_captured(self, message: Any, time_s: float) -> None:
         if message.capture_result != 1:
-            text = f"the camera says that photo {message.image_index} failed"
-            self.log.events.append(FlightEvent(time_s, "camera-failed", text))
+            self.log.camera_failed(time_s, message.image_index)
             return
         angles = camera_angles_rad(*message.q)
         is_placed = NO_LATITUDE not in (abs(message.lat), abs(message.lon))

@@ -57,8 +57,6 @@ NAVIGATION_STATES = {
 }  # fmt: skip
 """vehicle_status.nav_state."""
 
-YAW_LOCK, YAW_IN_VEHICLE_FRAME, YAW_IN_EARTH_FRAME = 16, 32, 64
-
 HAS_FIX = 3
 
 
@@ -201,13 +199,8 @@ def _attitude(log: RawLog, topics: dict[str, Columns]) -> None:
         w, x, y, z = q
         log.headings.append((time_s, math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))))
     for time_s, *q, flags in _rows(topics, "gimbal_device_attitude_status", *quaternion, "device_flags"):
-        angles = camera_angles_rad(*q)
-        if angles is None or not math.isfinite(flags):
-            continue
-        bits = int(flags)
-        is_of_earth = not bits & YAW_IN_VEHICLE_FRAME and bool(bits & (YAW_IN_EARTH_FRAME | YAW_LOCK))
-        (log.gimbal_headings if is_of_earth else log.gimbal_yaws).append((time_s, angles[0]))
-        log.gimbal_pitches.append((time_s, angles[1]))
+        if math.isfinite(flags):
+            log.gimbal(time_s, q, int(flags))
     if not log.gimbal_pitches:
         angle = "attitude_euler_angle"
         for time_s, pitch, yaw in _rows(topics, "mount_orientation", f"{angle}[1]", f"{angle}[2]"):
@@ -219,7 +212,7 @@ def _photos(log: RawLog, topics: dict[str, Columns]) -> None:
     fields = ("seq", "lat", "lon", "alt", "q[0]", "q[1]", "q[2]", "q[3]", "result")
     for time_s, number, lat, lon, alt, *q, result in _rows(topics, "camera_capture", *fields):
         if result == 0:
-            log.events.append(FlightEvent(time_s, "camera-failed", f"the camera says that photo {number:g} failed"))
+            log.camera_failed(time_s, int(number))
             continue
         angles = camera_angles_rad(*q) if not log.gimbal_pitches else None
         heading_deg, pitch_deg = (None, None) if angles is None else map(math.degrees, angles)

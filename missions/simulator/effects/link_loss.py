@@ -12,7 +12,7 @@ from missions.simulator.scene import Conditions, FlightScene
 from planning.effects import Assessment, Decision
 
 FlightClock = Callable[[], float]
-"""Seconds of simulated flight."""
+"""Seconds since take-off, simulated; minus infinity before."""
 
 
 class LossyLink:
@@ -25,7 +25,7 @@ class LossyLink:
     outages_s
         Begin and end of times in which all get lost.
     clock
-        What outages are measured by; simulated time for a simulated vehicle.
+        What outages are measured by; `SimulatedVehicle.flight_s` for a simulated vehicle.
     """
 
     def __init__(

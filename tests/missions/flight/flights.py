@@ -81,6 +81,12 @@ def with_photos(
     return replace(record, photos=change(record.photos))
 
 
+def never_taken(record: FlightRecord, *lost: int) -> FlightRecord:
+    """The record of a camera that did not take some photos, and counts on as if they had not been asked for."""
+    kept = [photo for i, photo in enumerate(record.photos) if i not in lost]
+    return replace(record, photos=tuple(replace(photo, index=i) for i, photo in enumerate(kept, 1)))
+
+
 def moved(photo: TakenPhoto, by_enu_m: tuple[float, float, float], turned_deg: float = 0.0) -> TakenPhoto:
     """The photo taken elsewhere, looking elsewhere."""
     x, y, z = (a + b for a, b in zip(photo.position_enu_m, by_enu_m, strict=True))

@@ -6,15 +6,17 @@ import itertools
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
+from missions.flight.lost_reports import n_lost
 from missions.flight.matching import DEFAULT_GATES, Matching, _aligned, _gains, match_flight
 from missions.flight.outcome import Reason
-from missions.flight.record import FlightRecord, TakenPhoto, Track
+from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from planning.plan import Plan
-from tests.missions.flight.flights import cut_at, flown_as_planned, moved, with_photos
+from tests.missions.flight.flights import cut_at, flown_as_planned, moved, never_taken, with_photos
 from tests.missions.plans import example_plan, make_plan, ring
 
 PLAN = example_plan()
@@ -41,12 +43,12 @@ def test_a_flight_as_planned_has_a_photo_for_every_view() -> None:
 
 
 def test_a_photo_missing_in_the_middle_shifts_no_other() -> None:
-    spoilt = (with_photos(FLOWN[0], lambda photos: photos[:2] + photos[3:]), FLOWN[1])
+    spoilt = (never_taken(FLOWN[0], 2), FLOWN[1])
     matching = match_flight(PLAN, spoilt)
     assert reasons(matching) == ["taken"] * 2 + ["no-photo"] + ["taken"] * 7
     photo = photo_of(matching, "v0003", spoilt)
     assert photo is not None
-    assert photo.index == 4
+    assert photo.time_s == FLOWN[0].photos[3].time_s
 
 
 def test_photos_before_the_first_view_and_between_are_extra() -> None:
@@ -189,6 +191,72 @@ def test_noise_and_lost_photos_never_tie_a_view_to_another_ones_photo(seed: int,
     matching = match_flight(plan, (replace(record, photos=kept),))
     for match, original in zip(matching.views, record.photos, strict=True):
         is_kept = any(photo.index == original.index for photo in kept)
-        assert match.reason is (Reason.TAKEN if is_kept else Reason.NO_PHOTO)
+        assert match.reason in ((Reason.TAKEN,) if is_kept else (Reason.NO_PHOTO, Reason.REPORT_LOST))
         if match.photo is not None:
             assert kept[match.photo.photo].index == original.index
+
+
+@pytest.mark.parametrize("source", ["camera-feedback", "image-captured"])
+def test_a_gap_in_the_cameras_count_tells_photos_whose_report_was_lost(source: str) -> None:
+    heard = with_photos(FLOWN[0], lambda p: tuple(replace(photo, source=source) for photo in (*p[:2], *p[4:])))
+    matching = match_flight(PLAN, (heard, FLOWN[1]))
+    assert reasons(matching) == ["taken"] * 2 + ["report-lost"] * 2 + ["taken"] * 6
+    assert n_lost(heard) == 2
+
+
+def test_a_photo_that_was_never_taken_leaves_no_gap() -> None:
+    silent = never_taken(FLOWN[0], 2, 3)
+    assert reasons(match_flight(PLAN, (silent, FLOWN[1])))[2:4] == ["no-photo"] * 2
+    assert n_lost(silent) == 0
+
+
+def test_which_of_two_views_was_photographed_is_not_guessed() -> None:
+    """Two views without a photo, one number left out: either may be the one."""
+    one_short = with_photos(FLOWN[0], lambda p: (*p[:2], *(replace(photo, index=photo.index - 1) for photo in p[4:])))
+    assert reasons(match_flight(PLAN, (one_short, FLOWN[1])))[2:4] == ["no-photo"] * 2
+    assert n_lost(one_short) == 1
+
+
+def test_a_failure_that_the_camera_told_of_is_no_lost_report() -> None:
+    failed = FlightEvent(FLOWN[0].photos[2].time_s, "camera-failed", "the camera says that photo 3 failed")
+    heard = replace(with_photos(FLOWN[0], lambda p: p[:2] + p[3:]), events=(failed,))
+    assert reasons(match_flight(PLAN, (heard, FLOWN[1])))[2] == "no-photo"
+    assert n_lost(heard) == 0
+
+
+def test_photos_heard_in_between_are_not_counted_as_lost() -> None:
+    """One report is lost, and a photo of no view was told of: the gap is one, not two."""
+    first, second, third = FLOWN[0].photos[:3]
+    stray = replace(second, index=second.index + 1, position_enu_m=(30.0, -30.0, 27.0), time_s=third.time_s - 1.0)
+
+    def spoil(photos: tuple[TakenPhoto, ...]) -> tuple[TakenPhoto, ...]:
+        return (first, stray, *(replace(photo, index=photo.index + 1) for photo in photos[2:]))
+
+    heard = with_photos(FLOWN[0], spoil)
+    assert reasons(match_flight(PLAN, (heard, FLOWN[1])))[:3] == ["taken", "report-lost", "taken"]
+
+
+@pytest.mark.parametrize("source", ["log", "photo-file", "simulation"])
+def test_numbers_of_files_and_logs_may_have_gaps_of_their_own(source: str) -> None:
+    gap = with_photos(FLOWN[0], lambda p: tuple(replace(photo, source=source) for photo in (*p[:2], *p[4:])))
+    assert reasons(match_flight(PLAN, (gap, FLOWN[1])))[2:4] == ["no-photo"] * 2
+    assert n_lost(gap) == 0
+
+
+def test_the_log_of_the_same_flight_fills_what_the_radio_lost() -> None:
+    heard = with_photos(FLOWN[0], lambda p: (*p[:2], *p[4:]))
+    logged = with_photos(FLOWN[0], lambda p: tuple(replace(photo, source="log") for photo in p))
+    assert reasons(match_flight(PLAN, (logged, FLOWN[1]))) == ["taken"] * 10
+    assert reasons(match_flight(PLAN, (heard, logged, FLOWN[1]))) == ["taken"] * 10
+
+
+@given(st.sets(st.integers(1, 4)), st.integers(0, 60000))
+def test_what_is_taken_and_what_is_lost_add_up(lost: set[int], first: int) -> None:
+    """Whatever is lost between the first and the last photo is found, and nothing else."""
+    heard = with_photos(
+        FLOWN[0],
+        lambda p: tuple(replace(photo, index=first + i) for i, photo in enumerate(p) if i not in lost),
+    )
+    found = reasons(match_flight(PLAN, (heard, FLOWN[1])))[:6]
+    assert found == ["report-lost" if i in lost else "taken" for i in range(6)]
+    assert n_lost(heard) == len(lost)

@@ -25,7 +25,7 @@ from planning.frames import aim
 from planning.plan import Constraints, Plan, Viewpoint
 from planning.scenes import ORIGIN
 from planning.site import SiteModel
-from tests.missions.flight.flights import cut_at, flown_as_planned, moved, with_durations, with_photos
+from tests.missions.flight.flights import cut_at, flown_as_planned, moved, never_taken, with_durations, with_photos
 from tests.missions.plans import make_plan
 from tests.planning.plan_cases import dense_points, distances, kiosk, seen_by_contract, solid_triangles
 
@@ -131,7 +131,9 @@ def test_coverage_is_that_of_the_poses_really_flown() -> None:
 @pytest.mark.parametrize(
     ("records", "code", "severity", "value"),
     [
-        (lambda: photos(lambda p: p[:3] + p[4:]), "views-taken", Severity.ERROR, 11.0),
+        (lambda: (never_taken(flown()[0], 3),), "views-taken", Severity.ERROR, 11.0),
+        (lambda: photos(lambda p: p[:3] + p[4:]), "views-taken", Severity.WARNING, 11.0),
+        (lambda: photos(lambda p: p[:3] + p[5:]), "reports-lost", Severity.WARNING, 2.0),
         (lambda: at(2, lambda p: moved(p, (0.6, 0.0, 0.0))), "position", Severity.ERROR, 0.6),
         (lambda: at(2, lambda p: moved(p, (0.0, 0.0, 0.0), -3.5)), "heading", Severity.ERROR, 3.5),
         (lambda: at(2, lambda p: replace(p, gimbal_pitch_deg=p.gimbal_pitch_deg - 2.5)), "gimbal", Severity.ERROR, 2.5),

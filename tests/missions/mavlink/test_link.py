@@ -217,7 +217,7 @@ def test_server_that_is_not_there_is_an_error_that_names_it() -> None:
 
 
 def test_port_that_is_taken_is_an_error() -> None:
-    with closing(open_link("udp:127.0.0.1:0")) as link, pytest.raises(LinkError, match="in use"):
+    with closing(open_link("udp:127.0.0.1:0")) as link, pytest.raises(LinkError, match="another program has this port"):
         open_link(f"udp:127.0.0.1:{port_of(link)}")
 
 

@@ -53,16 +53,20 @@ def software(component: Any, url: str) -> Iterator[Any]:
         sdk.destroy()
 
 
+def standing(autopilot: Autopilot) -> SimulatedVehicle:
+    return SimulatedVehicle(autopilot, PointMass(), ORIGIN, is_ready=True)
+
+
 @contextmanager
-def flying(autopilot: Autopilot, kind: str) -> Iterator[tuple[SimulatedVehicle, str]]:
-    """A simulated vehicle on a socket, and the address for MAVSDK."""
-    vehicle, is_over = SimulatedVehicle(autopilot, PointMass(), ORIGIN, is_ready=True), threading.Event()
+def served(vehicle: SimulatedVehicle, kind: str, speedup: float = 1.0) -> Iterator[str]:
+    """A simulated vehicle on a socket: the address for MAVSDK."""
+    is_over = threading.Event()
     with closing(open_link(f"{kind}:127.0.0.1:0", vehicle.address)) as link:
-        server = threading.Thread(target=serve, args=(vehicle, [link]), kwargs={"stop": is_over.is_set})
+        server = threading.Thread(target=serve, args=(vehicle, [link], speedup, is_over.is_set))
         server.start()
         port = link.channel.port  # type: ignore[attr-defined]
         try:
-            yield vehicle, f"udpout://127.0.0.1:{port}" if kind == "udp" else f"tcpout://127.0.0.1:{port}"
+            yield f"udpout://127.0.0.1:{port}" if kind == "udp" else f"tcpout://127.0.0.1:{port}"
         finally:
             is_over.set()
             server.join()
@@ -91,7 +95,8 @@ def test_mavsdks_client_uploads_to_our_vehicle_and_reads_back_the_same(autopilot
         MissionType.FENCE: to_wire(fence_items(FENCES), autopilot, MissionType.FENCE),
         MissionType.RALLY: to_wire(RALLY, autopilot, MissionType.RALLY),
     }
-    with flying(autopilot, kind) as (vehicle, url), software(mavsdk.ComponentType.GROUND_STATION, url) as sdk:
+    vehicle = standing(autopilot)
+    with served(vehicle, kind) as url, software(mavsdk.ComponentType.GROUND_STATION, url) as sdk:
         system = sdk.first_autopilot(WAIT_S)
         assert system is not None
         plugin = mission_raw.MissionRaw(system)
@@ -113,7 +118,8 @@ def test_mavsdks_client_uploads_to_our_vehicle_and_reads_back_the_same(autopilot
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_what_mavsdk_uploaded_our_client_reads_and_the_other_way_round(autopilot: Autopilot) -> None:
     items = to_wire(planned(autopilot, 40), autopilot)
-    with flying(autopilot, "tcpin") as (vehicle, url), software(mavsdk.ComponentType.GROUND_STATION, url) as sdk:
+    vehicle = standing(autopilot)
+    with served(vehicle, "tcpin") as url, software(mavsdk.ComponentType.GROUND_STATION, url) as sdk:
         system = sdk.first_autopilot(WAIT_S)
         assert system is not None
         plugin = mission_raw.MissionRaw(system)
@@ -132,7 +138,7 @@ def test_mavsdk_reads_the_fences_of_our_plan_as_the_items_that_we_upload(tmp_pat
     polygons = (((22.1, 114.1), (22.2, 114.1), (22.2, 114.2)), ((22.3, 114.3), (22.4, 114.3), (22.4, 114.4)))
     path = tmp_path / "m.plan"
     path.write_bytes(plan_json_bytes(planned(PX4), home, PX4, 5.0, HeightReference.ABOVE_TAKEOFF, polygons))
-    with flying(PX4, "udp") as (_, url), software(mavsdk.ComponentType.GROUND_STATION, url) as sdk:
+    with served(standing(PX4), "udp") as url, software(mavsdk.ComponentType.GROUND_STATION, url) as sdk:
         system = sdk.first_autopilot(WAIT_S)
         assert system is not None
         read = mission_raw.MissionRaw(system).import_qgroundcontrol_mission(str(path)).geofence_items

@@ -128,9 +128,6 @@ def test_heights_above_sea_and_above_home_lead_to_the_same_places(autopilot, ref
 @given(plan=plans())
 @settings(max_examples=3)
 def test_plans_anywhere_on_the_globe_are_flown_with_every_photo(autopilot: Autopilot, plan: Plan) -> None:
-    if autopilot is PX4 and plan.rules.settle_s < 1.0:
-        # Without a hold PX4 goes on from the acceptance radius: nothing that the vehicle could make good.
-        plan = replace(plan, rules=replace(plan.rules, settle_s=1.0))
     for mission in missions_from_plan(plan):
         check_photos(fly(plan, mission, autopilot), plan, mission, 0.35, 1.0)
 

@@ -1,0 +1,100 @@
+"""`report`: a real flight compared with its plan, from its logs or its photos."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from groundstation.services.flight_report import ReportedFlight
+
+EPILOG = """Photos are taken as the camera wrote them, with their metadata; folders in the folder are searched, too.
+They say where each was taken, not how the aircraft flew between them: distances on the way need a log.
+
+heights:
+  --heights auto      logs: above take-off. Photos: above the ellipsoid where RTK was fixed in all, else above take-off
+  --heights takeoff   above take-off, which is taken to be at the site's home
+  --heights absolute  above sea level or the ellipsoid, as good as the receiver
+
+examples:
+  report office.plan.json office.site.json --log flight.tlog -o office.flight.json
+  report office.plan.json office.site.json --log first.BIN --log second.BIN
+  report office.plan.json office.site.json --photos DCIM/100MEDIA -o office.flight.json
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "report",
+        help="report what a real flight covered, from its logs or photos",
+        description="Compare a flight with its plan: every view with its photo or the reason why there is none,\n"
+        "errors at the shutter, and the coverage that was reached.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("plan", type=Path, metavar="PLAN", help="plan file")
+    add("site", type=Path, metavar="SITE", help="site file")
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument(
+        "--log",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="flight log (.tlog, .BIN, .log, .ulg); once for each, in the order of flight",
+    )
+    source.add_argument("--photos", type=Path, metavar="DIR", help="folder of the photos that were taken")
+    add("-o", "--out", type=Path, metavar="FLIGHT", help="flight file to write (default: none)")
+    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="what heights count from")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read, compare and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.flight_report import report_files
+
+    reported = run_job(
+        "report",
+        lambda context: report_files(
+            options.plan, options.site, options.log, options.photos, options.out, options.heights, monitor=context
+        ),
+    )
+    if options.json:
+        print_json(_summary(reported, options.out))
+    else:
+        _print_text(reported, options)
+    return 0
+
+
+def _summary(reported: ReportedFlight, out: Path | None) -> dict[str, Any]:
+    import msgspec
+
+    from missions.flight.report_text import report_to_json
+
+    report = reported.flight.report
+    assert report is not None
+    return {
+        "flight": None if out is None else str(out),
+        **report_to_json(report),
+        "source_findings": msgspec.to_builtins(reported.findings),
+        "seconds": round(reported.seconds, 3),
+    }
+
+
+def _print_text(reported: ReportedFlight, options: argparse.Namespace) -> None:
+    from groundstation.cli.console import counted, print_findings, print_next
+    from missions.flight.report_text import report_text
+
+    flight = reported.flight
+    assert flight.report is not None
+    vehicles = ", ".join(dict.fromkeys(record.vehicle for record in flight.sorties))
+    print(f"flight:   {options.out or 'not written'} ({counted(len(flight.sorties), 'record')}, {vehicles})")
+    print(report_text(flight.report))
+    print_findings(reported.findings)
+    if options.out is not None and flight.report.summary.covered < flight.report.summary.covered_planned:
+        print_next("topup", options.out, options.plan, options.site, "-o", options.out.with_name("topup.plan.json"))

@@ -1,0 +1,30 @@
+"""Custom mode numbers of the two autopilots' flight modes: `data/modes.toml`."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from missions.mavlink.autopilots import Autopilot
+from planning.json_file import read_toml
+
+DATA_PATH = Path(__file__).parents[1] / "data" / "modes.toml"
+
+
+def px4_custom_mode(main: int, sub: int) -> int:
+    """PX4's custom mode: the main mode in bits 16 to 23, the sub mode in bits 24 to 31."""
+    return main << 16 | sub << 24
+
+
+def px4_main_and_sub(custom_mode: int) -> tuple[int, int]:
+    """Main and sub mode of a custom mode of PX4."""
+    return custom_mode >> 16 & 0xFF, custom_mode >> 24 & 0xFF
+
+
+@cache
+def mode_numbers(autopilot: Autopilot) -> dict[str, int]:
+    """Custom mode, as HEARTBEAT tells it, by name."""
+    written = read_toml(DATA_PATH, dict[str, dict[str, int]])[autopilot]
+    if autopilot is Autopilot.ARDUPILOT:
+        return written
+    return {name: px4_custom_mode(*divmod(number, 100)) for name, number in written.items()}

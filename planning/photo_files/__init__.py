@@ -1,0 +1,1 @@
+"""What photo files say of themselves: camera, time, position and angles, read without decoding a picture."""

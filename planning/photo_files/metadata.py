@@ -1,0 +1,300 @@
+"""One photo file as a record: what the camera and the aircraft wrote into it, in our units and frames.
+
+Names of XMP properties are those of DJI (lists in the manuals of the Zenmuse P1, Mavic 3 and Matrice 4 series), Parrot
+(developer.parrot.com, "Embedded Photo Metadata") and Skydio (support.skydio.com, "camera and metadata overview"). Autel
+writes DJI's names in a namespace of its own. Makers' namespaces vary between their own models, so that properties are
+found by their name.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from planning.frames import wrap_heading_deg
+from planning.photo_files.exif import Tag, Value, read_exif
+from planning.photo_files.jpeg import JpegHeader, read_header
+from planning.photo_files.record import RTK_FIXED, Dewarp, PhotoMetadata
+from planning.photo_files.xmp import Properties, read_xmp
+
+NORTH_DEG = 5.0
+"""An aircraft whose nose is this close to north may have a gimbal at exactly 0, 0, 0."""
+
+NEAR_NADIR_DEG = 45.0
+"""From straight down: where gimbals can swing through, and angles be told as rolled by 180."""
+
+MAX_TEXT = 1000
+"""Characters; the longest text of use is DewarpData with 150."""
+
+METRES_PER_DEG = 111_320.0
+"""Of latitude, to 0.5 %."""
+
+
+def read_photo(path: Path) -> PhotoMetadata:
+    """What a photo file says of itself; its picture is not decoded.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is no JPEG, or its header is damaged. A photo without any metadata is none of that.
+    """
+    return _metadata(path, read_header(path))
+
+
+def _metadata(path: Path, header: JpegHeader) -> PhotoMetadata:
+    tags = read_exif(header.exif or b"")
+    properties: Properties = {}
+    for packet in header.xmp:
+        properties.update({key: text for key, text in read_xmp(packet).items() if key not in properties})
+    xmp = _Xmp(properties)
+    values = dict(**_camera(tags, xmp), **_times(tags, xmp), **_place(tags, xmp), **_angles(xmp), **_receiver(xmp))
+    return PhotoMetadata(
+        path, header.width_px, header.height_px, header.is_complete, image_index=_index(path), **values
+    )
+
+
+class _Xmp:
+    """Properties by their name alone; where several namespaces have one, a drone maker's goes first."""
+
+    MAKERS = ("dji", "parrot", "skydio", "autel")
+
+    def __init__(self, properties: Properties) -> None:
+        self._texts: dict[str, str] = {}
+        is_maker = {key: any(maker in key[0].lower() for maker in self.MAKERS) for key in properties}
+        for key in sorted(properties, key=lambda key: not is_maker[key]):
+            self._texts.setdefault(key[1], properties[key])
+        self.is_skydio = any("skydio" in namespace for namespace, _ in properties)
+
+    def text(self, *names: str) -> str | None:
+        """The first of these properties that says something, without control characters and not without end."""
+        found = next((text for name in names if (text := self._texts.get(name))), None)
+        return None if found is None else "".join(c for c in found[:MAX_TEXT] if c.isprintable())
+
+    def number(self, *names: str, low: float = -1e6, high: float = 1e6) -> float | None:
+        """The first of these properties that is a number, with or without a sign or as a fraction, within a range."""
+        return next((n for name in names if (n := _number(self._texts.get(name), low, high)) is not None), None)
+
+    def angle_deg(self, *names: str) -> float | None:
+        """The first of these properties that is an angle."""
+        return self.number(*names, low=-360.0, high=360.0)
+
+
+def _number(text: str | None, low: float, high: float) -> float | None:
+    try:
+        above, _, below = (text or "").partition("/")
+        value = float(above) / float(below) if below else float(above)
+    except (ValueError, ZeroDivisionError):
+        return None
+    return value if low <= value <= high else None
+
+
+def _first(tags: dict[Tag, Value], tag: Tag, low: float, high: float) -> float | None:
+    """A tag's first number, within a range."""
+    value = tags.get(tag)
+    return None if value is None or isinstance(value, str) or not low <= value[0] <= high else value[0]
+
+
+def _text(tags: dict[Tag, Value], tag: Tag) -> str | None:
+    value = tags.get(tag)
+    return value if isinstance(value, str) and value else None
+
+
+def _index(path: Path) -> int | None:
+    """The count in names such as DJI_0007.JPG and DJI_20230707093934_0007_T.JPG."""
+    count = re.search(r"(?<!\d)(\d{3,8})(?:_[A-Za-z]{1,8})?$", path.stem, re.ASCII)
+    return int(count[1]) if count else None
+
+
+def _camera(tags: dict[Tag, Value], xmp: _Xmp) -> dict[str, Any]:
+    iso = _first(tags, Tag.ISO, 1, 1e7)
+    orientation = _first(tags, Tag.ORIENTATION, 1, 8)
+    center = xmp.number("CalibratedOpticalCenterX"), xmp.number("CalibratedOpticalCenterY")
+    flag = xmp.text("DewarpFlag")
+    return {
+        "orientation": None if orientation is None else int(orientation),
+        "make": _text(tags, Tag.MAKE) or xmp.text("Make"),
+        "model": _text(tags, Tag.MODEL) or xmp.text("Model"),
+        "drone_model": xmp.text("DroneModel"),
+        "camera_serial": xmp.text("CameraSerialNumber") or _text(tags, Tag.BODY_SERIAL_NUMBER),
+        "drone_serial": xmp.text("DroneSerialNumber", "SerialNumber"),
+        "image_source": xmp.text("ImageSource"),
+        "exposure_s": _first(tags, Tag.EXPOSURE_TIME, 1e-7, 3600.0),
+        "f_number": _first(tags, Tag.F_NUMBER, 0.01, 1000.0),
+        "iso": None if iso is None else int(iso),
+        "focal_length_mm": _first(tags, Tag.FOCAL_LENGTH, 0.1, 10_000.0),
+        "focal_length_35mm_mm": _first(tags, Tag.FOCAL_LENGTH_35MM, 0.1, 100_000.0),
+        "calibrated_focal_length_px": xmp.number("CalibratedFocalLength", "CalibratedFocalLength/X", low=1.0),
+        "optical_center_px": None if center[0] is None or center[1] is None else center,
+        "dewarp": _dewarp(xmp.text("DewarpData")),
+        "is_dewarped": None if flag not in ("0", "1") else flag == "1",
+    }
+
+
+def _dewarp(text: str | None) -> Dewarp | None:
+    """DJI's `date;fx,fy,cx,cy,k1,k2,p1,p2,k3`; zeros stand in cameras that were not calibrated."""
+    values = [_number(part, -1e9, 1e9) for part in (text or "").rpartition(";")[2].split(",")]
+    known = [value for value in values if value is not None]
+    return Dewarp(*known) if len(values) == len(known) == 9 and known[0] > 0.0 and known[1] > 0.0 else None
+
+
+def _times(tags: dict[Tag, Value], xmp: _Xmp) -> dict[str, Any]:
+    taken_at = _clock(_text(tags, Tag.DATE_TIME_ORIGINAL))
+    fraction = _text(tags, Tag.SUB_SEC_TIME_ORIGINAL) or ""
+    if taken_at is not None and fraction.isascii() and fraction.isdigit():
+        taken_at = taken_at.replace(microsecond=int(f"{fraction:0<6.6}"))
+    created = _clock(xmp.text("DateTimeOriginal", "CreateDate"))
+    offset = _clock(f"2000-01-01T00:00:00{_text(tags, Tag.OFFSET_TIME_ORIGINAL) or ''}")
+    zone = next((time.utcoffset() for time in (offset, created) if time is not None and time.tzinfo is not None), None)
+    taken_at = taken_at or created
+    exposed_at = _clock(xmp.text("UTCAtExposure"))
+    return {
+        "taken_at": None if taken_at is None else taken_at.replace(tzinfo=None),
+        "utc_offset_s": None if zone is None else zone.total_seconds(),
+        "exposed_at": None if exposed_at is None else exposed_at.replace(tzinfo=UTC),
+    }
+
+
+def _clock(text: str | None) -> datetime | None:
+    """A time in EXIF's or ISO's way of writing; None where it is none, as in clocks never set, or a date alone."""
+    if text is None or len(text) <= len("2024-05-01"):
+        return None
+    try:
+        return datetime.fromisoformat(re.sub(r"^(\d{4}):(\d\d):(\d\d)", r"\1-\2-\3", text))
+    except ValueError:
+        return None
+
+
+def _place(tags: dict[Tag, Value], xmp: _Xmp) -> dict[str, Any]:
+    exif, drone = exif_position_deg(tags), _drone_position_deg(xmp)
+    position = exif or drone
+    apart_m = None
+    if exif is not None and drone is not None:
+        east = math.remainder(exif[1] - drone[1], 360.0) * math.cos(math.radians(exif[0]))
+        apart_m = math.hypot(exif[0] - drone[0], east) * METRES_PER_DEG
+    altitude_m, is_ellipsoidal = _altitude_m(tags, xmp)
+    return {
+        "lat_deg": None if position is None else position[0],
+        "lon_deg": None if position is None else position[1],
+        "position_disagreement_m": apart_m,
+        "gps_status": xmp.text("GpsStatus"),
+        "height_ellipsoid_m": altitude_m if is_ellipsoidal else None,
+        "altitude_amsl_m": None if is_ellipsoidal else altitude_m,
+        "height_above_takeoff_m": xmp.number("RelativeAltitude", low=-1e4, high=1e5),
+    }
+
+
+def exif_position_deg(tags: dict[Tag, Value]) -> tuple[float, float] | None:
+    """Latitude and longitude of EXIF, degrees; None where they are missing, impossible, or 0, 0 for want of a fix."""
+    found = []
+    for tag, reference, negative in (
+        (Tag.GPS_LATITUDE, Tag.GPS_LATITUDE_REF, "S"),
+        (Tag.GPS_LONGITUDE, Tag.GPS_LONGITUDE_REF, "W"),
+    ):
+        value, side = tags.get(tag), _text(tags, reference) or ""
+        if value is None or isinstance(value, str):
+            return None
+        degrees, minutes, seconds = (*value, 0.0, 0.0)[:3]
+        size = degrees + (minutes + seconds / 60.0) / 60.0
+        found.append(-size if side.upper().startswith(negative) else size)
+    return _on_globe(found[0], found[1])
+
+
+def exif_altitude_m(tags: dict[Tag, Value]) -> float | None:
+    """EXIF's altitude, negative where its reference says below."""
+    size = _first(tags, Tag.GPS_ALTITUDE, -1e5, 1e5)
+    below = _first(tags, Tag.GPS_ALTITUDE_REF, 0, 3) in (1.0, 3.0)
+    return None if size is None else -abs(size) if below else size
+
+
+def _drone_position_deg(xmp: _Xmp) -> tuple[float, float] | None:
+    """XMP's position; `GpsLongtitude` is how some of DJI's cameras spell it."""
+    lat = xmp.number("GpsLatitude", "Latitude")
+    lon = xmp.number("GpsLongitude", "GpsLongtitude", "Longitude")
+    return None if lat is None or lon is None else _on_globe(lat, lon)
+
+
+def _on_globe(lat_deg: float, lon_deg: float) -> tuple[float, float] | None:
+    is_place = abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and (abs(lat_deg) > 1e-6 or abs(lon_deg) > 1e-6)
+    return (lat_deg, lon_deg) if is_place else None
+
+
+def _altitude_m(tags: dict[Tag, Value], xmp: _Xmp) -> tuple[float | None, bool]:
+    """The absolute altitude, and whether it counts from the ellipsoid.
+
+    DJI's manuals call AbsoluteAltitude a geodetic height wherever they list AltitudeType beside it; in the samples with
+    either type, and known terrain, it is one. Without that property it is one if RTK was fixed, else EXIF's reference
+    counts. Skydio's altitudes are ellipsoidal although EXIF's reference there says sea level.
+    """
+    altitude_m = xmp.number("AbsoluteAltitude", low=-1e4, high=1e5)
+    if altitude_m is None:
+        altitude_m = exif_altitude_m(tags)
+    is_ellipsoidal = (
+        xmp.text("AltitudeType") is not None
+        or xmp.number("RtkFlag") == RTK_FIXED
+        or xmp.is_skydio
+        or _first(tags, Tag.GPS_ALTITUDE_REF, 2, 3) is not None
+    )
+    return altitude_m, is_ellipsoidal
+
+
+def _angles(xmp: _Xmp) -> dict[str, Any]:
+    flight = xmp.angle_deg("FlightYawDegree"), xmp.angle_deg("FlightPitchDegree"), xmp.angle_deg("FlightRollDegree")
+    gimbal = upright(
+        xmp.angle_deg("GimbalYawDegree", "CameraYawDegree", "CameraOrientationNED/Yaw"),
+        xmp.angle_deg("GimbalPitchDegree", "CameraPitchDegree", "CameraOrientationNED/Pitch"),
+        xmp.angle_deg("GimbalRollDegree", "CameraRollDegree", "CameraOrientationNED/Roll"),
+    )
+    heading = flight[0]
+    if gimbal == (0.0, 0.0, 0.0) and (heading is None or flight == (0.0, 0.0, 0.0) or abs(heading) > NORTH_DEG):
+        gimbal = (None, None, None)  # all zero is what stands there when nothing was recorded
+    return {
+        "gimbal_heading_deg": gimbal[0],
+        "gimbal_pitch_deg": gimbal[1],
+        "gimbal_roll_deg": gimbal[2],
+        "flight_heading_deg": None if heading is None else wrap_heading_deg(heading),
+        "flight_pitch_deg": flight[1],
+        "flight_roll_deg": flight[2],
+    }
+
+
+def upright(
+    yaw_deg: float | None, pitch_deg: float | None, roll_deg: float | None
+) -> tuple[float | None, float | None, float | None]:
+    """The same orientation with a roll within 90 degrees, where a gimbal swung through the vertical.
+
+    Turning by yaw, pitch and roll is turning by yaw + 180, 180 - pitch and roll + 180. A camera that looks elsewhere
+    than down is mounted upside down if it is rolled so: its heading and pitch stand as they are.
+    """
+    if yaw_deg is None or pitch_deg is None or roll_deg is None:
+        return (None if yaw_deg is None else wrap_heading_deg(yaw_deg)), pitch_deg, roll_deg
+    roll_deg = wrap_heading_deg(roll_deg)
+    if abs(roll_deg) > 90.0 and abs(pitch_deg + 90.0) <= NEAR_NADIR_DEG:
+        return wrap_heading_deg(yaw_deg + 180.0), -180.0 - pitch_deg, wrap_heading_deg(roll_deg + 180.0)
+    return wrap_heading_deg(yaw_deg), pitch_deg, roll_deg
+
+
+def _receiver(xmp: _Xmp) -> dict[str, Any]:
+    """Speeds, RTK and the range finder."""
+    flag = xmp.number("RtkFlag", low=0, high=1000)
+    range_m = xmp.number("LRFTargetDistance", low=1e-3)
+    spot = None
+    if range_m is not None:
+        lat, lon = xmp.number("LRFTargetLat"), xmp.number("LRFTargetLon")
+        spot = None if lat is None or lon is None else _on_globe(lat, lon)
+    return {
+        "speed_north_m_s": xmp.number("FlightXSpeed", low=-200.0, high=200.0),
+        "speed_east_m_s": xmp.number("FlightYSpeed", low=-200.0, high=200.0),
+        "speed_vertical_m_s": xmp.number("FlightZSpeed", low=-200.0, high=200.0),
+        "rtk_flag": None if flag is None else int(flag),
+        "rtk_std_lon_m": xmp.number("RtkStdLon", low=0.0),
+        "rtk_std_lat_m": xmp.number("RtkStdLat", low=0.0),
+        "rtk_std_height_m": xmp.number("RtkStdHgt", low=0.0),
+        "rtk_age_s": xmp.number("RtkDiffAge", low=0.0),
+        "range_m": range_m,
+        "range_lat_deg": None if spot is None else spot[0],
+        "range_lon_deg": None if spot is None else spot[1],
+        "range_height_m": None if range_m is None else xmp.number("LRFTargetAbsAlt"),
+    }
