@@ -16,6 +16,7 @@ from groundstation.services.flying_truth import TruthRecorder
 from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.mission_files import within_item_limit
 from groundstation.services.project_file import check_not_index
+from groundstation.services.signing import link_signer
 from groundstation.vehicle.conduct import conduct
 from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.flight_run import FlightRun
@@ -66,6 +67,8 @@ class FlightWish:
         At a link: set the vehicle's parameters, else only tell what differs.
     log_folder
         For telemetry logs, which a flight over a link always has; None in the simulation.
+    is_signed
+        At a link: sign with the key of this computer, and listen to nobody who does not.
     """
 
     link: str = SIMULATED
@@ -77,6 +80,7 @@ class FlightWish:
     sets_parameters: bool = False
     needs_rtk: bool = False
     log_folder: Path | None = None
+    is_signed: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -273,7 +277,10 @@ class _Case:
         if wish.log_folder is None:
             raise ValueError("log_folder: a flight over a link is always logged")
         options = RunOptions(autopilot=wish.autopilot, sets_parameters=wish.sets_parameters, needs_rtk=wish.needs_rtk)
-        run, outcome, log = fly_link(orders, wish.link, options, wish.log_folder, self.show, monitor=self.monitor)
+        signer = link_signer() if wish.is_signed else None
+        run, outcome, log = fly_link(
+            orders, wish.link, options, wish.log_folder, self.show, signer=signer, monitor=self.monitor
+        )
         found = run.state.autopilot or self.autopilot
         sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), outcome.notes, log)
         return outcome, outcome.record, sortie

@@ -12,6 +12,7 @@ from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.run_records import RunOptions, RunOutcome, RunView
 from groundstation.vehicle.telemetry_log import TelemetryLog, new_log_path
 from missions.mavlink.link import ChannelLink, open_link
+from missions.mavlink.signing import Signer
 from planning.progress import QUIET, Monitor
 
 
@@ -22,6 +23,7 @@ def fly_link(
     log_folder: Path,
     show: Callable[[RunView], None] | None = None,
     started: Callable[[FlightRun], None] | None = None,
+    signer: Signer | None = None,
     monitor: Monitor = QUIET,
 ) -> tuple[FlightRun, RunOutcome, Path]:
     """Fly a sortie: the run as it ended, how it ended, and its telemetry log.
@@ -30,6 +32,8 @@ def fly_link(
     ----------
     started
         Called with the run before it begins: whoever keeps it may give it the pilot's orders from any thread.
+    signer
+        Signs what is sent, and lets nothing in that the vehicle did not sign; None: unsigned.
 
     Raises
     ------
@@ -42,7 +46,7 @@ def fly_link(
     log = TelemetryLog(new_log_path(log_folder, time.time(), f"sortie-{orders.number}"))
 
     def opened() -> ChannelLink:
-        link = open_link(url)
+        link = open_link(url, signer=signer)
         link.observe(lambda frame, _sent, _time_s: log.write(frame, time.time()))
         return link
 

@@ -88,6 +88,12 @@ class ChannelLink:
     def __post_init__(self) -> None:
         self._encoder = Encoder(self.address, self.signer)
 
+    def sign_with(self, signer: Signer | None) -> None:
+        """Sign, and want signatures, from now on; None: no longer. Between messages, in the thread that receives."""
+        with self._sending:
+            self.signer, self._encoder = signer, Encoder(self.address, signer)
+            self._decoders.clear()
+
     def observe(self, observer: FrameObserver) -> None:
         """Show every frame that is sent or received, from now on, in the thread that sends or receives it."""
         self._observers.append(observer)

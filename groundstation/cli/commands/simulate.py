@@ -64,6 +64,7 @@ def add_parser(subparsers: Any) -> None:
     add("--sitl", type=Path, metavar="BINARY", help="start this arducopter and fly it")
     add("--sitl-defaults", type=Path, metavar="PARM", help="its parameters, such as ArduPilot's copter.parm")
     add("--take-off", action="store_true", help="let the vehicle at the link take off, wherever it is")
+    add("--signed", action="store_true", help="sign the link with this computer's key ('signing set')")
     add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -115,6 +116,8 @@ def _wish(options: argparse.Namespace) -> FlightWish:
     is_simulated = options.link == SIMULATED
     if not is_simulated:
         _check_link(options)
+    elif options.signed:
+        raise InputError("--signed: is for --link URL; the simulation in this program has no link to listen to")
     wind_m_s = options.wind
     if wind_m_s is None:
         from groundstation.services.given_files import read_given_plan
@@ -129,6 +132,7 @@ def _wish(options: argparse.Namespace) -> FlightWish:
         speedup=options.speedup,
         sets_parameters=not is_simulated,
         log_folder=None if is_simulated else (options.logs or options.out.parent / "logs"),
+        is_signed=options.signed,
     )
 
 
