@@ -16,7 +16,6 @@ from groundstation.services.flying_truth import TruthRecorder
 from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.mission_files import within_item_limit
 from groundstation.services.project_file import check_not_index
-from groundstation.services.signing import link_signer
 from groundstation.vehicle.conduct import conduct
 from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.flight_run import FlightRun
@@ -28,6 +27,7 @@ from missions.flight.flight_file import Flight, flight_of, write_flight
 from missions.flight.record import FlightEvent, FlightRecord
 from missions.flight.report import report_flight
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.signing import Signer
 from missions.simulator.build import make_airframe
 from missions.simulator.effects.link_loss import through_air
 from missions.simulator.scene import Conditions
@@ -67,8 +67,8 @@ class FlightWish:
         At a link: set the vehicle's parameters, else only tell what differs.
     log_folder
         For telemetry logs, which a flight over a link always has; None in the simulation.
-    is_signed
-        At a link: sign with the key of this computer, and listen to nobody who does not.
+    signer
+        At a link: signs what is sent, and lets nothing in that the vehicle did not sign; None: unsigned.
     """
 
     link: str = SIMULATED
@@ -80,7 +80,7 @@ class FlightWish:
     sets_parameters: bool = False
     needs_rtk: bool = False
     log_folder: Path | None = None
-    is_signed: bool = False
+    signer: Signer | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -277,9 +277,8 @@ class _Case:
         if wish.log_folder is None:
             raise ValueError("log_folder: a flight over a link is always logged")
         options = RunOptions(autopilot=wish.autopilot, sets_parameters=wish.sets_parameters, needs_rtk=wish.needs_rtk)
-        signer = link_signer() if wish.is_signed else None
         run, outcome, log = fly_link(
-            orders, wish.link, options, wish.log_folder, self.show, signer=signer, monitor=self.monitor
+            orders, wish.link, options, wish.log_folder, self.show, signer=wish.signer, monitor=self.monitor
         )
         found = run.state.autopilot or self.autopilot
         sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), outcome.notes, log)

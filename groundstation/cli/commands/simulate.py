@@ -106,6 +106,7 @@ def _battery_change(number: int) -> None:
 
 def _wish(options: argparse.Namespace) -> FlightWish:
     from groundstation.services.flying import SIMULATED, FlightWish
+    from groundstation.services.signing import link_signer
     from missions.mavlink.autopilots import Autopilot
     from missions.simulator.scene import Conditions
 
@@ -132,7 +133,7 @@ def _wish(options: argparse.Namespace) -> FlightWish:
         speedup=options.speedup,
         sets_parameters=not is_simulated,
         log_folder=None if is_simulated else (options.logs or options.out.parent / "logs"),
-        is_signed=options.signed,
+        signer=link_signer() if options.signed else None,
     )
 
 
