@@ -27,12 +27,13 @@ def phrasebook() -> Phrasebook:
         parts,
         plan,
         project,
+        report,
         site,
         site_import,
         stages,
     )
 
-    tables = (dji, fly, insight, mission, parts, plan, project, site, site_import, stages)
+    tables = (dji, fly, insight, mission, parts, plan, project, report, site, site_import, stages)
     return Phrasebook(source for table in tables for source in table.SENTENCES)
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from groundstation.services.flying_truth import TruthRecorder
+from groundstation.services.live_battery import with_charge
 from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.recorder import Recorder
 from missions.flight.record import FlightRecord
@@ -127,6 +128,8 @@ class Simulation:
     ----------
     wishes
         On, off or auto by the name of an effect.
+    charge
+        Of the battery when the link is opened, 1 full to 0 empty.
     seed
         The same seed gives the same errors.
     """
@@ -137,6 +140,7 @@ class Simulation:
     speed_up: float = 1.0
     conditions: Conditions = CALM
     wishes: Mapping[str, Wish] = field(default_factory=dict)
+    charge: float = 1.0
     seed: int = 0
     is_simulated: bool = True
 
@@ -155,7 +159,8 @@ class Simulation:
         airframe, decisions = make_airframe(
             self.plan, self.site_model, sortie, conditions=self.conditions, wishes=self.wishes, seed=self.seed
         )
-        vehicle = SampledVehicle(self.autopilot, airframe, self.site_model.site.origin)
+        flown = with_charge(airframe, self.charge, decisions)
+        vehicle = SampledVehicle(self.autopilot, flown, self.site_model.site.origin)
         ground, air = memory_pair(vehicle=vehicle.address, clock=clock)
         ground.observe(observe)
         link = through_air(ground, decisions, self.conditions, lambda: vehicle.now_s, self.seed)

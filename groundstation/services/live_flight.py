@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from groundstation.services.live_connection import Connection, OpenedLink
+from groundstation.services.live_connection import Connection
 from groundstation.services.live_coverage import LiveCoverage
 from groundstation.services.live_events import (
     Answered,
@@ -30,19 +30,19 @@ from groundstation.services.live_events import (
     LogProblem,
     Request,
 )
+from groundstation.services.live_link import WAIT_S, LoggedLink
 from groundstation.services.live_listener import Listener
 from groundstation.services.live_news import FlightNews
 from groundstation.services.live_readouts import BEFORE_TAKE_OFF, allowed_requests, link_state, readouts
-from groundstation.services.live_record import keep_flight, open_log
+from groundstation.services.live_record import FlightKeeper
 from groundstation.services.live_requests import DONE, ORDERS, REACHED, REFUSALS
-from groundstation.services.live_sortie import USUAL, FlightSettings, LiveSortie
-from groundstation.vehicle.duration import items_duration_s
+from groundstation.services.live_settings import USUAL, FlightSettings
+from groundstation.services.live_sortie import LiveSortie
 from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
 from groundstation.vehicle.run_records import Phase, RunOptions
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.telemetry import LocalFrame
-from groundstation.vehicle.telemetry_log import TelemetryLog
 from groundstation.vehicle.watch import PHOTO_LATE_S, Watch
 from missions.flight.record import FlightRecord
 from missions.mavlink.autopilots import Autopilot
@@ -52,12 +52,6 @@ from planning.progress import Clock
 
 VIEW_EVERY_S = 0.1
 """Shortest time between two views, unless what a pilot reacts to has changed."""
-
-WAIT_S = 0.05
-"""How soon a request is taken up."""
-
-RETRY_S = 1.0
-"""Pause before a link that broke is opened again."""
 
 MAX_BATCH = 200
 """Messages taken before the flight is shown again: none is behind by more than some milliseconds."""
@@ -90,17 +84,13 @@ class LiveFlight:
         clock: Clock = time.perf_counter,
         unix_clock: Clock = time.time,
     ) -> None:
-        self._connection, self._publish, self._folder = connection, publish, folder
-        self._settings, self._clock, self._unix_clock = settings, clock, unix_clock
-        self._asked: queue.SimpleQueue[Request | LiveSortie] = queue.SimpleQueue()
+        self._connection, self._publish = connection, publish
+        self._settings, self._clock = settings, clock
+        self._asked: queue.SimpleQueue[Request | LiveSortie | FlightSettings] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._live, name="live-flight", daemon=True)
         self._is_closing = False
-        self._opened: OpenedLink | None = None
-        self._retry_s = 0.0
-        self._log: TelemetryLog | None = None
-        self._log_problem = ""
-        self._records = flown
-        self._expected_s: dict[int, float] = {}
+        self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock)
+        self._keeper = FlightKeeper(sortie.case, folder, flown)
         self._link = LinkState.OPENING
         self._view: LiveView | None = None
         self._shown_s = -math.inf
@@ -128,6 +118,10 @@ class LiveFlight:
         """Fly another sortie of the same plan next; passed over while one is under way."""
         self._asked.put(sortie)
 
+    def set_settings(self, settings: FlightSettings) -> None:
+        """The pilot decided otherwise; parameters are set with the next upload."""
+        self._asked.put(settings)
+
     def close(self, timeout_s: float = 10.0) -> bool:
         """Disconnect, keep what was flown; True where that was done in time. The aircraft goes on with what it does."""
         self._is_closing = True
@@ -144,11 +138,9 @@ class LiveFlight:
 
     def _live(self) -> None:
         problem = ""
-        self._log, self._log_problem = open_log(self._folder, self._unix_clock())
-        if self._log_problem:
-            self._publish(LogProblem(self._log_problem))
+        self._wire.open_log()
         try:
-            self._open()
+            self._wire.open(self._sortie.orders)
             while not self._is_closing:
                 self._take_requests()
                 self._serve()
@@ -160,46 +152,25 @@ class LiveFlight:
             raise
         finally:
             self._keep_unfinished()
-            if self._opened is not None:
-                self._opened.link.close()
-            if self._log is not None:
-                self._log.close()
+            self._wire.close()
             self._say_link(LinkState.CLOSED, problem)
-
-    def _open(self) -> None:
-        self._opened = self._connection.open(self._sortie.orders, self._clock, self._frame_passed)
-
-    def _frame_passed(self, frame: bytes, _is_sent: bool, _time_s: float) -> None:
-        if self._log is None:
-            return
-        self._log.write(frame, self._unix_clock())
-        if self._log.problem != self._log_problem:
-            self._log_problem = self._log.problem
-            if self._log_problem:
-                self._publish(LogProblem(self._log_problem))
 
     def _serve(self) -> None:
         """Take what came in, and let time pass; a broken link is opened again."""
         try:
-            if self._opened is None:
-                time.sleep(WAIT_S)
-                if self._clock() >= self._retry_s:
-                    self._open()
+            if self._wire.opened is None:
+                self._wire.open_again(self._sortie.orders)
             for message in self._exchange():
-                if self._opened is not None:
-                    self._opened.link.send(message)
+                self._wire.send(message)
         except LinkError as error:
-            self._retry_s = self._clock() + RETRY_S
-            if self._opened is not None:
-                self._opened.link.close()
-                self._opened = None
+            if self._wire.broke():
                 self._say_link(LinkState.LOST, str(error))
 
     def _exchange(self) -> Iterator[Message]:
         """What the machine wants to be sent, from what was received and the time; without a link only time passes."""
         wait_s = WAIT_S
         for _ in range(MAX_BATCH):
-            received = None if self._opened is None else self._opened.link.receive(wait_s)
+            received = self._wire.receive(wait_s)
             if received is None:
                 break
             wait_s = 0.0
@@ -215,13 +186,20 @@ class LiveFlight:
     def _take_requests(self) -> None:
         while not self._asked.empty():
             asked = self._asked.get()
-            if isinstance(asked, LiveSortie):
+            if isinstance(asked, FlightSettings):
+                self._settle(asked)
+            elif isinstance(asked, LiveSortie):
                 if self._run is None or self._run.phase in BEFORE_TAKE_OFF:
                     self._put_in_hand(asked, self._machine.state)
             elif asked not in self._now().may:
                 self._publish(Answered(asked, False, REFUSALS[asked]))
             else:
                 self._do(asked)
+
+    def _settle(self, settings: FlightSettings) -> None:
+        self._settings = settings
+        if self._run is not None:
+            self._run.options = replace(self._run.options, needs_rtk=settings.needs_rtk)
 
     def _do(self, request: Request) -> None:
         if request is Request.DISCONNECT:
@@ -249,8 +227,7 @@ class LiveFlight:
         self._news.begin()
         self._coverage.add_sortie(self._sortie.viewpoint_ids)
         for message in run.start(self._clock()):
-            if self._opened is not None:
-                self._opened.link.send(message)
+            self._wire.send(message)
 
     # What has happened
 
@@ -275,7 +252,7 @@ class LiveFlight:
             self._publish(FlightChanged(self._view))
 
     def _notice_link(self) -> None:
-        link = link_state(self._machine.state, self._clock(), is_open=self._opened is not None)
+        link = link_state(self._machine.state, self._clock(), is_open=self._wire.opened is not None)
         if link is not self._link:
             text = "the vehicle is heard again" if self._link is LinkState.LOST else ""
             self._say_link(link, text if link is LinkState.ALIVE else "")
@@ -300,21 +277,10 @@ class LiveFlight:
 
     def _end_flight(self, run: FlightRun, record: FlightRecord | None, error: GroundStationError | None) -> None:
         """Keep what was flown, and tell."""
-        number = run.orders.number
         if record is None:
-            self._publish(FlightEnded(number, error, None, None, None))
-            return
-        opened, orders = self._opened, run.orders
-        if opened is not None and opened.simulated is not None and run.recorder is not None:
-            true = opened.simulated.true_record(run.recorder, orders)
-            record = replace(record if true is None else true, vehicle=record.vehicle, effects=opened.effects)
-        self._records = (*self._records, record)
-        autopilot = run.state.autopilot or Autopilot.ARDUPILOT
-        self._expected_s = {**self._expected_s, number: items_duration_s(orders, autopilot)}
-        name = f"flight-{self._unix_clock():.0f}" if self._log is None else self._log.path.stem
-        path = self._folder / f"{name}.json"
-        report, kept, problem = keep_flight(self._sortie.case, self._records, self._expected_s, path)
-        self._publish(FlightEnded(number, error, record, report, kept, problem))
+            self._publish(FlightEnded(run.orders.number, error, None, None, None))
+        else:
+            self._publish(self._keeper.ended(run, record, error, self._wire.opened, self._wire.name))
 
     def _keep_unfinished(self) -> None:
         """Keep what was flown of a sortie that is not over."""
@@ -345,7 +311,7 @@ class LiveFlight:
         orders, on_board = self._sortie.orders, OnBoard() if run is None else run.on_board
         checks = preflight_checks(state, orders, on_board, now_s, needs_rtk=self._settings.needs_rtk)
         phase, watch = (None, Watch()) if run is None else (run.phase, run.watch)
-        link = link_state(state, now_s, is_open=self._opened is not None)
+        link = link_state(state, now_s, is_open=self._wire.opened is not None)
         missing = [view_id for view_id, since_s in watch.passed_s if now_s - since_s > PHOTO_LATE_S]
         return LiveView(
             link=link,

@@ -6,14 +6,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from groundstation.services.live_connection import OpenedLink
+from groundstation.services.live_events import FlightEnded
 from groundstation.services.settings import data_folder
+from groundstation.vehicle.duration import items_duration_s
+from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.telemetry_log import TelemetryLog, new_log_path
 from missions.flight.flight_file import flight_of, write_flight
 from missions.flight.outcome import FlightReport
 from missions.flight.record import FlightRecord
 from missions.flight.report import report_case
+from missions.mavlink.autopilots import Autopilot
 from planning.checks.case import Case
-from planning.errors import InputError
+from planning.errors import GroundStationError, InputError
 
 FLIGHTS = "flights"
 """Folder of a project, or of the user's data where there is no project."""
@@ -33,6 +38,43 @@ def open_log(folder: Path, unix_time_s: float) -> tuple[TelemetryLog | None, str
         except InputError as error:
             problem = problem or str(error)
     return None, problem
+
+
+class FlightKeeper:
+    """Keeps the sorties of a plan as they end, each time with the report on all of them.
+
+    Parameters
+    ----------
+    records
+        Of the same plan from before.
+    """
+
+    def __init__(self, case: Case, folder: Path, records: tuple[FlightRecord, ...]) -> None:
+        self._case, self._folder, self._records = case, folder, records
+        self._expected_s: dict[int, float] = {}
+
+    def ended(
+        self,
+        run: FlightRun,
+        record: FlightRecord,
+        error: GroundStationError | None,
+        opened: OpenedLink | None,
+        name: str,
+    ) -> FlightEnded:
+        """A sortie is over: write what was flown, under this name.
+
+        A simulated one is recorded as it truly was.
+        """
+        orders = run.orders
+        if opened is not None and opened.simulated is not None and run.recorder is not None:
+            true = opened.simulated.true_record(run.recorder, orders)
+            record = replace(record if true is None else true, vehicle=record.vehicle, effects=opened.effects)
+        self._records = (*self._records, record)
+        autopilot = run.state.autopilot or Autopilot.ARDUPILOT
+        self._expected_s[orders.number] = items_duration_s(orders, autopilot)
+        path = self._folder / f"{name}.json"
+        report, kept, problem = keep_flight(self._case, self._records, self._expected_s, path)
+        return FlightEnded(orders.number, error, record, report, kept, problem)
 
 
 def keep_flight(

@@ -18,7 +18,7 @@ from planning.errors import MissionError
 from planning.findings import Severity
 from planning.plan import Plan
 from planning.progress import QUIET, Monitor
-from planning.site import SiteModel
+from planning.site import Site, SiteModel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,23 +34,9 @@ class LiveSortie:
         return self.case.plan.sorties[self.orders.number - 1].viewpoint_ids
 
 
-@dataclass(frozen=True, slots=True)
-class FlightSettings:
-    """What the pilot chose.
-
-    Parameters
-    ----------
-    needs_rtk
-        Do not start without RTK, and warn when it is lost.
-    sets_parameters
-        Set the vehicle's parameters as the plan needs them; always for the embedded simulation.
-    """
-
-    needs_rtk: bool = False
-    sets_parameters: bool = False
-
-
-USUAL = FlightSettings()
+def is_same_place(one: Site, other: Site) -> bool:
+    """Whether what belongs to one site, such as a track or coverage, can be shown on the other."""
+    return one.origin == other.origin and one.n_panels == other.n_panels
 
 
 def prepare_sortie(

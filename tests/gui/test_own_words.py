@@ -11,7 +11,19 @@ from PySide6.QtCore import QTranslator
 from groundstation.gui import sentences
 from groundstation.gui.languages import FOLDER
 from groundstation.gui.own_words import own_words, phrasebook
-from groundstation.gui.sentences import dji, fly, insight, mission, parts, plan, project, site, site_import, stages
+from groundstation.gui.sentences import (
+    dji,
+    fly,
+    insight,
+    mission,
+    parts,
+    plan,
+    project,
+    report,
+    site,
+    site_import,
+    stages,
+)
 from groundstation.services.sentences import Template
 from groundstation.services.site_findings import site_findings
 from groundstation.services.site_sources import preview_import
@@ -30,7 +42,7 @@ from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
-FROM_SOURCES = (dji, fly, insight, mission, plan, project, site, site_import, stages)
+FROM_SOURCES = (dji, fly, insight, mission, plan, project, report, site, site_import, stages)
 """Tables of whole sentences; `parts` holds words and what Python says."""
 
 NOT_SHOWN = {
@@ -57,7 +69,6 @@ NOT_SHOWN = {
     "missions/flight/logs/read.py": "the window reads no logs",
     "missions/flight/logs/tlog.py": "the window reads no logs",
     "missions/flight/logs/ulog.py": "the window reads no logs",
-    "missions/flight/report_rules.py": "findings of the report, for the command line; the window has a table",
     "missions/mavlink/areas.py": "the window makes fences of no-fly volumes, which are right",
     "missions/mavlink/signing.py": "the window signs nothing",
     "missions/mavlink/transfer/wire_items.py": "plans have no such items",

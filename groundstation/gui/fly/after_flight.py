@@ -7,6 +7,7 @@ from PySide6.QtCore import QObject
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, PlanEntry
 from groundstation.services.jobs import JobContext
+from groundstation.services.live_sortie import is_same_place
 from groundstation.services.top_up import flown_plan, resume_flight, top_up_flight
 from missions.flight.flight_file import flight_of
 from missions.flight.record import FlightRecord
@@ -16,6 +17,9 @@ from planning.plan import Plan
 from planning.site import SiteModel
 from planning.top_up import TopUp, TopUpRequest
 
+MOST_BATTERIES = 20
+"""Full batteries that a top-up may take at most; more than anybody has with them."""
+
 
 class AfterFlight(QObject):
     """Keeps what was flown of each plan, and plans what is left, as jobs."""
@@ -24,18 +28,30 @@ class AfterFlight(QObject):
         super().__init__(parent)
         self._workspace = workspace
         self._flown: dict[int, tuple[Plan, tuple[FlightRecord, ...]]] = {}
-        self._last: Plan | None = None
+        self._last: tuple[Plan, SiteModel] | None = None
         self._battery: float | None = None
+        self._on_board: tuple[Plan, float] | None = None
 
     def flown(self, plan: Plan) -> tuple[FlightRecord, ...]:
         """What was flown of a plan since the program was started."""
         _, records = self._flown.get(id(plan), (plan, ()))
         return records
 
-    def add(self, plan: Plan, record: FlightRecord, battery: float | None) -> None:
-        """A sortie of a plan was flown; `battery` is what it left of the charge, 1 full."""
+    def add(self, plan: Plan, site_model: SiteModel, record: FlightRecord, battery: float | None) -> None:
+        """A sortie of a plan was flown over a site; `battery` is what it left of the charge, 1 full."""
         self._flown[id(plan)] = (plan, (*self.flown(plan), record))
-        self._last, self._battery = plan, battery
+        self._last, self._battery = (plan, site_model), battery
+        self._on_board = None
+
+    def charge(self, plan: Plan, number: int) -> float:
+        """Charge of the battery that a sortie, from 1, begins with, 1 full: of a top-up, what the flight before left.
+
+        Further sorties, other plans, and a top-up that is flown again have a full one.
+        """
+        if self._on_board is None or number != 1:
+            return 1.0
+        top_up, battery = self._on_board
+        return battery if top_up is plan else 1.0
 
     def top_up(self) -> None:
         """Plan the shortest flight that closes what is missing, with the battery that is left, as a new plan."""
@@ -44,10 +60,12 @@ class AfterFlight(QObject):
             return
         plan, site_model, records = flown
         battery = self._battery
+        # Full ones come into it where the one on board does not suffice.
+        request = TopUpRequest(battery=battery, n_batteries=None if battery is None else MOST_BATTERIES)
 
         def work(context: JobContext) -> tuple[TopUp, tuple[Finding, ...]]:
             found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
-            return top_up_flight(found, TopUpRequest(battery=battery), monitor=context)
+            return top_up_flight(found, request, monitor=context)
 
         def done(result: tuple[TopUp, tuple[Finding, ...]]) -> None:
             found, findings = result
@@ -59,7 +77,16 @@ class AfterFlight(QObject):
             text = self.tr("Top-up planned, photos: {0}; it closes {1} of {2} missing sections").format(
                 len(found.plan.viewpoints), found.closed, found.wanted
             )
-            self._add_plan(self.tr("Top-up"), found.plan, text)
+            on_board = found.on_board and battery is not None
+            needed = (
+                self.tr("Fly it before the battery is changed.")
+                if on_board and len(found.plan.sorties) == 1
+                else self.tr("Fly the first sortie before the battery is changed, the others with full ones.")
+                if on_board
+                else self.tr("It needs a full battery: change it first.")
+            )
+            self._add_plan(self.tr("Top-up"), found.plan, self.tr("{0}. {1}").format(text, needed))
+            self._on_board = (found.plan, battery) if on_board and battery is not None else None
 
         self._workspace.start(self.tr("Top-up flight"), work, done)
 
@@ -75,7 +102,7 @@ class AfterFlight(QObject):
             return resume_flight(found, monitor=context)
 
         def done(rest: Resumed) -> None:
-            text = self.tr("Rest of sortie {0} planned, photos: {1}").format(
+            text = self.tr("Rest of sortie {0} planned, photos: {1}. It needs a full battery: change it first.").format(
                 rest.mission.number, len(rest.plan.viewpoints)
             )
             self._add_plan(self.tr("Rest of sortie {0}").format(rest.mission.number), rest.plan, text)
@@ -87,7 +114,12 @@ class AfterFlight(QObject):
         site_model = self._workspace.document.site
         if self._last is None or site_model is None:
             return None
-        return self._last, site_model, self.flown(self._last)
+        plan, flown_over = self._last
+        if not is_same_place(flown_over.site, site_model.site):
+            text = self.tr("This flight was over the site {0}: open its project first.").format(flown_over.site.name)
+            self._workspace.say(Severity.WARNING, text)
+            return None
+        return plan, site_model, self.flown(plan)
 
     def _add_plan(self, title: str, plan: Plan, text: str) -> None:
         document: Document = self._workspace.document

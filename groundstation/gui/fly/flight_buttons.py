@@ -56,7 +56,8 @@ class FlightButtons(QWidget):
         for request, action in self._actions.items():
             action.setEnabled(request in allowed)
             self._buttons[request].setEnabled(request in allowed)
-        wanted = Request.START if Request.START in allowed else Request.UPLOAD
+        # What cannot be pressed is not stressed: some themes leave its text hard to read.
+        wanted = next((request for request in (Request.START, Request.UPLOAD) if request in allowed), None)
         for request in (Request.UPLOAD, Request.START):
             button = self._buttons[request]
             if button.property("primary") != (request is wanted):

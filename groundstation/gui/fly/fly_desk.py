@@ -6,18 +6,18 @@ Events of a flight come from its thread as Qt signals, in the window's thread; n
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
 
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.fly.after_flight import AfterFlight
+from groundstation.gui.fly.flight_in_hand import FlightInHand
+from groundstation.gui.fly.item_limit import ItemLimit
+from groundstation.gui.fly.simulation_desk import SimulationDesk
 from groundstation.gui.workspace import Workspace
-from groundstation.services.effects import EffectChoice
 from groundstation.services.jobs import JobContext
 from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice, write_choice
-from groundstation.services.live_connection import CALM, Connection, Simulation, VehicleAt
+from groundstation.services.live_connection import Connection, Simulation, VehicleAt
 from groundstation.services.live_events import (
     Answered,
     FlightChanged,
@@ -33,47 +33,20 @@ from groundstation.services.live_events import (
     WarningRaised,
 )
 from groundstation.services.live_flight import LiveFlight
+from groundstation.services.live_limit import TooLong
 from groundstation.services.live_readouts import BEFORE_TAKE_OFF
 from groundstation.services.live_record import flights_folder
-from groundstation.services.live_sortie import LiveSortie, prepare_sortie, simulation_effects
-from missions.simulator.scene import Conditions
+from groundstation.services.live_settings import USUAL, FlightSettings, SetParameter, parameters_to_set
+from groundstation.services.live_sortie import LiveSortie, prepare_sortie
 from planning.checks.case import Case
-from planning.effects import Wish
 from planning.errors import InputError
 from planning.findings import Severity
-from planning.frames import Vec3
 from planning.plan import Plan
 
 BEFORE_FLIGHT = (Request.UPLOAD, Request.START)
 
 CLOSE_S = 5.0
 """Longest wait for a flight's thread when the window closes; it notices within a twentieth of a second."""
-
-
-@dataclass(slots=True)
-class FlightInHand:
-    """What is known of the flight that is shown, also after it ended.
-
-    Parameters
-    ----------
-    track_enu_m
-        Where the aircraft was, ten times a second at most.
-    photos
-        By the view that they are of.
-    notes
-        What happened: the vehicle's time, how severe, and the text.
-    """
-
-    sortie: LiveSortie
-    view: LiveView | None = None
-    link: LinkState = LinkState.OPENING
-    track_enu_m: list[Vec3] = field(default_factory=list)
-    photos: dict[str, PhotoCounted] = field(default_factory=dict)
-    counted: PhotoCounted | None = None
-    ended: FlightEnded | None = None
-    notes: list[tuple[float | None, Severity, str]] = field(default_factory=list)
-    last_text_s: float = -math.inf
-    battery: float | None = None
 
 
 class FlyDesk(QObject):
@@ -85,8 +58,6 @@ class FlyDesk(QObject):
         Connected, disconnected, or another sortie.
     viewChanged(LiveView), photoCounted(PhotoCounted), linkChanged(LinkState), flightEnded(FlightEnded)
         As the flight publishes them.
-    effectsChanged(tuple of EffectChoice)
-        What the simulation would take into account.
     noted(object, Severity, str)
         Something to be remembered: the vehicle's time (or None), how severe, and the text.
     """
@@ -96,7 +67,6 @@ class FlyDesk(QObject):
     photoCounted = Signal(object)  # noqa: N815
     linkChanged = Signal(object)  # noqa: N815
     flightEnded = Signal(object)  # noqa: N815
-    effectsChanged = Signal(object)  # noqa: N815
     noted = Signal(object, object, str)
     _published = Signal(int, object)
 
@@ -107,10 +77,10 @@ class FlyDesk(QObject):
         self._ids = itertools.count(1)
         self._flight_id = 0
         self._case: Case | None = None
-        self._preparing_id = self._looking_id = 0
+        self._preparing_id = 0
         self.choice = read_choice(choice_path())
-        self.conditions: Conditions = CALM
-        self.wishes: dict[str, Wish] = {}
+        self.settings: FlightSettings = USUAL
+        self.simulation, self.limit = SimulationDesk(workspace, self), ItemLimit(workspace, self)
         self.number = 1
         self.in_hand: FlightInHand | None = None
         self.after = AfterFlight(workspace, self)
@@ -159,6 +129,27 @@ class FlyDesk(QObject):
             write_choice(choice_path(), choice)
         except InputError as error:
             self._say(Severity.WARNING, str(error))
+
+    def set_settings(self, settings: FlightSettings) -> None:
+        """The pilot decided otherwise."""
+        self.settings = settings
+        if self._flight is not None:
+            self._flight.set_settings(settings)
+
+    def share_out(self, found: TooLong) -> None:
+        """Share the views out among sorties that fit, and connect for that plan."""
+        if not self.is_preparing:
+            self._preparing_id = self.limit.share_out(found, self.connect_vehicle)
+            self.stateChanged.emit()
+
+    def parameters_to_set(self) -> tuple[SetParameter, ...]:
+        """What an upload would set on a real vehicle; nothing where the pilot has not allowed it."""
+        in_hand = self.in_hand
+        is_real = self.choice.kind is not LinkKind.SIMULATION
+        if in_hand is None or in_hand.view is None or not (is_real and self.settings.sets_parameters):
+            return ()
+        autopilot = in_hand.view.state.autopilot
+        return () if autopilot is None else parameters_to_set(autopilot, in_hand.sortie.orders.mission)
 
     def set_sortie(self, number: int) -> None:
         """Fly another sortie of the plan, from 1; connected, it becomes the next one."""
@@ -226,9 +217,14 @@ class FlyDesk(QObject):
             lambda event: self._published.emit(flight_id, event),
             flights_folder(self._workspace.session.folder),
             flown=self.after.flown(plan),
+            settings=self.settings,
         )
         self._flight.start()
         self._note(Severity.NOTE, self.tr("connecting"))
+        charge = self.after.charge(plan, sortie.orders.number)
+        if charge < 1.0 and self.choice.kind is LinkKind.SIMULATION:
+            text = self.tr("simulated battery: {0:.0%}, as the flight before left it").format(charge)
+            self._note(Severity.NOTE, text)
 
     def _connection(self, sortie: LiveSortie) -> Connection:
         choice, case = self.choice, sortie.case
@@ -239,8 +235,9 @@ class FlyDesk(QObject):
             case.site_model,
             autopilot=choice.autopilot,
             speed_up=choice.speed_up,
-            conditions=self.conditions,
-            wishes=dict(self.wishes),
+            conditions=self.simulation.conditions,
+            wishes=dict(self.simulation.wishes),
+            charge=self.after.charge(case.plan, sortie.orders.number),
         )
 
     # Events
@@ -253,9 +250,7 @@ class FlyDesk(QObject):
             case FlightChanged():
                 self._take_view(in_hand, event.view)
             case PhotoCounted():
-                in_hand.counted = event
-                if event.view_id:
-                    in_hand.photos[event.view_id] = event
+                in_hand.take_photo(event)
                 self.photoCounted.emit(event)
             case LinkChanged():
                 self._take_link(in_hand, event)
@@ -274,26 +269,12 @@ class FlyDesk(QObject):
                 self._take_end(in_hand, event)
 
     def _take_view(self, in_hand: FlightInHand, view: LiveView) -> None:
-        in_hand.view = view
-        state = view.state
-        if state.motion is not None and view.link is LinkState.ALIVE:
-            place = state.motion.value.position_enu_m
-            if not in_hand.track_enu_m or in_hand.track_enu_m[-1] != place:
-                in_hand.track_enu_m.append(place)
-        if view.readouts.battery is not None:
-            in_hand.battery = view.readouts.battery
-        self._take_texts(in_hand, view)
-        self.viewChanged.emit(view)
-
-    def _take_texts(self, in_hand: FlightInHand, view: LiveView) -> None:
-        """Note the autopilot's texts that are new; those that are kept are the last ones of all."""
-        texts = [text for text in view.state.texts if text.time_s > in_hand.last_text_s]
-        for text in texts:
-            in_hand.last_text_s = text.time_s
+        for text in in_hand.take_view(view):
             severity = (
                 Severity.ERROR if text.severity <= 3 else Severity.WARNING if text.severity == 4 else Severity.NOTE
             )
             self._note(severity, self.tr("autopilot: {0}").format(text.text))
+        self.viewChanged.emit(view)
 
     def _take_link(self, in_hand: FlightInHand, event: LinkChanged) -> None:
         before, in_hand.link = in_hand.link, event.link
@@ -315,7 +296,8 @@ class FlyDesk(QObject):
     def _take_end(self, in_hand: FlightInHand, event: FlightEnded) -> None:
         in_hand.ended = event
         if event.record is not None:
-            self.after.add(in_hand.sortie.case.plan, event.record, in_hand.battery)
+            case = in_hand.sortie.case
+            self.after.add(case.plan, case.site_model, event.record, in_hand.battery)
         if event.error is not None:
             self._note(Severity.ERROR, self._words(str(event.error)))
             self._say(Severity.ERROR, str(event.error))
@@ -339,27 +321,3 @@ class FlyDesk(QObject):
     def _words(self, text: str) -> str:
         words: str = self._workspace.words(text)
         return words
-
-    # The simulation
-
-    def set_simulation(self, conditions: Conditions, wishes: dict[str, Wish]) -> None:
-        """Simulate in other conditions the next time."""
-        self.conditions, self.wishes = conditions, wishes
-        self.look_at_effects()
-
-    def look_at_effects(self) -> None:
-        """Find out what the simulation of the chosen sortie takes into account."""
-        plan, site_model = self.plan, self._workspace.document.site
-        if plan is None or site_model is None or self.number > len(plan.sorties) or self._runs(self._looking_id):
-            return
-        asked = (self.number, self.conditions, dict(self.wishes))
-
-        def work(_context: JobContext) -> tuple[EffectChoice, ...]:
-            return simulation_effects(plan, site_model, *asked)
-
-        def done(choices: tuple[EffectChoice, ...]) -> None:
-            self.effectsChanged.emit(choices)
-            if asked != (self.number, self.conditions, self.wishes):
-                self.look_at_effects()
-
-        self._looking_id = self._workspace.start(self.tr("Look at the flight"), work, done).id

@@ -8,6 +8,8 @@ from PySide6.QtWidgets import QComboBox, QLabel, QTabWidget, QVBoxLayout, QWidge
 
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.flight_buttons import FlightButtons
+from groundstation.gui.fly.flight_in_hand import FlightInHand
+from groundstation.gui.fly.flight_words import FlightWords
 from groundstation.gui.fly.fly_desk import BEFORE_FLIGHT, FlyDesk
 from groundstation.gui.fly.link_band import LinkBand
 from groundstation.gui.fly.live_pictures import LivePictures
@@ -16,17 +18,20 @@ from groundstation.gui.fly.preflight_list import PreflightList
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.fly.readouts_view import ReadoutsView
 from groundstation.gui.fly.report_view import ReportView
+from groundstation.gui.fly.settings_page import SettingsPage
 from groundstation.gui.fly.simulation_page import SimulationPage
 from groundstation.gui.fly.warnings_view import FlightNotes, WarningsView
 from groundstation.gui.main_window import MainWindow
+from groundstation.gui.mission.findings_list import FindingsList
 from groundstation.gui.scrolling import scrolled
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
 from groundstation.services.live_events import FlightEnded, LinkState, LiveView, PhotoCounted, Request
-from groundstation.services.live_sortie import take_off_of
+from groundstation.services.live_sortie import is_same_place, take_off_of
+from groundstation.services.places import item_of_place
 from groundstation.services.units import UnitSystem, minutes_text
-from groundstation.vehicle.run_records import Phase
+from planning.findings import Severity
 
 
 class FlyPage(QObject):
@@ -36,10 +41,12 @@ class FlyPage(QObject):
         super().__init__(stage)
         self._workspace, self._stage = workspace, stage
         self.desk, self.questions = FlyDesk.of(workspace), FlightQuestions()
+        self._words = FlightWords(workspace, self.desk, self)
         self.connection, self.sortie = ConnectionBox(), QComboBox()
         self.buttons, self.checks = FlightButtons(), PreflightList()
         self.readouts, self.warnings = ReadoutsView(), WarningsView()
-        self.simulation, self.strip = SimulationPage(), PhotoStrip()
+        self.simulation, self.settings, self.strip = SimulationPage(), SettingsPage(), PhotoStrip()
+        self.findings = FindingsList()
         self.notes, self.report, self.band = FlightNotes(), ReportView(), LinkBand()
         self.pictures = LivePictures(stage, self)
         self._phase = QLabel()
@@ -51,17 +58,18 @@ class FlyPage(QObject):
         self.band.put_into(stage.window())
         self._connect()
         self.connection.setValue(self.desk.choice)
-        self.simulation.setValue(self.desk.conditions, self.desk.wishes)
+        self.simulation.setValue(self.desk.simulation.conditions, self.desk.simulation.wishes)
+        self.settings.setValue(self.desk.settings)
         self._show_units(workspace.units)
-        self._show_document(workspace.document)
+        self._show_document()
         self._show_all()
 
     # A tab
 
     def shown(self) -> None:
         """Draw the flight into the shared view."""
-        self.pictures.show(self.desk.in_hand)
-        self.desk.look_at_effects()
+        self.pictures.show(self._pictured())
+        self.desk.simulation.look(self.desk.plan, self.desk.number)
 
     def hidden(self) -> None:
         """Give the shared view back; the flight goes on."""
@@ -96,6 +104,7 @@ class FlyPage(QObject):
         detail = QTabWidget()
         detail.addTab(scrolled(flight), self.tr("Flight"))
         detail.addTab(scrolled(self.simulation), self.tr("Simulation"))
+        detail.addTab(scrolled(self.settings), self.tr("Settings"))
         return detail
 
     def _make_bottom(self) -> QWidget:
@@ -107,16 +116,20 @@ class FlyPage(QObject):
         self._lists = QTabWidget()
         self._lists.addTab(flight, self.tr("Photos"))
         self._lists.addTab(self.report, self.tr("Report"))
+        self._lists.addTab(self.findings, self.tr("Findings"))
+        self.findings.set_placeholder(self.tr("After the landing, what the report found stands here."))
         return self._lists
 
     def _connect(self) -> None:
         desk, workspace = self.desk, self._workspace
         self.connection.valueChanged.connect(desk.set_choice)
-        self.connection.connectRequested.connect(desk.connect_vehicle)
+        self.connection.connectRequested.connect(self._connect_vehicle)
         self.connection.disconnectRequested.connect(self._disconnect)
         self.sortie.activated.connect(lambda index: desk.set_sortie(index + 1))
         self.buttons.requested.connect(self._request)
-        self.simulation.valueChanged.connect(lambda: desk.set_simulation(*self.simulation.value()))
+        self.simulation.valueChanged.connect(self._simulation_chosen)
+        self.settings.valueChanged.connect(desk.set_settings)
+        self.findings.placePicked.connect(self._go_to_place)
         self.strip.picked.connect(self._go_to)
         self.report.picked.connect(self._go_to)
         self.report.topUpRequested.connect(desk.after.top_up)
@@ -126,9 +139,9 @@ class FlyPage(QObject):
         desk.photoCounted.connect(self._show_photo)
         desk.linkChanged.connect(self._show_link)
         desk.flightEnded.connect(self._show_end)
-        desk.effectsChanged.connect(self.simulation.set_effects)
+        desk.simulation.effectsChanged.connect(self.simulation.set_effects)
         desk.noted.connect(self.notes.add)
-        workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
+        workspace.documentChanged.connect(self._document_changed)
         workspace.unitsChanged.connect(self._show_units)
         workspace.jobsChanged.connect(self._show_state)
         window = self._stage.window()
@@ -138,8 +151,23 @@ class FlyPage(QObject):
     # What the user does
 
     def _request(self, request: Request) -> None:
-        if request is not Request.START or self._may_start():
+        asks = {Request.START: self._may_start, Request.UPLOAD: self._may_set_parameters}
+        if request not in asks or asks[request]():
             self.desk.request(request)
+
+    def _connect_vehicle(self) -> None:
+        found = self.desk.limit.exceeded(self.desk.choice)
+        if found is None:
+            self.desk.connect_vehicle()
+        elif self.questions.share_out(self._stage.window(), found):
+            self.desk.share_out(found)
+
+    def _simulation_chosen(self) -> None:
+        self.desk.simulation.choose(*self.simulation.value(), self.desk.plan, self.desk.number)
+
+    def _may_set_parameters(self) -> bool:
+        parameters = self.desk.parameters_to_set()
+        return not parameters or self.questions.set_parameters(self._stage.window(), parameters)
 
     def _may_start(self) -> bool:
         in_hand = self.desk.in_hand
@@ -162,9 +190,25 @@ class FlyPage(QObject):
     def _go_to(self, view_id: str) -> None:
         self._workspace.jump_to(Item(ItemKind.VIEWPOINT, view_id))
 
+    def _go_to_place(self, place: str) -> None:
+        item = item_of_place(place, self._workspace.document)
+        if item is not None:
+            self._workspace.jump_to(item)
+
     # What changes
 
-    def _show_document(self, _document: Document) -> None:
+    def _document_changed(self, _before: Document, _after: Document) -> None:
+        self._show_document()
+        self.pictures.set_flight(self._pictured())
+
+    def _pictured(self) -> FlightInHand | None:
+        """The flight, where it is over the site that is shown."""
+        in_hand, shown = self.desk.in_hand, self._workspace.document.site
+        if in_hand is None or shown is None:
+            return None
+        return in_hand if is_same_place(in_hand.sortie.case.site_model.site, shown.site) else None
+
+    def _show_document(self) -> None:
         """Offer the sorties of the current plan."""
         plan = self.desk.plan
         texts = [
@@ -192,8 +236,8 @@ class FlyPage(QObject):
             self.notes.add(*note)
         self.strip.set_photos({} if in_hand is None else in_hand.photos)
         self.readouts.set_counted(None if in_hand is None else in_hand.counted)
-        self.report.set_ended(None if in_hand is None else in_hand.ended)
-        self.pictures.set_flight(in_hand)
+        self._show_report(None if in_hand is None else in_hand.ended)
+        self.pictures.set_flight(self._pictured())
         if in_hand is not None and in_hand.view is not None:
             self._show_view(in_hand.view)
         else:
@@ -211,7 +255,7 @@ class FlyPage(QObject):
     def _show_state(self) -> None:
         """What can be done, and where things stand, in words."""
         desk = self.desk
-        self.connection.set_connected(is_connected=desk.is_connected, says=self._connected_to())
+        self.connection.set_connected(is_connected=desk.is_connected, says=self._words.connected_to())
         can_connect = desk.plan is not None and bool(desk.plan.sorties) and not desk.is_preparing
         self.connection.set_possible(is_possible=can_connect)
         self.sortie.setEnabled(desk.plan is not None and not desk.is_in_flight and not desk.is_preparing)
@@ -219,55 +263,7 @@ class FlyPage(QObject):
             self.buttons.set_allowed(frozenset())
             self.checks.set_checks(())
             self.band.hide()
-        self._phase.setText(self._where_it_stands())
-
-    def _connected_to(self) -> str:
-        desk = self.desk
-        if not desk.is_connected:
-            return ""
-        if desk.choice.url:
-            return desk.choice.url
-        return self.tr("Simulation, {0:g} times as fast").format(desk.choice.speed_up)
-
-    def _where_it_stands(self) -> str:
-        desk, in_hand = self.desk, self.desk.in_hand
-        if self._workspace.document.site is None:
-            return self.tr("Open or import a site first, on the Site tab.")
-        if desk.plan is None or not desk.plan.sorties:
-            return self.tr("Plan a flight first, on the Plan tab.")
-        if desk.is_preparing:
-            return self.tr("The flight is being prepared ...")
-        if not desk.is_connected or in_hand is None:
-            return self.tr("Not connected.")
-        if in_hand.link is LinkState.OPENING or in_hand.view is None:
-            return self.tr("The link is being opened ...")
-        if in_hand.link is LinkState.SILENT:
-            return self.tr("The link is open; no vehicle was heard yet.")
-        return self._phase_text(in_hand.view)
-
-    def _phase_text(self, view: LiveView) -> str:
-        texts = {
-            None: self.tr("Connected. Upload the mission."),
-            Phase.CONNECTING: self.tr("Connecting ..."),
-            Phase.PREPARING: self.tr("The vehicle is being prepared ..."),
-            Phase.UPLOADING: self.tr("Uploading ..."),
-            Phase.CHECKING: self.tr("On board. Waiting for the list."),
-            Phase.READY: self.tr("Ready for take-off."),
-            Phase.STARTING: self.tr("Starting ..."),
-            Phase.FLYING: self.tr("Flying."),
-            Phase.ENDED: self.tr("Landed."),
-        }
-        text = texts[view.phase]
-        if not self.desk.is_for_shown_plan and not view.state.is_armed:
-            return self.tr("This connection is for another plan. Disconnect, and connect for the plan that is shown.")
-        if view.phase is Phase.READY and Request.START not in view.may:
-            return texts[Phase.CHECKING]
-        what, done, total = view.doing
-        if view.phase is Phase.UPLOADING and total > 0.0:
-            return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._workspace.words(what), done, total)
-        if view.phase is Phase.FLYING and view.state.mode is not None:
-            return self.tr("{0} Mode: {1}").format(text, view.state.mode.value)
-        return text
+        self._phase.setText(self._words.where_it_stands())
 
     def _show_view(self, view: LiveView) -> None:
         self.readouts.set_view(view)
@@ -278,7 +274,7 @@ class FlyPage(QObject):
         may = view.may if self.desk.is_for_shown_plan else view.may - frozenset(BEFORE_FLIGHT)
         self.checks.set_checks(view.checks if is_connected else (), note if is_connected else "")
         self.buttons.set_allowed(may if is_connected else frozenset())
-        text = self._where_it_stands()
+        text = self._words.where_it_stands()
         if self._phase.text() != text:
             self._phase.setText(text)
         self.sortie.setEnabled(not view.state.is_armed)
@@ -301,10 +297,19 @@ class FlyPage(QObject):
         self._show_state()
 
     def _show_end(self, ended: FlightEnded) -> None:
-        self.report.set_ended(ended)
+        self._show_report(ended)
         if ended.report is not None:
             self._lists.setCurrentWidget(self.report)
 
+    def _show_report(self, ended: FlightEnded | None) -> None:
+        self.report.set_ended(ended)
+        findings = () if ended is None or ended.report is None else ended.report.findings
+        self.findings.set_findings(findings)
+        n_open = sum(finding.severity is not Severity.OK for finding in findings)
+        text = self.tr("Findings ({0})").format(n_open) if findings else self.tr("Findings")
+        self._lists.setTabText(self._lists.indexOf(self.findings), text)
+
     def _show_units(self, units: UnitSystem) -> None:
-        for widget in (self.readouts, self.warnings, self.checks, self.strip, self.report, self.simulation):
+        shown = self.readouts, self.warnings, self.checks, self.strip, self.report, self.findings, self.simulation
+        for widget in shown:
             widget.set_units(units)

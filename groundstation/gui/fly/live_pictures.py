@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer
 
-from groundstation.gui.fly.fly_desk import FlightInHand
+from groundstation.gui.fly.flight_in_hand import FlightInHand
 from groundstation.gui.fly.live_map import LiveMap
 from groundstation.gui.fly.live_scene import LiveScene
 from groundstation.gui.map_view import MapView
@@ -38,7 +38,7 @@ class LivePictures(QObject):
 
     def set_flight(self, flight: FlightInHand | None) -> None:
         """Show another flight, or none."""
-        if flight is not self._flight:
+        if self._is_shown and flight is not self._flight:
             self._clear()
         self._flight, self._is_stale, self._has_photo = flight, True, flight is not None and flight.counted is not None
 

@@ -12,7 +12,7 @@ from groundstation.gui.theme import Colours, colours
 from groundstation.gui.view3d.layers import ON_TOP, Drawable
 from groundstation.gui.view3d.paint import flat
 from groundstation.gui.view3d.scene_view import SceneView
-from groundstation.gui.view3d.shapes import frusta, polyline
+from groundstation.gui.view3d.shapes import frusta, joined, polyline
 from groundstation.services.live_events import ViewState
 from groundstation.vehicle.state import VehicleState
 from planning.plan import Camera, Viewpoint, ViewpointArrays
@@ -20,7 +20,7 @@ from planning.plan import Camera, Viewpoint, ViewpointArrays
 AIRCRAFT_M = 6.0
 """Length of the aircraft as it is drawn: larger than it is, so that it is found in a view of the whole site."""
 
-TRACK_PX, OUTLINE_PX, PICTURE_PX = 4.0, 5.0, 1.0
+TRACK_PX, OUTLINE_PX, PICTURE_PX, FOOTPRINT_PX = 4.0, 5.0, 1.0, 3.0
 DOT_PX = {
     ViewState.TO_COME: 5.0,
     ViewState.NEXT: 16.0,
@@ -28,7 +28,7 @@ DOT_PX = {
     ViewState.OFF: 12.0,
     ViewState.MISSING: 14.0,
 }
-NAMES = ("live-track", "live-aircraft", "live-picture", "live-views")
+NAMES = ("live-track", "live-aircraft", "live-picture", "live-footprint", "live-views")
 
 
 class LiveScene:
@@ -60,7 +60,7 @@ class LiveScene:
     def draw_aircraft(
         self, state: VehicleState, track_enu_m: NDArray[np.float64], camera: Camera, facade_m: float | None
     ) -> None:
-        """Where it is, where it was, and what its camera sees: a pyramid as long as the facade is away."""
+        """Where it is, where it was, and what its camera sees: a pyramid, and the border of its picture on the site."""
         canvas, look = self._scene.canvas(), colours()
         canvas.draw("live-track", _track(track_enu_m, look))
         if state.motion is None:
@@ -71,12 +71,15 @@ class LiveScene:
         pointing = state.camera
         if pointing is None or facade_m is None:
             canvas.draw("live-picture", ())
+            canvas.draw("live-footprint", ())
             return
         view = ViewpointArrays(
             place[None], np.array([pointing.value.heading_rad]), np.array([pointing.value.pitch_rad])
         )
         points, cells = frusta(view, camera, max(1.0, facade_m))
         canvas.draw("live-picture", [Drawable(points, cells, flat(look.accent, len(cells)), width_px=PICTURE_PX)])
+        pieces = self._scene.photo_border(view, 0, camera)
+        canvas.draw("live-footprint", _lines(pieces, look))
 
     def clear(self) -> None:
         """Take everything away."""
@@ -90,6 +93,13 @@ def _track(track_enu_m: NDArray[np.float64], look: Colours) -> list[Drawable]:
     if len(cells) == 0:
         return []
     return [Drawable(points, cells, flat(look.accent, len(cells)), width_px=TRACK_PX)]
+
+
+def _lines(pieces: list[NDArray[np.float64]], look: Colours) -> list[Drawable]:
+    if not pieces:
+        return []
+    points, cells = joined([polyline(piece) for piece in pieces])
+    return [Drawable(points, cells, flat(look.accent, len(cells)), width_px=FOOTPRINT_PX)]
 
 
 def _aircraft(place: NDArray[np.float64], heading_rad: float, look: Colours) -> list[Drawable]:

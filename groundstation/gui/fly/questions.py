@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QMessageBox, QWidget
 
+from groundstation.services.live_limit import TooLong
+from groundstation.services.live_settings import SetParameter
 from groundstation.services.live_sortie import TakeOff
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text
 
@@ -39,6 +43,45 @@ class FlightQuestions(QObject):
             self.tr("It uses about {0:.0%} of a full battery.").format(take_off.battery),
             self.tr("Is everybody clear of the aircraft?"),
         ]
+        return "\n\n".join(lines)
+
+    def share_out(self, parent: QWidget, found: TooLong) -> bool:
+        """Whether to share the views of a plan out among more sorties."""
+        said = QMessageBox.question(
+            parent,
+            self.tr("Too many photos for one sortie"),
+            self.tr(
+                "{0} keeps the items of about {1} photos, and a sortie of this plan has {2}: the vehicle would refuse "
+                "it. Share the same views out among more sorties, as a plan of its own, and connect for that?"
+            ).format(found.autopilot.value, found.limit, found.longest),
+            QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Cancel,
+            QMessageBox.StandardButton.Yes,
+        )
+        return said is QMessageBox.StandardButton.Yes
+
+    def set_parameters(self, parent: QWidget, parameters: Sequence[SetParameter]) -> bool:
+        """Whether to set parameters of a real vehicle."""
+        said = QMessageBox.warning(
+            parent,
+            self.tr("Set parameters of the vehicle"),
+            self.parameters_text(parameters),
+            QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Cancel,
+            QMessageBox.StandardButton.Cancel,
+        )
+        return said is QMessageBox.StandardButton.Yes
+
+    def parameters_text(self, parameters: Sequence[SetParameter]) -> str:
+        """What would be set."""
+        set_now = [one for one in parameters if not one.needs_reboot]
+        lines = [
+            self.tr("The upload sets these parameters of the vehicle where they differ, and they stay so:"),
+            "\n".join(f"{one.name} = {one.value:g}" for one in set_now),
+        ]
+        rebooted = [one for one in parameters if one.needs_reboot]
+        if rebooted:
+            lines.append(self.tr("and these, after which the autopilot is restarted:"))
+            lines.append("\n".join(f"{one.name} = {one.value:g}" for one in rebooted))
+        lines.append(self.tr("Set them, and upload?"))
         return "\n\n".join(lines)
 
     def leave_in_flight(self, parent: QWidget) -> bool:

@@ -44,7 +44,7 @@ class ReadoutsView(QWidget):
         return (
             ("height", self.tr("above take-off")),
             ("speed", self.tr("speed")),
-            ("facade", self.tr("to facade")),
+            ("facade", self.tr("facade")),
             ("photos", self.tr("photos")),
             ("battery", self.tr("battery")),
             ("left", self.tr("to reserve")),

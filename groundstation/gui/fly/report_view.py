@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QModelIndex, Signal
+from PySide6.QtCore import QModelIndex, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.plan.table_view import Column, RowModel, table_of
+from groundstation.gui.scrolling import scrolled
 from groundstation.services.live_events import FlightEnded
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, per_cent
 from missions.flight.outcome import FlightReport, Reason, ViewOutcome
@@ -34,6 +35,7 @@ class ReportView(QWidget):
         self._units = UnitSystem.METRIC
         self._words = QLabel()
         self._words.setWordWrap(True)
+        self._words.setAlignment(Qt.AlignmentFlag.AlignTop)
         self._model: RowModel[ViewOutcome] = RowModel(self._columns(), self)
         self.table = table_of(self._model, self.tr("Views of the flight"))
         self.table.clicked.connect(self._row_picked)
@@ -45,7 +47,7 @@ class ReportView(QWidget):
         self.top_up.clicked.connect(self.topUpRequested)
         self.resume.clicked.connect(self.resumeRequested)
         side = QVBoxLayout()
-        side.addWidget(self._words, 1)
+        side.addWidget(scrolled(self._words), 1)
         buttons = QHBoxLayout()
         for button in (self.top_up, self.resume):
             buttons.addWidget(button)
@@ -145,6 +147,7 @@ class ReportView(QWidget):
             Reason.NOT_FLOWN: self.tr("sortie not flown"),
             Reason.NOT_REACHED: self.tr("not reached"),
             Reason.NO_PHOTO: self.tr("no answer of the camera"),
+            Reason.REPORT_LOST: self.tr("taken, but its report was lost"),
             Reason.TOO_FAR: self.tr("taken too far away"),
             Reason.WRONG_ANGLE: self.tr("looks elsewhere"),
             Reason.FLIGHT_ENDED: self.tr("flight ended before"),

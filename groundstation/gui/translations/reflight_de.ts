@@ -12,16 +12,32 @@
         <translation>Ergänzungsflug geplant, Fotos: {0}; er schließt {1} von {2} fehlenden Sektoren</translation>
     </message>
     <message>
+        <source>Fly it before the battery is changed.</source>
+        <translation>Zu fliegen, bevor der Akku gewechselt wird.</translation>
+    </message>
+    <message>
+        <source>Fly the first sortie before the battery is changed, the others with full ones.</source>
+        <translation>Den ersten Einsatz fliegen, bevor der Akku gewechselt wird, die übrigen mit vollen.</translation>
+    </message>
+    <message>
+        <source>It needs a full battery: change it first.</source>
+        <translation>Es braucht einen vollen Akku: zuerst wechseln.</translation>
+    </message>
+    <message>
         <source>Top-up</source>
         <translation>Ergänzung</translation>
+    </message>
+    <message>
+        <source>{0}. {1}</source>
+        <translation>{0}. {1}</translation>
     </message>
     <message>
         <source>Top-up flight</source>
         <translation>Ergänzungsflug</translation>
     </message>
     <message>
-        <source>Rest of sortie {0} planned, photos: {1}</source>
-        <translation>Rest von Einsatz {0} geplant, Fotos: {1}</translation>
+        <source>Rest of sortie {0} planned, photos: {1}. It needs a full battery: change it first.</source>
+        <translation>Rest von Einsatz {0} geplant, Fotos: {1}. Er braucht einen vollen Akku: zuerst wechseln.</translation>
     </message>
     <message>
         <source>Rest of sortie {0}</source>
@@ -30,6 +46,10 @@
     <message>
         <source>Resume sortie</source>
         <translation>Einsatz fortsetzen</translation>
+    </message>
+    <message>
+        <source>This flight was over the site {0}: open its project first.</source>
+        <translation>Dieser Flug war über dem Standort {0}: zuerst dessen Projekt öffnen.</translation>
     </message>
 </context>
 <context>
@@ -1168,6 +1188,30 @@ Blickrichtung: {2}</translation>
         <translation>Halten alle Abstand vom Fluggerät?</translation>
     </message>
     <message>
+        <source>Too many photos for one sortie</source>
+        <translation>Zu viele Fotos für einen Einsatz</translation>
+    </message>
+    <message>
+        <source>{0} keeps the items of about {1} photos, and a sortie of this plan has {2}: the vehicle would refuse it. Share the same views out among more sorties, as a plan of its own, and connect for that?</source>
+        <translation>{0} fasst die Einträge von etwa {1} Fotos, und ein Einsatz dieses Plans hat {2}: Das Fluggerät würde ihn ablehnen. Dieselben Aufnahmen als eigenen Plan auf mehr Einsätze verteilen und dafür verbinden?</translation>
+    </message>
+    <message>
+        <source>Set parameters of the vehicle</source>
+        <translation>Parameter des Fluggeräts setzen</translation>
+    </message>
+    <message>
+        <source>The upload sets these parameters of the vehicle where they differ, and they stay so:</source>
+        <translation>Das Hochladen setzt diese Parameter des Fluggeräts, wo sie abweichen, und sie bleiben so:</translation>
+    </message>
+    <message>
+        <source>and these, after which the autopilot is restarted:</source>
+        <translation>und diese, wonach der Autopilot neu gestartet wird:</translation>
+    </message>
+    <message>
+        <source>Set them, and upload?</source>
+        <translation>Setzen und hochladen?</translation>
+    </message>
+    <message>
         <source>The aircraft is in the air</source>
         <translation>Das Fluggerät ist in der Luft</translation>
     </message>
@@ -1177,74 +1221,7 @@ Blickrichtung: {2}</translation>
     </message>
 </context>
 <context>
-    <name>FlyDesk</name>
-    <message>
-        <source>Prepare the flight</source>
-        <translation>Flug vorbereiten</translation>
-    </message>
-    <message>
-        <source>connecting</source>
-        <translation>Verbindung wird aufgebaut</translation>
-    </message>
-    <message>
-        <source>autopilot: {0}</source>
-        <translation>Autopilot: {0}</translation>
-    </message>
-    <message>
-        <source>link lost</source>
-        <translation>Verbindung verloren</translation>
-    </message>
-    <message>
-        <source>link lost: {0}</source>
-        <translation>Verbindung verloren: {0}</translation>
-    </message>
-    <message>
-        <source>link alive</source>
-        <translation>Verbindung steht</translation>
-    </message>
-    <message>
-        <source>link found again</source>
-        <translation>Verbindung wieder da</translation>
-    </message>
-    <message>
-        <source>disconnected</source>
-        <translation>getrennt</translation>
-    </message>
-    <message>
-        <source>landed</source>
-        <translation>gelandet</translation>
-    </message>
-    <message>
-        <source>Look at the flight</source>
-        <translation>Flug betrachten</translation>
-    </message>
-</context>
-<context>
-    <name>FlyPage</name>
-    <message>
-        <source>Sortie to be flown</source>
-        <translation>Zu fliegender Einsatz</translation>
-    </message>
-    <message>
-        <source>Flight</source>
-        <translation>Flug</translation>
-    </message>
-    <message>
-        <source>Simulation</source>
-        <translation>Simulation</translation>
-    </message>
-    <message>
-        <source>Photos</source>
-        <translation>Fotos</translation>
-    </message>
-    <message>
-        <source>Report</source>
-        <translation>Bericht</translation>
-    </message>
-    <message>
-        <source>Sortie {0}: photos: {1}, {2}</source>
-        <translation>Einsatz {0}: Fotos: {1}, {2}</translation>
-    </message>
+    <name>FlightWords</name>
     <message>
         <source>Simulation, {0:g} times as fast</source>
         <translation>Simulation, {0:g}-mal so schnell</translation>
@@ -1320,6 +1297,92 @@ Blickrichtung: {2}</translation>
     <message>
         <source>{0} Mode: {1}</source>
         <translation>{0} Modus: {1}</translation>
+    </message>
+</context>
+<context>
+    <name>FlyDesk</name>
+    <message>
+        <source>Prepare the flight</source>
+        <translation>Flug vorbereiten</translation>
+    </message>
+    <message>
+        <source>connecting</source>
+        <translation>Verbindung wird aufgebaut</translation>
+    </message>
+    <message>
+        <source>simulated battery: {0:.0%}, as the flight before left it</source>
+        <translation>simulierter Akku: {0:.0%}, wie ihn der Flug davor hinterließ</translation>
+    </message>
+    <message>
+        <source>autopilot: {0}</source>
+        <translation>Autopilot: {0}</translation>
+    </message>
+    <message>
+        <source>link lost</source>
+        <translation>Verbindung verloren</translation>
+    </message>
+    <message>
+        <source>link lost: {0}</source>
+        <translation>Verbindung verloren: {0}</translation>
+    </message>
+    <message>
+        <source>link alive</source>
+        <translation>Verbindung steht</translation>
+    </message>
+    <message>
+        <source>link found again</source>
+        <translation>Verbindung wieder da</translation>
+    </message>
+    <message>
+        <source>disconnected</source>
+        <translation>getrennt</translation>
+    </message>
+    <message>
+        <source>landed</source>
+        <translation>gelandet</translation>
+    </message>
+</context>
+<context>
+    <name>FlyPage</name>
+    <message>
+        <source>Sortie to be flown</source>
+        <translation>Zu fliegender Einsatz</translation>
+    </message>
+    <message>
+        <source>Flight</source>
+        <translation>Flug</translation>
+    </message>
+    <message>
+        <source>Simulation</source>
+        <translation>Simulation</translation>
+    </message>
+    <message>
+        <source>Settings</source>
+        <translation>Einstellungen</translation>
+    </message>
+    <message>
+        <source>Photos</source>
+        <translation>Fotos</translation>
+    </message>
+    <message>
+        <source>Report</source>
+        <translation>Bericht</translation>
+    </message>
+    <message>
+        <source>Findings</source>
+        <translation>Befunde</translation>
+    </message>
+    <message>
+        <source>After the landing, what the report found stands here.</source>
+        <translation>Nach der Landung steht hier, was der Bericht befunden hat.</translation>
+    </message>
+    <message>
+        <source>Sortie {0}: photos: {1}, {2}</source>
+        <translation>Einsatz {0}: Fotos: {1}, {2}</translation>
+    </message>
+    <message>
+        <source>Findings ({0})</source>
+        <translation>Befunde ({0})</translation>
     </message>
     <message>
         <source>In flight; the list comes back after the landing.</source>
@@ -1643,6 +1706,21 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Panels: {0}, {1} of glass; by facade: {2}</source>
         <translation>Scheiben: {0}, {1} Glas; nach Fassade: {2}</translation>
+    </message>
+</context>
+<context>
+    <name>ItemLimit</name>
+    <message>
+        <source>{0}, shared out</source>
+        <translation>{0}, neu verteilt</translation>
+    </message>
+    <message>
+        <source>Share views out</source>
+        <translation>Aufnahmen verteilen</translation>
+    </message>
+    <message>
+        <source>Views shared out anew, sorties: {0}</source>
+        <translation>Aufnahmen neu verteilt, Einsätze: {0}</translation>
     </message>
 </context>
 <context>
@@ -3071,7 +3149,7 @@ Take it over?</source>
         <translation>Tempo</translation>
     </message>
     <message>
-        <source>to facade</source>
+        <source>facade</source>
         <translation>Fassade</translation>
     </message>
     <message>
@@ -3216,6 +3294,10 @@ Take it over?</source>
     <message>
         <source>no answer of the camera</source>
         <translation>Kamera antwortete nicht</translation>
+    </message>
+    <message>
+        <source>taken, but its report was lost</source>
+        <translation>aufgenommen, aber die Meldung ging verloren</translation>
     </message>
     <message>
         <source>taken too far away</source>
@@ -4374,6 +4456,38 @@ Take it over?</source>
     <message>
         <source>{0:n} findings</source>
         <translation>{0:n} Befunde</translation>
+    </message>
+    <message>
+        <source>{0:n} their sortie was not flown</source>
+        <translation>{0:n} ihr Einsatz wurde nicht geflogen</translation>
+    </message>
+    <message>
+        <source>{0:n} not reached</source>
+        <translation>{0:n} nicht erreicht</translation>
+    </message>
+    <message>
+        <source>{0:n} reached, but the camera did not answer</source>
+        <translation>{0:n} erreicht, aber die Kamera antwortete nicht</translation>
+    </message>
+    <message>
+        <source>{0:n} photographed, but the camera&apos;s report was lost</source>
+        <translation>{0:n} fotografiert, aber die Meldung der Kamera ging verloren</translation>
+    </message>
+    <message>
+        <source>{0:n} photo taken too far away</source>
+        <translation>{0:n} Foto zu weit entfernt aufgenommen</translation>
+    </message>
+    <message>
+        <source>{0:n} photo looks elsewhere</source>
+        <translation>{0:n} Foto blickt woandershin</translation>
+    </message>
+    <message>
+        <source>{0:n} the flight ended before</source>
+        <translation>{0:n} der Flug endete vorher</translation>
+    </message>
+    <message>
+        <source>{0:n} the record does not say where the aircraft was</source>
+        <translation>{0:n} die Aufzeichnung sagt nicht, wo das Fluggerät war</translation>
     </message>
     <message>
         <source>minimum distance (m) {0} instead of {1}</source>
@@ -6376,6 +6490,10 @@ Take it over?</source>
         <translation>{0} lässt sich nicht öffnen: {1}; stimmt die Adresse?</translation>
     </message>
     <message>
+        <source>{0} cannot be opened: another program has this port; end it, or take another</source>
+        <translation>{0} kann nicht geöffnet werden: Ein anderes Programm hat diesen Port; es beenden oder einen anderen nehmen</translation>
+    </message>
+    <message>
         <source>reading back</source>
         <translation>wird zurückgelesen</translation>
     </message>
@@ -6704,8 +6822,24 @@ Take it over?</source>
         <translation>die Ladung des Akkus ist nicht bekannt</translation>
     </message>
     <message>
-        <source>the battery holds {0}; the sortie and the reserve take {1}: put in a full one</source>
-        <translation>der Akku hält {0}; Einsatz und Reserve brauchen {1}: einen vollen einsetzen</translation>
+        <source>the battery holds {0}; the sortie and the reserve take {1}: {2}</source>
+        <translation>der Akku hat {0}; Einsatz und Reserve brauchen {1}: {2}</translation>
+    </message>
+    <message>
+        <source>put in a full one</source>
+        <translation>einen vollen einlegen</translation>
+    </message>
+    <message>
+        <source>none holds that much: plan it again, in shorter sorties</source>
+        <translation>so viel hat keiner: in kürzeren Einsätzen neu planen</translation>
+    </message>
+    <message>
+        <source>the wind blows with {0} m/s, more than the {1} m/s of {2}; wait for less</source>
+        <translation>der Wind weht mit {0} m/s, mehr als die {1} m/s von {2}; auf weniger warten</translation>
+    </message>
+    <message>
+        <source>flight (&apos;{0}&apos;), plan (&apos;{1}&apos;) and site (&apos;{2}&apos;) do not have the same name and origin; name the plan and the site file that this flight was flown with</source>
+        <translation>Flug (&apos;{0}&apos;), Plan (&apos;{1}&apos;) und Standort (&apos;{2}&apos;) haben nicht denselben Namen und Ursprung; den Plan und die Standortdatei nennen, mit denen geflogen wurde</translation>
     </message>
     <message>
         <source>{0}; {1} are needed</source>
@@ -6730,10 +6864,6 @@ Take it over?</source>
     <message>
         <source>not measured on the ground; look up</source>
         <translation>am Boden nicht gemessen; nach oben schauen</translation>
-    </message>
-    <message>
-        <source>{0} m/s, more than the {1} m/s of {2}; wait</source>
-        <translation>{0} m/s, mehr als die {1} m/s von {2}; warten</translation>
     </message>
     <message>
         <source>the {0} was not uploaded yet</source>
@@ -6996,10 +7126,6 @@ Take it over?</source>
         <translation>sind nur von Orten zu sehen, die dichter beieinander liegen, als Fluggeräte annehmen</translation>
     </message>
     <message>
-        <source>flight (&apos;{0}&apos;), plan (&apos;{1}&apos;) and site (&apos;{2}&apos;) do not have the same origin; name the plan and the site file that this flight was flown with</source>
-        <translation>Flug (&apos;{0}&apos;), Plan (&apos;{1}&apos;) und Standort (&apos;{2}&apos;) haben nicht denselben Ursprung; Plan und Standortdatei nennen, mit denen geflogen wurde</translation>
-    </message>
-    <message>
         <source>its plan has another checksum</source>
         <translation>sein Plan hat eine andere Prüfsumme</translation>
     </message>
@@ -7038,6 +7164,204 @@ Take it over?</source>
     <message>
         <source>{0} views were photographed, but the camera&apos;s reports were lost on the radio; what they show counts as missing. The autopilot&apos;s log (.BIN, .ulg) tells of them: name it instead of the flight file</source>
         <translation>{0} Aufnahmen wurden gemacht, aber die Meldungen der Kamera gingen über Funk verloren; was sie zeigen, gilt als fehlend. Das Protokoll des Autopiloten (.BIN, .ulg) weiß davon: es statt der Flugdatei nennen</translation>
+    </message>
+    <message>
+        <source>their sortie was not flown</source>
+        <translation>ihr Einsatz wurde nicht geflogen</translation>
+    </message>
+    <message>
+        <source>not reached</source>
+        <translation>nicht erreicht</translation>
+    </message>
+    <message>
+        <source>reached, but the camera did not answer</source>
+        <translation>erreicht, aber die Kamera antwortete nicht</translation>
+    </message>
+    <message>
+        <source>photographed, but the camera&apos;s report was lost</source>
+        <translation>fotografiert, aber die Meldung der Kamera ging verloren</translation>
+    </message>
+    <message>
+        <source>photo taken too far away</source>
+        <translation>Foto zu weit entfernt aufgenommen</translation>
+    </message>
+    <message>
+        <source>photo looks elsewhere</source>
+        <translation>Foto blickt woandershin</translation>
+    </message>
+    <message>
+        <source>the flight ended before</source>
+        <translation>der Flug endete vorher</translation>
+    </message>
+    <message>
+        <source>the record does not say where the aircraft was</source>
+        <translation>die Aufzeichnung sagt nicht, wo das Fluggerät war</translation>
+    </message>
+    <message>
+        <source>the flight was at site &apos;{0}&apos;, this is &apos;{1}&apos;; take its own site file</source>
+        <translation>der Flug war am Standort &apos;{0}&apos;, dies ist &apos;{1}&apos;; seine eigene Standortdatei nehmen</translation>
+    </message>
+    <message>
+        <source>the site file has changed since the flight; distances and coverage are those of the site as it is now</source>
+        <translation>die Standortdatei hat sich seit dem Flug geändert; Abstände und Abdeckung gelten für den Standort, wie er jetzt ist</translation>
+    </message>
+    <message>
+        <source>the flight was flown with another plan, or this one has changed since; views match as far as they fit</source>
+        <translation>geflogen wurde ein anderer Plan, oder dieser hat sich seither geändert; Aufnahmen sind zugeordnet, soweit sie passen</translation>
+    </message>
+    <message>
+        <source>the flight belongs to this site and plan</source>
+        <translation>der Flug gehört zu diesem Standort und Plan</translation>
+    </message>
+    <message>
+        <source>there is no record of any flight</source>
+        <translation>es gibt keine Aufzeichnung eines Fluges</translation>
+    </message>
+    <message>
+        <source>this flight is none of the plan&apos;s sorties: no photo and no view of them is near its track</source>
+        <translation>dieser Flug ist keiner der Einsätze des Plans: Kein Foto und keine Aufnahme davon liegt nahe an seiner Spur</translation>
+    </message>
+    <message>
+        <source>recorded as sortie {0}, but it flew sortie {1}; it counts as what it flew</source>
+        <translation>als Einsatz {0} aufgezeichnet, geflogen wurde aber Einsatz {1}; er zählt als das, was geflogen wurde</translation>
+    </message>
+    <message>
+        <source>record {0}</source>
+        <translation>Aufzeichnung {0}</translation>
+    </message>
+    <message>
+        <source>look through the photos before planning a top-up flight</source>
+        <translation>die Fotos durchsehen, bevor ein Ergänzungsflug geplant wird</translation>
+    </message>
+    <message>
+        <source>plan a top-up flight for them</source>
+        <translation>für sie einen Ergänzungsflug planen</translation>
+    </message>
+    <message>
+        <source>{0} of {1} views have no photo that is known of: {2}; {3}</source>
+        <translation>{0} von {1} Aufnahmen haben kein bekanntes Foto: {2}; {3}</translation>
+    </message>
+    <message>
+        <source>all {0} views have a photo</source>
+        <translation>alle {0} Aufnahmen haben ein Foto</translation>
+    </message>
+    <message>
+        <source>{0} photos belong to no view, or to one that has a better photo; they count for coverage, too</source>
+        <translation>{0} Fotos gehören zu keiner Aufnahme oder zu einer, die ein besseres Foto hat; auch sie zählen für die Abdeckung</translation>
+    </message>
+    <message>
+        <source>the camera counted {0} photos whose reports did not arrive; {1} of them are of views that are known; the autopilot&apos;s own log (.BIN, .ulg) tells of all</source>
+        <translation>die Kamera zählte {0} Fotos, deren Meldungen nicht ankamen; {1} davon sind von bekannten Aufnahmen; das eigene Protokoll des Autopiloten (.BIN, .ulg) nennt alle</translation>
+    </message>
+    <message>
+        <source>position error at the shutter</source>
+        <translation>Positionsfehler beim Auslösen</translation>
+    </message>
+    <message>
+        <source>heading error at the shutter</source>
+        <translation>Kursfehler beim Auslösen</translation>
+    </message>
+    <message>
+        <source>gimbal pitch error</source>
+        <translation>Neigungsfehler des Gimbals</translation>
+    </message>
+    <message>
+        <source>motion blur</source>
+        <translation>Bewegungsunschärfe</translation>
+    </message>
+    <message>
+        <source>; coverage is counted as if they looked as planned</source>
+        <translation>; die Abdeckung zählt, als blickten sie wie geplant</translation>
+    </message>
+    <message>
+        <source>the {0} of {1} of {2} photos is not known{3}</source>
+        <translation>nicht bekannt ({0}) bei {1} von {2} Fotos{3}</translation>
+    </message>
+    <message>
+        <source>fly with RTK, hover longer, or in less wind</source>
+        <translation>mit RTK fliegen, länger schweben oder bei weniger Wind</translation>
+    </message>
+    <message>
+        <source>hover longer, or fly in less wind</source>
+        <translation>länger schweben oder bei weniger Wind fliegen</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos are over it; {2}</source>
+        <translation>{0} von {1} Fotos liegen darüber; {2}</translation>
+    </message>
+    <message>
+        <source>largest {0}</source>
+        <translation>größter Wert, {0}</translation>
+    </message>
+    <message>
+        <source>sections covered, {0} where {1} were planned</source>
+        <translation>abgedeckte Sektoren, {0}, wo {1} geplant waren</translation>
+    </message>
+    <message>
+        <source>plan a top-up flight</source>
+        <translation>einen Ergänzungsflug planen</translation>
+    </message>
+    <message>
+        <source>{0} panels of the plan are on no photo, the first is &apos;{1}&apos;</source>
+        <translation>{0} Scheiben des Plans sind auf keinem Foto, die erste ist &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>the distance kept is not known</source>
+        <translation>der eingehaltene Abstand ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>smallest distance flown, {0} s after the start</source>
+        <translation>kleinster geflogener Abstand, {0} s nach dem Start</translation>
+    </message>
+    <message>
+        <source>see where, and keep further away</source>
+        <translation>nachsehen, wo, und weiter wegbleiben</translation>
+    </message>
+    <message>
+        <source>difference between the {0} s flown and the {1} s predicted</source>
+        <translation>Unterschied zwischen den geflogenen {0} s und den vorhergesagten {1} s</translation>
+    </message>
+    <message>
+        <source>check the speeds and hover times of the aircraft&apos;s profile</source>
+        <translation>Geschwindigkeiten und Schwebezeiten im Profil des Fluggeräts prüfen</translation>
+    </message>
+    <message>
+        <source>battery left at the end, {0} used</source>
+        <translation>Akku am Ende, {0} verbraucht</translation>
+    </message>
+    <message>
+        <source> where {0} was predicted</source>
+        <translation> bei vorhergesagten {0}</translation>
+    </message>
+    <message>
+        <source>lower the endurance of the aircraft&apos;s profile</source>
+        <translation>die Flugdauer im Profil des Fluggeräts senken</translation>
+    </message>
+</context>
+<context>
+    <name>SettingsPage</name>
+    <message>
+        <source>RTK needed for take-off</source>
+        <translation>Start nur mit RTK</translation>
+    </message>
+    <message>
+        <source>Upload sets parameters</source>
+        <translation>Hochladen setzt Parameter</translation>
+    </message>
+    <message>
+        <source>Start waits for RTK, and a warning comes when it is lost in flight.</source>
+        <translation>Der Start wartet auf RTK, und geht es im Flug verloren, kommt eine Warnung.</translation>
+    </message>
+    <message>
+        <source>Camera, gimbal and speeds of a real vehicle are set as the plan needs them. Each upload names the parameters and asks first. Without it they are only compared. Those of a simulation are always set.</source>
+        <translation>Kamera, Gimbal und Geschwindigkeiten eines echten Fluggeräts werden gesetzt, wie der Plan sie braucht. Jedes Hochladen nennt die Parameter und fragt vorher. Sonst werden sie nur verglichen. Die einer Simulation werden immer gesetzt.</translation>
+    </message>
+</context>
+<context>
+    <name>SimulationDesk</name>
+    <message>
+        <source>Look at the flight</source>
+        <translation>Flug betrachten</translation>
     </message>
 </context>
 <context>

@@ -35,7 +35,7 @@ from groundstation.gui.view3d.site_scene import SiteScene, facade_colours, panel
 from groundstation.services.document import Item, ItemKind
 from groundstation.services.units import UnitSystem
 from planning.coverage.sections import SectionGrid
-from planning.plan import Plan
+from planning.plan import Camera, Plan, ViewpointArrays
 from planning.site import SiteModel
 
 Array = NDArray[np.float64]
@@ -261,6 +261,19 @@ class ScenePicture(QWidget):
         """What lies under a pixel of the view."""
         return pick(self._pick_index(), self._plan, self._navigator.pinhole(), x_px, y_px, self._hidden)
 
+    def photo_border(self, views: ViewpointArrays, number: int, camera: Camera) -> list[Array]:
+        """Where the border of a photo falls on the site, polylines of shape (k, 3).
+
+        Nothing while the site is still being indexed, which is not waited for.
+        """
+        self._make_index()
+        if self._index is None or not self._index.done():
+            return []
+        heading, pitch = float(views.heading_rad[number]), float(views.pitch_rad[number])
+        view = photo_pinhole(views.positions_enu_m[number], heading, pitch, camera, 1000.0)
+        pieces: list[Array] = footprint(self._index.result(), view)
+        return pieces
+
     # Qt
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
@@ -345,13 +358,9 @@ class ScenePicture(QWidget):
         number = None if plan is None or chosen is None else plan.viewpoint_index.get(chosen)
         if plan is None or number is None:
             return ()
-        index = self._pick_index()
-        if index is None:
-            return ()
-        views = plan.views
-        heading, pitch = float(views.heading_rad[number]), float(views.pitch_rad[number])
-        view = photo_pinhole(views.positions_enu_m[number], heading, pitch, plan.plan.camera, 1000.0)
-        pieces = footprint(index, view)
+        # A selection is drawn once: it waits for the index.
+        self._pick_index()
+        pieces = self.photo_border(plan.views, number, plan.plan.camera)
         if not pieces:
             return ()
         points, cells = joined([polyline(piece) for piece in pieces])

@@ -21,7 +21,7 @@ class Says:
     """A pilot whose answers are known before."""
 
     def __init__(self):
-        self.starts = self.leaves = True
+        self.starts = self.leaves = self.shares = self.sets = True
         self.asked = []
 
     def start(self, parent, take_off, units):
@@ -33,6 +33,16 @@ class Says:
     def leave_in_flight(self, parent):
         self.asked.append("leave")
         return self.leaves
+
+    def share_out(self, parent, found):
+        self.asked.append(found)
+        return self.shares
+
+    def set_parameters(self, parent, parameters):
+        from groundstation.gui.fly.questions import FlightQuestions
+
+        self.asked.append(FlightQuestions().parameters_text(parameters))
+        return self.sets
 
 
 @pytest.fixture
@@ -112,6 +122,10 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     assert {row[2] for row in page.report.rows()} == {"taken"}
     assert len(page.desk.in_hand.track_enu_m) > 20
     assert not page.report.resume.isEnabled()
+    findings = "\n".join(page.findings.texts())
+    assert "all 6 views have a photo" in findings
+    assert "smallest distance flown" in findings
+    assert page._lists.tabText(2).startswith("Findings (")
     page.report.top_up.click()
     turn_until_idle(application, desk)
     assert "Nothing is missing" in desk.window.messages.texts()
@@ -144,6 +158,8 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     plans = desk.workspace.document.plans
     assert [entry.title for entry in plans] == ["First", "Top-up"]
     assert 0 < len(plans[-1].plan.viewpoints) <= 6
+    assert "Fly it before the battery is changed" in desk.window.messages.texts()
+    left = page.desk.in_hand.battery
     # The plan that is shown is another one now: what is uploaded and what is seen must not differ.
     turn_until(application, lambda: "for another plan" in page._phase.text())
     assert not page.buttons.button(Request.UPLOAD).isEnabled()
@@ -151,6 +167,9 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     turn_until(application, lambda: not page.desk.is_connected)
     connect(application, page)
     assert len(page.strip.states()) == len(plans[-1].plan.viewpoints)
+    turn_until(application, lambda: page.desk.in_hand.battery is not None)
+    assert page.desk.in_hand.battery == pytest.approx(left, abs=0.011)
+    assert "as the flight before left it" in page.notes.texts()
     page.connection.button.click()
     turn_until(application, lambda: not page.desk.is_connected)
     page.desk.after.resume_sortie()
@@ -158,6 +177,10 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     rest = desk.workspace.document.plans[-1]
     assert rest.title == "Rest of sortie 1"
     assert {view.id for view in rest.plan.viewpoints} == missing
+    assert "It needs a full battery" in desk.window.messages.texts()
+    connect(application, page)
+    turn_until(application, lambda: page.desk.in_hand.battery is not None)
+    assert page.desk.in_hand.battery > 0.99
 
 
 def test_losing_the_link_shows_a_band_and_is_survived(application, desk, page, monkeypatch):
@@ -277,7 +300,7 @@ def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(applicati
     card = page.simulation.effects.card("wind")
     card.wish.setCurrentIndex(card.wish.findData("off"))
     turn_until(application, lambda: "is off" in page.simulation.effects.card("wind").text())
-    assert page.desk.wishes == {"wind": "off"}
+    assert page.desk.simulation.wishes == {"wind": "off"}
 
 
 def test_what_went_wrong_is_said_as_an_error(application, desk, page):
@@ -292,3 +315,98 @@ def test_what_went_wrong_is_said_as_an_error(application, desk, page):
 def test_times_of_notes_carry_seconds_into_minutes(application, page):
     page.notes.add(59.96, Severity.NOTE, "nearly a minute")
     assert page.notes.texts().endswith("1:00.0  nearly a minute")
+
+
+def test_a_finding_of_the_report_leads_to_its_view(application, desk, page):
+    connect(application, page)
+    take_off(application, page)
+    press(page, Request.RETURN)
+    turn_until(application, lambda: has_landed(page))
+    found = next(finding for finding in page.desk.in_hand.ended.report.findings if finding.code == "views-taken")
+    row = next(n for n, text in enumerate(page.findings.texts()) if "views-taken" in text)
+    page.findings.clicked.emit(page.findings.model().index(row, 0))
+    selection = desk.workspace.selection
+    assert (selection.kind, selection.id) == (ItemKind.VIEWPOINT, found.place)
+
+
+def few_items(monkeypatch, limit):
+    """An autopilot with room for fewer photos than a small plan has."""
+    monkeypatch.setattr("groundstation.services.live_limit.photos_that_fit", lambda _autopilot: limit)
+
+
+def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, desk, page, monkeypatch):
+    few_items(monkeypatch, 4)
+    page.questions.shares = False
+    page.connection.button.click()
+    turn_until_idle(application, desk)
+    assert (page.questions.asked[0].longest, page.questions.asked[0].limit) == (6, 4)
+    assert not page.desk.is_connected
+    assert len(desk.workspace.document.plans) == 1
+    page.questions.shares = True
+    connect(application, page)
+    entry = desk.workspace.document.current
+    assert entry.title == "First, shared out"
+    assert [len(sortie.viewpoint_ids) <= 4 for sortie in entry.plan.sorties] == [True] * page.sortie.count()
+    assert {view.id for view in entry.plan.viewpoints} == {view.id for view in planned()[1].viewpoints}
+    assert page.desk.is_for_shown_plan
+    assert page._phase.text() == "Connected. Upload the mission."
+
+
+def test_start_waits_for_rtk_only_where_it_is_needed(application, desk, page):
+    from missions.simulator.scene import Conditions
+
+    page.desk.simulation.conditions = Conditions(fix="single")
+    connect(application, page)
+    press(page, Request.UPLOAD)
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+    page.settings.needs_rtk.click()
+    turn_until(application, lambda: not page.buttons.button(Request.START).isEnabled())
+    assert "RTK" in page.checks.text()
+    page.settings.needs_rtk.click()
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+
+
+def test_parameters_of_a_real_vehicle_are_set_only_where_allowed_and_after_a_question(
+    application, desk, page, monkeypatch
+):
+    radio = Reopening()
+    radio.is_simulated = False
+    monkeypatch.setattr(page.desk, "_connection", lambda _sortie: radio)
+    page.desk.set_choice(ConnectionChoice(LinkKind.TCP, "127.0.0.1:5760"))
+    page.connection.setValue(page.desk.choice)
+    page.connection.button.click()
+    turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
+    assert page.desk.parameters_to_set() == ()
+    page.settings.sets_parameters.click()
+    page.questions.sets = False
+    press(page, Request.UPLOAD)
+    assert "MNT1_PITCH_MIN = " in page.questions.asked[-1]
+    assert "restarted" in page.questions.asked[-1]
+    assert page.desk.in_hand.view.phase is None
+    page.questions.sets = True
+    press(page, Request.UPLOAD)
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+
+
+def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_picture(application, desk, page, tmp_path):
+    from planning.scenes import write_scene
+    from planning.site_file import read_site
+
+    connect(application, page)
+    take_off(application, page)
+    folder = tmp_path / "office"
+    folder.mkdir()
+    other = read_site(write_scene("office", folder))
+    desk.workspace.session.open(Document(other), None)
+    before = n_photos(page)
+    turn_until(application, lambda: n_photos(page) > before)
+    assert page.pictures._flight is None
+    assert desk.window.stage.scene()._panel_values is None
+    assert page._phase.text().startswith("Flying.")
+    assert page.buttons.button(Request.RETURN).isEnabled()
+    assert not page.buttons.button(Request.UPLOAD).isEnabled()
+    press(page, Request.RETURN)
+    turn_until(application, lambda: has_landed(page))
+    page.report.top_up.click()
+    flown_over = planned()[0].site.name
+    assert f"This flight was over the site {flown_over}" in desk.window.messages.texts()

@@ -1,0 +1,68 @@
+"""Where a flight stands, in the window's language."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject
+
+from groundstation.gui.fly.fly_desk import FlyDesk
+from groundstation.gui.workspace import Workspace
+from groundstation.services.live_events import LinkState, LiveView, Request
+from groundstation.vehicle.run_records import Phase
+
+
+class FlightWords(QObject):
+    """Says what a desk is doing."""
+
+    def __init__(self, workspace: Workspace, desk: FlyDesk, parent: QObject) -> None:
+        super().__init__(parent)
+        self._workspace, self._desk = workspace, desk
+
+    def connected_to(self) -> str:
+        """The other end of the link; empty where there is none."""
+        desk = self._desk
+        if not desk.is_connected:
+            return ""
+        if desk.choice.url:
+            return desk.choice.url
+        return self.tr("Simulation, {0:g} times as fast").format(desk.choice.speed_up)
+
+    def where_it_stands(self) -> str:
+        """What is going on, or what to do first."""
+        desk, in_hand = self._desk, self._desk.in_hand
+        if self._workspace.document.site is None and not desk.is_connected:
+            return self.tr("Open or import a site first, on the Site tab.")
+        if (desk.plan is None or not desk.plan.sorties) and not desk.is_connected:
+            return self.tr("Plan a flight first, on the Plan tab.")
+        if desk.is_preparing:
+            return self.tr("The flight is being prepared ...")
+        if not desk.is_connected or in_hand is None:
+            return self.tr("Not connected.")
+        if in_hand.link is LinkState.OPENING or in_hand.view is None:
+            return self.tr("The link is being opened ...")
+        if in_hand.link is LinkState.SILENT:
+            return self.tr("The link is open; no vehicle was heard yet.")
+        return self._phase_text(in_hand.view)
+
+    def _phase_text(self, view: LiveView) -> str:
+        texts = {
+            None: self.tr("Connected. Upload the mission."),
+            Phase.CONNECTING: self.tr("Connecting ..."),
+            Phase.PREPARING: self.tr("The vehicle is being prepared ..."),
+            Phase.UPLOADING: self.tr("Uploading ..."),
+            Phase.CHECKING: self.tr("On board. Waiting for the list."),
+            Phase.READY: self.tr("Ready for take-off."),
+            Phase.STARTING: self.tr("Starting ..."),
+            Phase.FLYING: self.tr("Flying."),
+            Phase.ENDED: self.tr("Landed."),
+        }
+        text = texts[view.phase]
+        if not self._desk.is_for_shown_plan and not view.state.is_armed:
+            return self.tr("This connection is for another plan. Disconnect, and connect for the plan that is shown.")
+        if view.phase is Phase.READY and Request.START not in view.may:
+            return texts[Phase.CHECKING]
+        what, done, total = view.doing
+        if view.phase is Phase.UPLOADING and total > 0.0:
+            return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._workspace.words(what), done, total)
+        if view.phase is Phase.FLYING and view.state.mode is not None:
+            return self.tr("{0} Mode: {1}").format(text, view.state.mode.value)
+        return text
