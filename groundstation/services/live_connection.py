@@ -163,7 +163,7 @@ class Simulation:
         vehicle = SampledVehicle(self.autopilot, flown, self.site_model.site.origin)
         ground, air = memory_pair(vehicle=vehicle.address, clock=clock)
         ground.observe(observe)
-        link = through_air(ground, decisions, self.conditions, lambda: vehicle.now_s, self.seed)
+        link = through_air(ground, decisions, self.conditions, lambda: vehicle.flight_s, self.seed)
         # It ends when the link is closed.
         threading.Thread(
             target=serve, args=(vehicle, [air], self.speed_up), name="simulated-vehicle", daemon=True

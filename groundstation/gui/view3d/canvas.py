@@ -80,6 +80,9 @@ class Canvas(QtInteractor):
         self.is_open = False
         self._drawn.clear()
         super().close()
+        # A surface is no QObject: Qt does not tell PySide of its end, and a wrapper that is kept would be found again
+        # for whatever lies at its address later, as an object of a wrong class.
+        self._forget_context()
 
     def draw(self, name: Hashable, drawables: Sequence[Drawable]) -> None:
         """Draw these under a name, in place of what was drawn under it."""
