@@ -37,10 +37,12 @@ check: setup
 	$(VENV)/bin/lint-imports
 
 test: check
-	$(PY) -m pytest -n $(WORKERS)
+	$(PY) -m pytest -n $(WORKERS) -m 'not slow and not benchmark and not alone'
+	$(PY) -m pytest -m 'alone and not slow and not benchmark'
 
 test-all: check
-	$(PY) -m pytest -n $(WORKERS) -m 'not benchmark'
+	$(PY) -m pytest -n $(WORKERS) -m 'not benchmark and not alone'
+	$(PY) -m pytest -m 'alone and not benchmark'
 
 benchmark: setup
 	$(PY) -m tests.benchmarks

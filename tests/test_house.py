@@ -44,6 +44,7 @@ print([name for name in {forbidden!r} if name in sys.modules])
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.alone
 def test_help_answers_in_under_half_a_second_and_names_the_commands():
     fastest = 9.0
     for _ in range(3):

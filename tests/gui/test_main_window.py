@@ -169,6 +169,7 @@ def test_every_action_has_a_name_and_no_key_is_given_twice(application, desk):
     assert {"Ctrl+S", "Ctrl+Z", "Ctrl+P", "F1", "Ctrl+1"} <= set(keys)
 
 
+@pytest.mark.alone
 def test_the_window_answers_within_50_ms_while_a_plan_runs(application, desk):
     """Other processes only ever make gaps longer, so the best of a few plans is what the window itself needs."""
     from PySide6.QtCore import Qt, QTimer

@@ -97,6 +97,7 @@ def has_landed(page):
     return page.desk.in_hand is not None and page.desk.in_hand.ended is not None
 
 
+@pytest.mark.alone
 def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(application, desk, page):
     """Ten times as fast; no turn of the event loop is longer than 50 ms but for the first pictures of each kind."""
     connect(application, page, speed_up=10.0)
