@@ -6,21 +6,14 @@ import math
 from collections import deque
 
 from groundstation.vehicle.commands import CommandCall, CommandOutcome
-from groundstation.vehicle.modes import LAND_MODE, MISSION_MODE, PAUSE_MODE, RETURN_MODE, set_mode_command
-from groundstation.vehicle.run_records import PilotOrder
+from groundstation.vehicle.modes import set_mode_command
+from groundstation.vehicle.run_records import ORDER_MODES, PilotOrder
 from groundstation.vehicle.setup import message_requests
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.telemetry import LocalFrame, folded
 from missions.mavlink.drive import GROUND_HEARTBEAT, HEARTBEAT_EVERY_S
 from missions.mavlink.link import GROUND_STATION
 from missions.mavlink.messages import Address, Message, Received
-
-ORDER_MODES = {
-    PilotOrder.PAUSE: PAUSE_MODE,
-    PilotOrder.RESUME: MISSION_MODE,
-    PilotOrder.RETURN: RETURN_MODE,
-    PilotOrder.LAND: LAND_MODE,
-}
 
 ASK_EVERY_S = 10.0
 """How often telemetry is asked for while no position comes: nobody acknowledges that here, and radios lose messages."""

@@ -22,11 +22,11 @@ from collections.abc import Generator
 from typing import Any, Protocol
 
 from groundstation.vehicle.commands import CommandCall, CommandOutcome
-from groundstation.vehicle.modes import LAND_MODE, MISSION_MODE, PAUSE_MODE, RETURN_MODE, set_mode_command
+from groundstation.vehicle.modes import set_mode_command
 from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.preflight import OnBoard, PreflightCheck, preflight_checks
 from groundstation.vehicle.recorder import Recorder
-from groundstation.vehicle.run_records import Phase, PilotOrder, RunOptions, RunOutcome, RunView
+from groundstation.vehicle.run_records import ORDER_MODES, Phase, PilotOrder, RunOptions, RunOutcome, RunView
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.telemetry import LocalFrame, folded
 from groundstation.vehicle.watch import Watch, WatchRules, watched
@@ -38,14 +38,6 @@ from planning.errors import GroundStationError
 
 WATCH_EVERY_S = 0.5
 LONGEST_WAIT_S = 0.25
-
-
-_ORDER_MODES = {
-    PilotOrder.PAUSE: PAUSE_MODE,
-    PilotOrder.RESUME: MISSION_MODE,
-    PilotOrder.RETURN: RETURN_MODE,
-    PilotOrder.LAND: LAND_MODE,
-}
 
 
 class Exchange(Protocol):
@@ -270,7 +262,7 @@ class FlightRun:
             return
         order = self._orders.popleft()
         self.was_ordered_away = order is not PilotOrder.RESUME
-        mode = _ORDER_MODES[order][self.state.autopilot]
+        mode = ORDER_MODES[order][self.state.autopilot]
         target = self.state.address
         command = set_mode_command(self.state.autopilot, mode, target.system, target.component)
         self._order_call = CommandCall(order.value, command, self.own)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from groundstation.vehicle.commands import CommandOutcome
+from groundstation.vehicle.modes import LAND_MODE, MISSION_MODE, PAUSE_MODE, RETURN_MODE
 from groundstation.vehicle.preflight import OnBoard, PreflightCheck
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import Watch
@@ -34,6 +35,15 @@ class PilotOrder(Enum):
     RESUME = "resuming the mission"
     RETURN = "returning home"
     LAND = "landing here"
+
+
+ORDER_MODES = {
+    PilotOrder.PAUSE: PAUSE_MODE,
+    PilotOrder.RESUME: MISSION_MODE,
+    PilotOrder.RETURN: RETURN_MODE,
+    PilotOrder.LAND: LAND_MODE,
+}
+"""The mode that carries out each order, by autopilot."""
 
 
 @dataclass(frozen=True, slots=True)
