@@ -26,6 +26,9 @@ UNDISTORT_STEPS = 50
 UNDISTORT_TOLERANCE = 1e-12
 """Of the fixed-point iteration that takes Brown's distortion away, normalised image units."""
 
+WIDENED = 1.5
+"""How far outside the picture Brown's polynomial is still used, of half the picture."""
+
 STRAIGHT = (0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -77,6 +80,14 @@ class Intrinsics:
         return self.distortion == STRAIGHT
 
     @property
+    def _reach_x(self) -> float:
+        return max(self.cx_px, self.width_px - self.cx_px) / self.fx_px
+
+    @property
+    def _reach_y(self) -> float:
+        return max(self.cy_px, self.height_px - self.cy_px) / self.fy_px
+
+    @property
     def matrix(self) -> Array:
         """K, shape (3, 3), for the continuous pixel coordinates."""
         return np.array([[self.fx_px, 0.0, self.cx_px], [0.0, self.fy_px, self.cy_px], [0.0, 0.0, 1.0]])
@@ -101,32 +112,26 @@ class Intrinsics:
     def pixels(self, points_cam: Array) -> Array:
         """Project points, shape (n, 3), in camera axes to pixels, shape (n, 2); NaN for points not in front.
 
-        Far outside the picture the distortion polynomial means nothing: see `is_seen`.
+        NaN, too, for points outside the field of view widened by half where the picture is distorted: the polynomial
+        was fitted inside, and folds points back into the picture from far outside.
         """
         points = np.atleast_2d(np.asarray(points_cam, float))
         z = points[:, 2]
         with np.errstate(divide="ignore", invalid="ignore"):
             x, y = points[:, 0] / z, points[:, 1] / z
-        in_front = z > 0.0
-        x, y = np.where(in_front, x, np.nan), np.where(in_front, y, np.nan)
+            meant = z > 0.0
+            if not self.is_straight:
+                meant &= (np.abs(x) <= WIDENED * self._reach_x) & (np.abs(y) <= WIDENED * self._reach_y)
+        x, y = np.where(meant, x, np.nan), np.where(meant, y, np.nan)
         if not self.is_straight:
             x, y = self._distorted(x, y)
         return np.column_stack([self.fx_px * x + self.cx_px, self.fy_px * y + self.cy_px])
 
     def is_seen(self, points_cam: Array) -> NDArray[np.bool_]:
-        """Whether points, shape (n, 3), lie in front of the camera and inside the picture, shape (n,).
-
-        Points outside the straight picture's field of view, widened by half, are out whatever the polynomial says.
-        """
-        points = np.atleast_2d(np.asarray(points_cam, float))
-        pixels = self.pixels(points)
-        z = points[:, 2]
-        reach_x = 1.5 * max(self.cx_px, self.width_px - self.cx_px) / self.fx_px
-        reach_y = 1.5 * max(self.cy_px, self.height_px - self.cy_px) / self.fy_px
-        near = (z > 0.0) & (np.abs(points[:, 0]) <= reach_x * z) & (np.abs(points[:, 1]) <= reach_y * z)
+        """Whether points, shape (n, 3), lie in front of the camera and inside the picture, shape (n,)."""
+        pixels = self.pixels(points_cam)
         with np.errstate(invalid="ignore"):
-            inside = (pixels >= 0.0).all(axis=1) & (pixels <= (self.width_px, self.height_px)).all(axis=1)
-        return np.asarray(near & inside)
+            return np.asarray(((pixels >= 0.0) & (pixels <= (self.width_px, self.height_px))).all(axis=1))
 
     def rays(self, pixels: Array) -> Array:
         """Directions, shape (n, 3), camera axes, z = 1, that fall on pixels, shape (n, 2)."""
