@@ -191,14 +191,14 @@ def _refined(start: FacadeSurface, points: Array, parameters: FitParameters, n_f
     for _ in range(2):
 
         def residuals(change: Array, base: FacadeSurface = surface, sigma: float = noise) -> Array:
-            moved = _changed(base, change * unit)
+            moved = changed(base, change * unit)
             prior = [] if n_free == 3 else [_lean(moved, start) / LEVEL_RAD]
             return np.concatenate([moved.height_m(points) / sigma, prior])
 
         fitted = least_squares(
             residuals, np.zeros(n_free), loss="cauchy", x_scale="jac", max_nfev=MAX_EVALUATIONS, xtol=1e-12
         )
-        surface = _centred(_changed(surface, fitted.x * unit), points)
+        surface = _centred(changed(surface, fitted.x * unit), points)
         noise = _noise_m(surface, points)
     jacobian = _jacobian(surface, points, n_free) / noise
     inside = np.abs(surface.height_m(points)) <= 3.0 * noise
@@ -217,7 +217,7 @@ def _lean(surface: FacadeSurface, start: FacadeSurface) -> float:
     return float(surface.up_enu @ start.right_enu)
 
 
-def _changed(surface: FacadeSurface, change: Array) -> FacadeSurface:
+def changed(surface: FacadeSurface, change: Array) -> FacadeSurface:
     """Moved along the normal, turned about right, up and the normal, and bent: the five parameters in this order."""
     from scipy.spatial.transform import Rotation
 
@@ -247,6 +247,6 @@ def _jacobian(surface: FacadeSurface, points: Array, n_free: int) -> Array:
     for index, step in enumerate(steps):
         change = np.zeros(n_free)
         change[index] = step
-        ahead, behind = _changed(surface, change).height_m(points), _changed(surface, -change).height_m(points)
+        ahead, behind = changed(surface, change).height_m(points), changed(surface, -change).height_m(points)
         columns.append((ahead - behind) / (2.0 * step))
     return np.stack(columns, axis=1)

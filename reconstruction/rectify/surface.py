@@ -41,8 +41,8 @@ class FacadeSurface:
         for name in ("anchor_enu_m", "right_enu", "up_enu"):
             if getattr(self, name).shape != (3,):
                 raise ValueError(f"{name}: expected shape (3,), got {getattr(self, name).shape}")
-        axes = np.stack([self.right_enu, self.up_enu])
-        if not np.allclose(axes @ axes.T, np.eye(2), atol=1e-6):
+        right, up = self.right_enu, self.up_enu
+        if not max(abs(right @ right - 1.0), abs(up @ up - 1.0), abs(right @ up)) < 1e-6:
             raise ValueError("right_enu, up_enu: expected unit vectors at a right angle")
         if not np.isfinite(self.curvature_per_m):
             raise ValueError(f"curvature_per_m: expected a finite number, got {self.curvature_per_m}")
@@ -50,7 +50,8 @@ class FacadeSurface:
     @property
     def normal_enu(self) -> Array:
         """Outward unit normal at the anchor, shape (3,)."""
-        return np.cross(self.right_enu, self.up_enu)
+        (a, b, c), (u, v, w) = self.right_enu, self.up_enu
+        return np.array([b * w - c * v, c * u - a * w, a * v - b * u])
 
     @property
     def is_flat(self) -> bool:
