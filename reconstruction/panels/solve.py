@@ -157,7 +157,7 @@ def _panels(
 
 
 def _corner_covariances(adjusted: Adjusted, st: Array, lines: NDArray[np.int64]) -> Array:
-    """Covariances of corners, shape (n, 3, 3), ENU, from those of the surface and of their column and row, shape (n, 2)."""
+    """Covariances of corners, shape (n, 3, 3), ENU, from those of the surface and of their two lines, shape (n, 2)."""
     surface = adjusted.surface
     n_lines, n_all = len(adjusted.positions_m), len(adjusted.covariance)
     design = np.zeros((len(st), 3, n_all))

@@ -68,6 +68,8 @@ class FacadePatch:
         Convex outline in the photo, shape (n, 2).
     share
         Of the rays that hit the model.
+    points_enu_m
+        Points of the model on it, one for each ray, shape (n, 3).
     """
 
     plane: SurfaceFit
@@ -76,6 +78,7 @@ class FacadePatch:
     high_st_m: Array
     outline_px: Array
     share: float
+    points_enu_m: Array
 
     def fitted(self, photo: PosedPhoto) -> FittedFacade:
         """The scene for `curvature.decide_surface`."""
@@ -227,4 +230,5 @@ def _patch(hits: _Hits, inside: NDArray[np.bool_], photo: PosedPhoto, parameters
         np.asarray(np.nanmax(st, axis=0), float),
         np.asarray(outline, float),
         float(inside.sum() / len(inside)),
+        points,
     )
