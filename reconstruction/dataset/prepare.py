@@ -1,0 +1,244 @@
+"""The complete data set of paper 3.3.1 from photos, panels and a coarse model, in a folder that others read, too.
+
+images/, sparse/0 and points.ply are what COLMAP, gsplat and 2DGS start from; transforms.json is nerfstudio's; panels/,
+masks/ and normals/ are ours (docs/file-formats.md).
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.effects import Decision, Wish, decide
+from planning.errors import InputError
+from planning.findings import Finding, Severity
+from planning.jit import n_threads
+from planning.mesh import join, write_mesh
+from planning.progress import QUIET, Monitor
+from planning.site import SiteModel
+from reconstruction.cameras import PosedPhoto
+from reconstruction.dataset.effects import HiddenPanels, LensDistortion, PanelsInPhotos
+from reconstruction.dataset.grow import grown_corners
+from reconstruction.dataset.layers import Scene, draw_layers, normals_to_16_bit, straightened
+from reconstruction.dataset.points import ColouredPoints, start_points
+from reconstruction.dataset.records import write_records
+from reconstruction.dataset.refined_mesh import RefineParameters, refine_mesh
+from reconstruction.ray_casting import RayCaster
+
+Array = NDArray[np.float64]
+
+FOLDERS = ("images", "panels", "masks", "normals", "sparse/0")
+
+
+@dataclass(frozen=True, slots=True)
+class PrepareParameters:
+    """How a data set is made.
+
+    Parameters
+    ----------
+    normal_step
+        Pixels per pixel of the normal maps, along each side; they take most of the time.
+    n_points
+        Points that reconstruction starts from, drawn evenly from the refined mesh.
+    hidden_panels, lens_distortion
+        As the scene calls for, always, or never.
+    """
+
+    normal_step: int = 2
+    n_points: int = 100_000
+    hidden_panels: Wish = "auto"
+    lens_distortion: Wish = "auto"
+    refine: RefineParameters = field(default_factory=RefineParameters)
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.normal_step < 1 or self.n_points < 0:
+            raise ValueError("expected a normal step of at least 1 and no negative number of points")
+
+
+@dataclass(frozen=True, slots=True)
+class PreparedData:
+    """What was written.
+
+    Parameters
+    ----------
+    photos
+        That are in the data set, with their straight cameras.
+    findings
+        Photos that were skipped, and why.
+    """
+
+    folder: Path
+    photos: tuple[PosedPhoto, ...]
+    decisions: tuple[Decision, ...]
+    findings: tuple[Finding, ...]
+
+
+def prepare(
+    photos: Sequence[PosedPhoto],
+    model: SiteModel,
+    folder: Path,
+    parameters: PrepareParameters | None = None,
+    monitor: Monitor = QUIET,
+) -> PreparedData:
+    """Write the data set of a site's photos.
+
+    Parameters
+    ----------
+    model
+        The site with its panels; its building mesh is the coarse model.
+    folder
+        That does not exist yet, or is empty. What was written is taken away again if this fails or is cancelled.
+
+    Raises
+    ------
+    InputError
+        There are no photos, the folder is not empty or cannot be written, or none of the photos can be read.
+    """
+    parameters = parameters or PrepareParameters()
+    corners = np.array([panel.corners_enu_m for facade in model.site.facades for panel in facade.panels], float)
+    if not photos:
+        raise InputError("there are no photos with a pose to prepare")
+    made = _empty(folder)
+    try:
+        return _prepare(photos, model, corners.reshape(-1, 4, 3), folder, parameters, monitor)
+    except BaseException:
+        for name in {part.split("/")[0] for part in FOLDERS} | {"transforms.json", "dataset.json"}:
+            _remove(folder / name)
+        for mesh in ("refined.ply", "points.ply"):
+            _remove(folder / mesh)
+        if made:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def _prepare(
+    photos: Sequence[PosedPhoto],
+    model: SiteModel,
+    corners: Array,
+    folder: Path,
+    parameters: PrepareParameters,
+    monitor: Monitor,
+) -> PreparedData:
+    refined = refine_mesh(model.building, corners, parameters.refine, monitor)
+    surroundings = RayCaster(join([refined.mesh, *model.obstacles]))
+    bent = decide(LensDistortion(), photos, parameters.lens_distortion)
+    hidden = decide(HiddenPanels(), PanelsInPhotos(photos, corners, surroundings), parameters.hidden_panels)
+    refined_caster = RayCaster(refined.mesh)
+    scene = Scene(corners, grown_corners(model.site.facades), refined_caster, surroundings if hidden.on else None)
+    points = start_points(refined.mesh, parameters.n_points, parameters.seed)
+    write_mesh(folder / "refined.ply", refined.mesh)
+    kept: list[PosedPhoto] = []
+    findings: list[Finding] = []
+    workers = max(1, n_threads())
+    with ThreadPoolExecutor(workers) as pool:
+        for start in range(0, len(photos), workers):
+            monitor.report("preparing photos", start, len(photos))
+            part = photos[start : start + workers]
+            for done in pool.map(
+                lambda photo: _photo(photo, scene, points, refined_caster, folder, bent.on, parameters), part
+            ):
+                if isinstance(done, Finding):
+                    findings.append(done)
+                else:
+                    kept.append(done)
+    if not kept:
+        raise InputError(f"none of the {len(photos)} photos can be read; the first: {findings[0].message}")
+    monitor.report("writing cameras and points", 0, 1)
+    write_records(folder, kept, model.site, points, (bent, hidden), parameters.normal_step)
+    return PreparedData(folder, tuple(kept), (bent, hidden), tuple(findings))
+
+
+def _photo(
+    photo: PosedPhoto,
+    scene: Scene,
+    points: ColouredPoints,
+    mesh: RayCaster,
+    folder: Path,
+    straighten: bool,
+    parameters: PrepareParameters,
+) -> PosedPhoto | Finding:
+    """Write one photo's layers; a photo that cannot be read is a finding."""
+    content = np.asarray(cv2.imread(str(photo.path), cv2.IMREAD_COLOR)) if photo.path.is_file() else None
+    lens = photo.intrinsics
+    if content is None or content.ndim != 3:
+        return Finding(
+            Severity.WARNING, "photo-unreadable", "the picture cannot be decoded; it was left out", photo.name
+        )
+    if content.shape[:2] != (lens.height_px, lens.width_px):
+        found = f"{content.shape[1]} x {content.shape[0]}"
+        text = f"the picture has {found} pixels, its camera {lens.width_px} x {lens.height_px}; it was left out"
+        return Finding(Severity.WARNING, "photo-size", text, photo.name)
+    straight = replace(photo, intrinsics=lens.straight())
+    target = folder / "images" / photo.name
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if straighten and not lens.is_straight:
+        straight, content = straightened(photo, content)
+        _write(target, content)
+    else:
+        _same_file(photo.path, target)
+    layers = draw_layers(straight, scene, parameters.normal_step)
+    _write(layer_path(folder, "panels", photo.name), layers.panels)
+    _write(layer_path(folder, "masks", photo.name), layers.facade.astype(np.uint8) * 255)
+    normals = normals_to_16_bit(layers.normals_enu)
+    _write(layer_path(folder, "normals", photo.name), np.ascontiguousarray(normals[..., ::-1]))
+    points.add(straight, content, mesh)
+    return replace(straight, path=target)
+
+
+def layer_path(folder: Path, layer: str, name: str) -> Path:
+    """Of a photo's layer: its name with `.png` after it, so that a.jpg and a.png do not meet."""
+    return folder / layer / f"{name}.png"
+
+
+def _write(path: Path, image: NDArray[np.uint8] | NDArray[np.uint16]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    quality = (
+        [cv2.IMWRITE_JPEG_QUALITY, 97] if path.suffix.lower() in (".jpg", ".jpeg") else [cv2.IMWRITE_PNG_COMPRESSION, 3]
+    )
+    coded, content = cv2.imencode(path.suffix, image, quality)
+    if not coded:
+        raise InputError(f"{path}: cannot be coded as {path.suffix}")
+    try:
+        path.write_bytes(content.tobytes())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+
+
+def _same_file(source: Path, target: Path) -> None:
+    """A hard link where the file system can, else a copy."""
+    try:
+        os.link(source, target)
+    except OSError:
+        try:
+            shutil.copyfile(source, target)
+        except OSError as error:
+            raise InputError(f"{target}: cannot be written ({error.strerror or error})") from error
+
+
+def _empty(folder: Path) -> bool:
+    """Make the folder; whether it was not there before."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(f"{folder}: is not empty; name a new folder for the data set")
+    was_there = folder.exists()
+    try:
+        for name in FOLDERS:
+            (folder / name).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made ({error.strerror or error})") from error
+    return not was_there
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)

@@ -1,0 +1,113 @@
+"""Cameras, points and the description of a data set: COLMAP's model, nerfstudio's transforms.json, our dataset.json."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.effects import Decision
+from planning.json_file import write_atomically
+from planning.site import Site
+from reconstruction.cameras import PosedPhoto
+from reconstruction.colmap.folder import write_model
+from reconstruction.colmap.georeference import model_of
+from reconstruction.colmap.record import ColmapPoints
+from reconstruction.dataset.points import ColouredPoints
+
+DATASET_FORMAT = "reflight-dataset/1"
+
+OPENGL_FROM_CAM = np.diag([1.0, -1.0, -1.0])
+"""nerfstudio's camera axes are x right, y up, z backwards."""
+
+
+def write_records(
+    folder: Path,
+    photos: Sequence[PosedPhoto],
+    site: Site,
+    points: ColouredPoints,
+    decisions: Sequence[Decision],
+    normal_step: int,
+) -> None:
+    """Write sparse/0, points.ply, transforms.json and dataset.json; the world of all is the site's ENU frame."""
+    n = len(points.points_enu_m)
+    xyz, rgb = points.points_enu_m, points.rgb
+    cloud = ColmapPoints(
+        np.arange(1, n + 1), xyz, rgb, np.full(n, -1.0), np.zeros(n + 1, np.int64), np.zeros((0, 2), np.int64)
+    )
+    write_model(folder / "sparse" / "0", replace(model_of(photos), points=cloud))
+    write_atomically(folder / "points.ply", coloured_ply(xyz, rgb))
+    write_atomically(folder / "transforms.json", _json(transforms(photos)))
+    write_atomically(folder / "dataset.json", _json(_description(photos, site, decisions, normal_step)))
+
+
+def transforms(photos: Sequence[PosedPhoto]) -> dict[str, Any]:
+    """Content of nerfstudio's transforms.json (docs.nerf.studio, "Data conventions").
+
+    Facade masks do not stand under its `mask_path`, whose black pixels are not trained on.
+    """
+    frames = []
+    for photo in photos:
+        lens, pose = photo.intrinsics, np.eye(4)
+        pose[:3, :3] = photo.pose.cam_from_enu.T @ OPENGL_FROM_CAM
+        pose[:3, 3] = photo.pose.position_enu_m
+        frames.append(
+            {
+                "file_path": f"images/{photo.name}",
+                "facade_mask_path": f"masks/{photo.name}.png",
+                "panel_path": f"panels/{photo.name}.png",
+                "normal_path": f"normals/{photo.name}.png",
+                "w": lens.width_px,
+                "h": lens.height_px,
+                "fl_x": lens.fx_px,
+                "fl_y": lens.fy_px,
+                "cx": lens.cx_px,
+                "cy": lens.cy_px,
+                "transform_matrix": pose.tolist(),
+            }
+        )
+    return {"camera_model": "PINHOLE", "ply_file_path": "points.ply", "frames": frames}
+
+
+def _description(
+    photos: Sequence[PosedPhoto], site: Site, decisions: Sequence[Decision], normal_step: int
+) -> dict[str, Any]:
+    panels = [(facade.id, panel) for facade in site.facades for panel in facade.panels]
+    return {
+        "format": DATASET_FORMAT,
+        "site": site.name,
+        "origin": asdict(site.origin),
+        "panels": [
+            {"index": number, "id": panel.id, "facade": facade, "corners_enu_m": panel.corners_enu_m}
+            for number, (facade, panel) in enumerate(panels, 1)
+        ],
+        "photos": [
+            {"name": photo.name, "taken_at": None if photo.taken_at is None else photo.taken_at.isoformat()}
+            for photo in photos
+        ],
+        "normal_step": normal_step,
+        "effects": [asdict(decision) for decision in decisions],
+    }
+
+
+def coloured_ply(points_enu_m: NDArray[np.float64], rgb: NDArray[np.uint8]) -> bytes:
+    """Binary PLY of a coloured point cloud, coordinates as float32 as all readers of splats expect."""
+    fields = [(axis, "<f4") for axis in "xyz"] + [(colour, "u1") for colour in ("red", "green", "blue")]
+    table = np.empty(len(points_enu_m), fields)
+    for i, axis in enumerate("xyz"):
+        table[axis] = points_enu_m[:, i]
+    for i, colour in enumerate(("red", "green", "blue")):
+        table[colour] = rgb[:, i]
+    properties = "".join(f"property float {axis}\n" for axis in "xyz")
+    properties += "".join(f"property uchar {colour}\n" for colour in ("red", "green", "blue"))
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(table)}\n{properties}end_header\n"
+    return header.encode("ascii") + table.tobytes()
+
+
+def _json(content: dict[str, Any]) -> bytes:
+    return json.dumps(content, indent=1).encode()

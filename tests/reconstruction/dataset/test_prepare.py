@@ -1,0 +1,243 @@
+"""The whole data set of made photos: read back by other means, effects both ways, nothing left behind on failure."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import open3d as o3d
+import pytest
+from numpy.typing import NDArray
+
+from planning.effects import decide
+from planning.errors import InputError, OperationCancelled
+from planning.mesh import TriangleMesh, box_mesh, join
+from planning.progress import Monitor
+from planning.site import Airspace, Facade, Obstacle, Origin, Panel, Site, SiteModel
+from reconstruction.cameras import Intrinsics, PosedPhoto
+from reconstruction.colmap.camera_models import intrinsics_of
+from reconstruction.colmap.folder import read_model
+from reconstruction.dataset.effects import HiddenPanels, LensDistortion, PanelsInPhotos, most_moved_px
+from reconstruction.dataset.grow import frame_width_m, grown_corners
+from reconstruction.dataset.layers import (
+    Scene,
+    draw_layers,
+    normal_map,
+    normals_from_16_bit,
+    normals_to_16_bit,
+    straightened,
+)
+from reconstruction.dataset.panel_images import draw_panels
+from reconstruction.dataset.prepare import PrepareParameters, prepare
+from reconstruction.dataset.refined_mesh import refine_mesh
+from reconstruction.ray_casting import RayCaster
+from tests.reconstruction.dataset.test_panel_images import grid
+from tests.reconstruction.rectify.scenes import looking_at, surface_mesh
+from tests.reconstruction.rectify.test_surface import surface
+
+Array = NDArray[np.float64]
+FACE = surface(0.0, lean_rad=0.0)
+LENS = Intrinsics(200, 150, 142.0, 142.0, 100.0, 75.0)
+BENT = replace(LENS, distortion=(-0.11, 0.015, 0.0004, -0.0003, -0.02))
+QUICK = PrepareParameters(n_points=500)
+
+
+def site_model(obstacle: TriangleMesh | None = None) -> SiteModel:
+    panels = tuple(
+        Panel(f"A-{i:04d}", tuple(tuple(map(float, corner)) for corner in corners))  # type: ignore[arg-type]
+        for i, corners in enumerate(grid())
+    )
+    airspace = Airspace((-80.0, -80.0, -5.0), (80.0, 80.0, 80.0), -5.0)
+    site = Site("made", Origin(22.3, 114.2, 60.0), (Facade("A", panels),), airspace, (0.0, -40.0, 0.0))
+    mesh = surface_mesh(FACE, (-7.0, -7.0), (7.0, 7.0), 0.4, 0.1)
+    if obstacle is None:
+        return SiteModel(site, mesh)
+    return SiteModel(replace(site, obstacles=(Obstacle("kiosk", mesh="kiosk.ply"),)), mesh, (obstacle,))
+
+
+def kiosk() -> TriangleMesh:
+    middle = FACE.anchor_enu_m + 8.0 * FACE.normal_enu
+    return box_mesh(middle - 1.0, middle + 1.0)
+
+
+def photos_in(folder: Path, lens: Intrinsics = LENS, n: int = 3) -> list[PosedPhoto]:
+    folder.mkdir(exist_ok=True)
+    photos = []
+    for number, aside in enumerate(np.linspace(-6.0, 6.0, n)):
+        photo = looking_at(FACE, 16.0, float(aside), 2.0, lens)
+        path = folder / f"DJI_{number:04d}.JPG"
+        y, x = np.mgrid[: lens.height_px, : lens.width_px]
+        picture = np.stack([x % 256, y % 256, np.full_like(x, 40 * number)], axis=-1).astype(np.uint8)
+        path.write_bytes(cv2.imencode(".jpg", picture)[1].tobytes())
+        photos.append(replace(photo, name=path.name, path=path))
+    return photos
+
+
+def test_what_is_written_is_read_by_others_and_agrees(tmp_path: Path) -> None:
+    photos = photos_in(tmp_path / "in")
+    prepared = prepare(photos, site_model(), tmp_path / "out", QUICK)
+    assert [photo.name for photo in prepared.photos] == [photo.name for photo in photos]
+    model = read_model(tmp_path / "out" / "sparse" / "0")
+    images = {image.name: image for image in model.images.values()}
+    for photo in photos:
+        image = images[photo.name]
+        assert np.allclose(image.centre_world, photo.pose.position_enu_m)
+        assert np.allclose(image.cam_from_world, photo.pose.cam_from_enu)
+        assert intrinsics_of(model.cameras[image.camera_id]) == LENS
+    nerfstudio = json.loads((tmp_path / "out" / "transforms.json").read_text())
+    for frame, photo in zip(nerfstudio["frames"], photos, strict=True):
+        world_from_cam = np.array(frame["transform_matrix"])
+        seen = FACE.anchor_enu_m
+        x, y, z = (np.linalg.inv(world_from_cam) @ [*seen, 1.0])[:3]
+        pixel = frame["fl_x"] * x / -z + frame["cx"], frame["fl_y"] * -y / -z + frame["cy"]
+        assert np.allclose(pixel, photo.pixels(seen[None])[0])
+        assert (tmp_path / "out" / frame["file_path"]).is_file()
+    cloud = o3d.io.read_point_cloud(str(tmp_path / "out" / "points.ply"))
+    assert np.allclose(np.asarray(cloud.points), model.points.xyz, atol=1e-5)
+    assert np.array_equal(np.round(np.asarray(cloud.colors) * 255.0), model.points.rgb)
+    described = json.loads((tmp_path / "out" / "dataset.json").read_text())
+    assert [panel["index"] for panel in described["panels"]] == list(range(1, 25))
+    assert {effect["effect"] for effect in described["effects"]} == {"lens distortion", "hidden panels"}
+
+
+def test_layers_show_panels_facade_and_flat_glass(tmp_path: Path) -> None:
+    photo = photos_in(tmp_path / "in", n=1)[0]
+    prepare([photo], site_model(), tmp_path / "out", PrepareParameters(normal_step=1, n_points=0))
+    name = f"{photo.name}.png"
+    panels = cv2.imread(str(tmp_path / "out" / "panels" / name), cv2.IMREAD_UNCHANGED)
+    mask = cv2.imread(str(tmp_path / "out" / "masks" / name), cv2.IMREAD_UNCHANGED)
+    normals = cv2.imread(str(tmp_path / "out" / "normals" / name), cv2.IMREAD_UNCHANGED)
+    assert panels.dtype == np.uint16
+    assert normals.dtype == np.uint16
+    for number, corners in enumerate(grid(), 1):
+        x, y = photo.pixels(corners.mean(axis=0)[None])[0]
+        if 0 <= x < 200 and 0 <= y < 150:
+            assert panels[int(y), int(x)] == number
+    assert (mask[panels > 0] == 255).all()
+    glass = normals_from_16_bit(normals[..., ::-1])[cv2.erode((panels > 0).astype(np.uint8), np.ones((3, 3))) > 0]
+    assert np.abs(glass - FACE.normal_enu).max() < 1e-4
+    frames = (mask == 255) & (panels == 0)
+    assert 0.0 < frames.mean() < 0.2
+
+
+def test_distortion_is_taken_away_where_it_is_worth_it(tmp_path: Path) -> None:
+    assert decide(LensDistortion(), photos_in(tmp_path / "bent", BENT)).on
+    assert not decide(LensDistortion(), photos_in(tmp_path / "straight")).on
+    barely = replace(LENS, distortion=(1e-4, 0.0, 0.0, 0.0, 0.0))
+    assert not decide(LensDistortion(), photos_in(tmp_path / "barely", barely)).on
+    assert most_moved_px(barely) < LensDistortion().tolerance < most_moved_px(BENT)
+    photos = photos_in(tmp_path / "bent", BENT, 1)
+    prepared = prepare(photos, site_model(), tmp_path / "out", QUICK)
+    assert prepared.photos[0].intrinsics == LENS
+    assert not (tmp_path / "out" / "images" / photos[0].name).samefile(photos[0].path)
+
+
+def test_a_straightened_picture_shows_every_direction_where_the_straight_camera_has_it() -> None:
+    photo = looking_at(FACE, 16.0, 0.0, 0.0, BENT)
+    y, x = np.mgrid[:150, :200]
+    pixels = np.column_stack([x.ravel() + 0.5, y.ravel() + 0.5])
+    rays = BENT.rays(pixels)
+    value = 127.0 + 100.0 * np.sin(8.0 * rays[:, 0]) * np.cos(8.0 * rays[:, 1])
+    picture = np.repeat(value.reshape(150, 200, 1), 3, axis=2).round().astype(np.uint8)
+    straight, found = straightened(photo, picture)
+    rays = straight.intrinsics.rays(pixels)
+    wanted = (127.0 + 100.0 * np.sin(8.0 * rays[:, 0]) * np.cos(8.0 * rays[:, 1])).reshape(150, 200)
+    assert np.abs(found[5:-5, 5:-5, 0] - wanted[5:-5, 5:-5]).max() < 2.5
+
+
+def test_hidden_panels_are_taken_out_where_something_hides_them(tmp_path: Path) -> None:
+    photos = photos_in(tmp_path / "in")
+    for model, on in ((site_model(), False), (site_model(kiosk()), True)):
+        caster = RayCaster(join([refine_mesh(model.building, grid()).mesh, *model.obstacles]))
+        decision = decide(HiddenPanels(), PanelsInPhotos(photos, grid(), caster))
+        assert decision.on == on
+    with_kiosk = prepare(photos, site_model(kiosk()), tmp_path / "with", QUICK)
+    without = prepare(photos, site_model(kiosk()), tmp_path / "without", replace(QUICK, hidden_panels="off"))
+    assert with_kiosk.decisions[1].on
+    assert not without.decisions[1].on
+    shares = []
+    for folder in ("with", "without"):
+        index = cv2.imread(str(tmp_path / folder / "panels" / f"{photos[1].name}.png"), cv2.IMREAD_UNCHANGED)
+        shares.append((index > 0).mean())
+    assert shares[1] - shares[0] > HiddenPanels().tolerance
+    plain_on = prepare(photos, site_model(), tmp_path / "on", replace(QUICK, hidden_panels="on"))
+    plain_off = prepare(photos, site_model(), tmp_path / "off", replace(QUICK, hidden_panels="off"))
+    for photo in plain_on.photos:
+        one, other = (
+            cv2.imread(str(prepared.folder / "panels" / f"{photo.name}.png"), cv2.IMREAD_UNCHANGED)
+            for prepared in (plain_on, plain_off)
+        )
+        assert (one != other).mean() <= HiddenPanels().tolerance
+
+
+def test_broken_photos_are_reported_and_left_out(tmp_path: Path) -> None:
+    photos = photos_in(tmp_path / "in")
+    photos[0].path.write_bytes(b"not a picture")
+    photos[1] = replace(photos[1], intrinsics=replace(LENS, width_px=201))
+    prepared = prepare(photos, site_model(), tmp_path / "out", QUICK)
+    assert [photo.name for photo in prepared.photos] == [photos[2].name]
+    assert {finding.code for finding in prepared.findings} == {"photo-unreadable", "photo-size"}
+    photos[2].path.unlink()
+    with pytest.raises(InputError, match="none of the 3 photos"):
+        prepare(photos, site_model(), tmp_path / "again", QUICK)
+    assert not (tmp_path / "again").exists()
+
+
+def test_a_cancelled_run_leaves_nothing(tmp_path: Path) -> None:
+    class Cancelling(Monitor):
+        def report(self, stage: str, done: int, total: int) -> None:
+            if stage == "preparing photos" and done:
+                raise OperationCancelled
+
+    (tmp_path / "there").mkdir()
+    for name in ("new", "there"):
+        with pytest.raises(OperationCancelled):
+            prepare(photos_in(tmp_path / "in", n=9), site_model(), tmp_path / name, QUICK, Cancelling())
+    assert not (tmp_path / "new").exists()
+    assert list((tmp_path / "there").iterdir()) == []
+
+
+def test_wrong_input_is_refused_in_words(tmp_path: Path) -> None:
+    photos = photos_in(tmp_path / "in")
+    with pytest.raises(InputError, match="not empty"):
+        prepare(photos, site_model(), tmp_path / "in", QUICK)
+    with pytest.raises(InputError, match="no photos"):
+        prepare([], site_model(), tmp_path / "out", QUICK)
+
+
+def test_normals_survive_16_bits() -> None:
+    rng = np.random.default_rng(0)
+    normals = rng.normal(size=(50, 40, 3))
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    normals[:5] = 0.0
+    back = normals_from_16_bit(normals_to_16_bit(normals.astype(np.float32)))
+    assert np.abs(back - normals).max() < 5e-5
+    assert (back[:5] == 0.0).all()
+
+
+def test_normals_by_rays_and_by_panels_agree() -> None:
+    photo = looking_at(FACE, 16.0, 0.0, 0.0, LENS)
+    model = site_model()
+    refined = RayCaster(refine_mesh(model.building, grid()).mesh)
+    index = draw_panels(photo, grid()).index
+    rays, known = normal_map(photo, refined), normal_map(photo, refined, 1, index, grid())
+    inside = cv2.erode((index > 0).astype(np.uint8), np.ones((3, 3))) > 0
+    same = np.linalg.norm(rays - known, axis=2) < 1e-3
+    assert same[inside].mean() > 0.99
+    assert np.array_equal(rays[index == 0], known[index == 0])
+
+
+def test_frames_are_measured_and_covered() -> None:
+    assert frame_width_m(grid()) == pytest.approx(0.1, abs=0.01)
+    grown = grown_corners(site_model().site.facades)
+    assert np.linalg.norm(grown[0, 1] - grown[0, 0]) == pytest.approx(1.5, abs=0.02)
+    photo = looking_at(FACE, 16.0, 0.0, 0.0, LENS)
+    layers = draw_layers(photo, Scene(grid(), grown, RayCaster(site_model().building), None), 4)
+    outline = np.array([grid()[0, 0], grid()[5, 1], grid()[-1, 2], grid()[-6, 3]])
+    inside = np.zeros((150, 200), np.uint8)
+    cv2.fillConvexPoly(inside, np.round(photo.pixels(outline) - 0.5).astype(np.int32), 1)
+    assert layers.facade[cv2.erode(inside, np.ones((5, 5))) > 0].all()
+    assert layers.normals_enu.shape == (38, 50, 3)
