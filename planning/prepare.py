@@ -130,7 +130,7 @@ def prepare(
     """
     monitor.report("reading the site", 0, 1)
     space = free_space(site_model, constraints.min_distance_m)
-    decision = decide_occlusion(site_model, space, _wish(constraints), seed)
+    decision = decide_occlusion(site_model, space, wish_of(constraints), seed)
     decided = replace(constraints, occlusion="on" if decision.on else "off")
     model = coverage_model(site_model, space, camera, decided, precision)
     if len(spread_positions(space, model.frames, N_PLACES, np.random.default_rng(seed))) == 0:
@@ -147,7 +147,8 @@ def prepare(
     return Prepared(site_model, problem, decided, (decision,), _findings(site_model, problem), seed, is_cut_short)
 
 
-def _wish(constraints: Constraints) -> Wish:
+def wish_of(constraints: Constraints) -> Wish:
+    """What the constraints say of occlusion, as a wish."""
     wishes: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
     return wishes[constraints.occlusion]
 

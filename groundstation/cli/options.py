@@ -26,6 +26,9 @@ OPTIONS = {
     "settle_s": "--settle",
     "max_speed_m_s": "--speed",
     "wind_m_s": "--wind",
+    "photos_per_facade": "--photos-per-facade",
+    "normal_step": "--normal-step",
+    "n_points": "--points",
 }
 """Options by the name that the records' own checks give a value."""
 

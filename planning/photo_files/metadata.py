@@ -2,8 +2,8 @@
 
 Names of XMP properties are those of DJI (lists in the manuals of the Zenmuse P1, Mavic 3 and Matrice 4 series), Parrot
 (developer.parrot.com, "Embedded Photo Metadata") and Skydio (support.skydio.com, "camera and metadata overview"). Autel
-writes DJI's names in a namespace of its own. Makers' namespaces vary between their own models, so that properties are
-found by their name.
+writes DJI's names in a namespace of its own, or, as Parrot does beside its own names, the camera tags of Pix4D
+(support.pix4d.com, "Specifications of XMP camera tags").
 """
 
 from __future__ import annotations
@@ -14,20 +14,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from planning.frames import wrap_heading_deg
+from planning.photo_files.angles import angles
 from planning.photo_files.exif import Tag, Value, read_exif
 from planning.photo_files.jpeg import JpegHeader, read_header
+from planning.photo_files.maker_xmp import MakerXmp, number
 from planning.photo_files.record import RTK_FIXED, Dewarp, PhotoMetadata
 from planning.photo_files.xmp import Properties, read_xmp
-
-NORTH_DEG = 5.0
-"""An aircraft whose nose is this close to north may have a gimbal at exactly 0, 0, 0."""
-
-NEAR_NADIR_DEG = 45.0
-"""From straight down: where gimbals can swing through, and angles be told as rolled by 180."""
-
-MAX_TEXT = 1000
-"""Characters; the longest text of use is DewarpData with 150."""
 
 METRES_PER_DEG = 111_320.0
 """Of latitude, to 0.5 %."""
@@ -49,46 +41,18 @@ def _metadata(path: Path, header: JpegHeader) -> PhotoMetadata:
     properties: Properties = {}
     for packet in header.xmp:
         properties.update({key: text for key, text in read_xmp(packet).items() if key not in properties})
-    xmp = _Xmp(properties)
-    values = dict(**_camera(tags, xmp), **_times(tags, xmp), **_place(tags, xmp), **_angles(xmp), **_receiver(xmp))
+    xmp = MakerXmp(properties)
+    values = {
+        **_camera(tags, xmp),
+        **_times(tags, xmp),
+        **_place(tags, xmp),
+        **angles(xmp, _text(tags, Tag.MAKE) or xmp.text("Make")),
+        **_receiver(xmp),
+        **_accuracies(tags, xmp),
+    }
     return PhotoMetadata(
         path, header.width_px, header.height_px, header.is_complete, image_index=_index(path), **values
     )
-
-
-class _Xmp:
-    """Properties by their name alone; where several namespaces have one, a drone maker's goes first."""
-
-    MAKERS = ("dji", "parrot", "skydio", "autel")
-
-    def __init__(self, properties: Properties) -> None:
-        self._texts: dict[str, str] = {}
-        is_maker = {key: any(maker in key[0].lower() for maker in self.MAKERS) for key in properties}
-        for key in sorted(properties, key=lambda key: not is_maker[key]):
-            self._texts.setdefault(key[1], properties[key])
-        self.is_skydio = any("skydio" in namespace for namespace, _ in properties)
-
-    def text(self, *names: str) -> str | None:
-        """The first of these properties that says something, without control characters and not without end."""
-        found = next((text for name in names if (text := self._texts.get(name))), None)
-        return None if found is None else "".join(c for c in found[:MAX_TEXT] if c.isprintable())
-
-    def number(self, *names: str, low: float = -1e6, high: float = 1e6) -> float | None:
-        """The first of these properties that is a number, with or without a sign or as a fraction, within a range."""
-        return next((n for name in names if (n := _number(self._texts.get(name), low, high)) is not None), None)
-
-    def angle_deg(self, *names: str) -> float | None:
-        """The first of these properties that is an angle."""
-        return self.number(*names, low=-360.0, high=360.0)
-
-
-def _number(text: str | None, low: float, high: float) -> float | None:
-    try:
-        above, _, below = (text or "").partition("/")
-        value = float(above) / float(below) if below else float(above)
-    except (ValueError, ZeroDivisionError):
-        return None
-    return value if low <= value <= high else None
 
 
 def _first(tags: dict[Tag, Value], tag: Tag, low: float, high: float) -> float | None:
@@ -108,7 +72,7 @@ def _index(path: Path) -> int | None:
     return int(count[1]) if count else None
 
 
-def _camera(tags: dict[Tag, Value], xmp: _Xmp) -> dict[str, Any]:
+def _camera(tags: dict[Tag, Value], xmp: MakerXmp) -> dict[str, Any]:
     iso = _first(tags, Tag.ISO, 1, 1e7)
     orientation = _first(tags, Tag.ORIENTATION, 1, 8)
     center = xmp.number("CalibratedOpticalCenterX"), xmp.number("CalibratedOpticalCenterY")
@@ -135,12 +99,12 @@ def _camera(tags: dict[Tag, Value], xmp: _Xmp) -> dict[str, Any]:
 
 def _dewarp(text: str | None) -> Dewarp | None:
     """DJI's `date;fx,fy,cx,cy,k1,k2,p1,p2,k3`; zeros stand in cameras that were not calibrated."""
-    values = [_number(part, -1e9, 1e9) for part in (text or "").rpartition(";")[2].split(",")]
+    values = [number(part, -1e9, 1e9) for part in (text or "").rpartition(";")[2].split(",")]
     known = [value for value in values if value is not None]
     return Dewarp(*known) if len(values) == len(known) == 9 and known[0] > 0.0 and known[1] > 0.0 else None
 
 
-def _times(tags: dict[Tag, Value], xmp: _Xmp) -> dict[str, Any]:
+def _times(tags: dict[Tag, Value], xmp: MakerXmp) -> dict[str, Any]:
     taken_at = _clock(_text(tags, Tag.DATE_TIME_ORIGINAL))
     fraction = _text(tags, Tag.SUB_SEC_TIME_ORIGINAL) or ""
     if taken_at is not None and fraction.isascii() and fraction.isdigit():
@@ -167,7 +131,7 @@ def _clock(text: str | None) -> datetime | None:
         return None
 
 
-def _place(tags: dict[Tag, Value], xmp: _Xmp) -> dict[str, Any]:
+def _place(tags: dict[Tag, Value], xmp: MakerXmp) -> dict[str, Any]:
     exif, drone = exif_position_deg(tags), _drone_position_deg(xmp)
     position = exif or drone
     apart_m = None
@@ -209,7 +173,7 @@ def exif_altitude_m(tags: dict[Tag, Value]) -> float | None:
     return None if size is None else -abs(size) if below else size
 
 
-def _drone_position_deg(xmp: _Xmp) -> tuple[float, float] | None:
+def _drone_position_deg(xmp: MakerXmp) -> tuple[float, float] | None:
     """XMP's position; `GpsLongtitude` is how some of DJI's cameras spell it."""
     lat = xmp.number("GpsLatitude", "Latitude")
     lon = xmp.number("GpsLongitude", "GpsLongtitude", "Longitude")
@@ -221,7 +185,7 @@ def _on_globe(lat_deg: float, lon_deg: float) -> tuple[float, float] | None:
     return (lat_deg, lon_deg) if is_place else None
 
 
-def _altitude_m(tags: dict[Tag, Value], xmp: _Xmp) -> tuple[float | None, bool]:
+def _altitude_m(tags: dict[Tag, Value], xmp: MakerXmp) -> tuple[float | None, bool]:
     """The absolute altitude, and whether it counts from the ellipsoid.
 
     DJI's manuals call AbsoluteAltitude a geodetic height wherever they list AltitudeType beside it; in the samples with
@@ -240,43 +204,7 @@ def _altitude_m(tags: dict[Tag, Value], xmp: _Xmp) -> tuple[float | None, bool]:
     return altitude_m, is_ellipsoidal
 
 
-def _angles(xmp: _Xmp) -> dict[str, Any]:
-    flight = xmp.angle_deg("FlightYawDegree"), xmp.angle_deg("FlightPitchDegree"), xmp.angle_deg("FlightRollDegree")
-    gimbal = upright(
-        xmp.angle_deg("GimbalYawDegree", "CameraYawDegree", "CameraOrientationNED/Yaw"),
-        xmp.angle_deg("GimbalPitchDegree", "CameraPitchDegree", "CameraOrientationNED/Pitch"),
-        xmp.angle_deg("GimbalRollDegree", "CameraRollDegree", "CameraOrientationNED/Roll"),
-    )
-    heading = flight[0]
-    if gimbal == (0.0, 0.0, 0.0) and (heading is None or flight == (0.0, 0.0, 0.0) or abs(heading) > NORTH_DEG):
-        gimbal = (None, None, None)  # all zero is what stands there when nothing was recorded
-    return {
-        "gimbal_heading_deg": gimbal[0],
-        "gimbal_pitch_deg": gimbal[1],
-        "gimbal_roll_deg": gimbal[2],
-        "flight_heading_deg": None if heading is None else wrap_heading_deg(heading),
-        "flight_pitch_deg": flight[1],
-        "flight_roll_deg": flight[2],
-    }
-
-
-def upright(
-    yaw_deg: float | None, pitch_deg: float | None, roll_deg: float | None
-) -> tuple[float | None, float | None, float | None]:
-    """The same orientation with a roll within 90 degrees, where a gimbal swung through the vertical.
-
-    Turning by yaw, pitch and roll is turning by yaw + 180, 180 - pitch and roll + 180. A camera that looks elsewhere
-    than down is mounted upside down if it is rolled so: its heading and pitch stand as they are.
-    """
-    if yaw_deg is None or pitch_deg is None or roll_deg is None:
-        return (None if yaw_deg is None else wrap_heading_deg(yaw_deg)), pitch_deg, roll_deg
-    roll_deg = wrap_heading_deg(roll_deg)
-    if abs(roll_deg) > 90.0 and abs(pitch_deg + 90.0) <= NEAR_NADIR_DEG:
-        return wrap_heading_deg(yaw_deg + 180.0), -180.0 - pitch_deg, wrap_heading_deg(roll_deg + 180.0)
-    return wrap_heading_deg(yaw_deg), pitch_deg, roll_deg
-
-
-def _receiver(xmp: _Xmp) -> dict[str, Any]:
+def _receiver(xmp: MakerXmp) -> dict[str, Any]:
     """Speeds, RTK and the range finder."""
     flag = xmp.number("RtkFlag", low=0, high=1000)
     range_m = xmp.number("LRFTargetDistance", low=1e-3)
@@ -297,4 +225,16 @@ def _receiver(xmp: _Xmp) -> dict[str, Any]:
         "range_lat_deg": None if spot is None else spot[0],
         "range_lon_deg": None if spot is None else spot[1],
         "range_height_m": None if range_m is None else xmp.number("LRFTargetAbsAlt"),
+    }
+
+
+def _accuracies(tags: dict[Tag, Value], xmp: MakerXmp) -> dict[str, Any]:
+    """Standard deviations that other makers than DJI give, as Pix4D's tags have them."""
+    tilts = [xmp.pix4d(name, low=1e-6) for name in ("IMUPitchAccuracy", "IMURollAccuracy")]
+    horizontal_m = xmp.pix4d("GPSXYAccuracy", low=1e-6, high=1e4)
+    return {
+        "accuracy_horizontal_m": horizontal_m or _first(tags, Tag.GPS_H_POSITIONING_ERROR, 1e-6, 1e4),
+        "accuracy_vertical_m": xmp.pix4d("GPSZAccuracy", low=1e-6, high=1e4),
+        "accuracy_heading_deg": xmp.pix4d("IMUYawAccuracy", low=1e-6),
+        "accuracy_tilt_deg": max((tilt for tilt in tilts if tilt is not None), default=None),
     }

@@ -66,6 +66,8 @@ class PhotoMetadata:
         As `RTK_FIXED` says.
     rtk_std_lon_m, rtk_std_lat_m, rtk_std_height_m, rtk_age_s
         Standard deviations, and the age of the corrections.
+    accuracy_horizontal_m, accuracy_vertical_m, accuracy_heading_deg, accuracy_tilt_deg
+        Standard deviations of position and angles, where a maker other than DJI gives them.
     range_m, range_lat_deg, range_lon_deg, range_height_m
         What the laser range finder hit, its height counted like the photo's own.
     exposure_s, f_number, iso, focal_length_mm, focal_length_35mm_mm
@@ -112,6 +114,10 @@ class PhotoMetadata:
     rtk_std_lat_m: float | None = None
     rtk_std_height_m: float | None = None
     rtk_age_s: float | None = None
+    accuracy_horizontal_m: float | None = None
+    accuracy_vertical_m: float | None = None
+    accuracy_heading_deg: float | None = None
+    accuracy_tilt_deg: float | None = None
     range_m: float | None = None
     range_lat_deg: float | None = None
     range_lon_deg: float | None = None

@@ -72,8 +72,25 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
     monitor.report("grouping facades", 0, 1)
     groups = group_facades(corners)
     facades = tuple(_facade(facade_name(k), corners[group], [ids[i] for i in group]) for k, group in enumerate(groups))
+    grid_notes = [note for grid in grids for note in grid.notes]
+    notes = (*source.notes, *panes.notes, *grid_notes, _facade_note(corners, groups), *_solid_notes(source))
+    return site_of_facades(path, source, facades, options, notes)
+
+
+def site_of_facades(
+    path: Path, source: SourceModel, facades: tuple[Facade, ...], options: ImportOptions, notes: tuple[str, ...] = ()
+) -> ImportedSite:
+    """Site of a source model with facades that are known, the largest first: adds airspace, home and meshes.
+
+    Parameters
+    ----------
+    path
+        Of the source, for its name.
+    """
+    by_facade = [np.array([panel.corners_enu_m for panel in facade.panels], float) for facade in facades]
+    corners = np.concatenate(by_facade)
     around = surroundings(
-        corners[groups[0]],
+        by_facade[0],
         np.concatenate([source.building.corners_enu_m.reshape(-1, 3), corners.reshape(-1, 3)]),
         source.neighbours.corners_enu_m,
         source.placement.ground_z_m,
@@ -90,10 +107,7 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
         obstacles=(Obstacle("neighbours", mesh="neighbours.ply"),) if has_neighbours else (),
     )
     model = SiteModel(site, source.building, (source.neighbours,) if has_neighbours else ())
-    grid_notes = [note for grid in grids for note in grid.notes]
-    facade_notes = (_facade_note(corners, groups), *_solid_notes(source))
-    notes = (*source.notes, *panes.notes, *grid_notes, *facade_notes, *around.notes)
-    return ImportedSite(model, notes)
+    return ImportedSite(model, (*notes, *around.notes))
 
 
 def read_source(path: Path, options: ImportOptions, monitor: Monitor = QUIET) -> SourceModel:

@@ -60,8 +60,10 @@ class PrepareParameters:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if self.normal_step < 1 or self.n_points < 0:
-            raise ValueError("expected a normal step of at least 1 and no negative number of points")
+        if self.normal_step < 1:
+            raise ValueError(f"normal_step: expected at least 1, got {self.normal_step}")
+        if self.n_points < 0:
+            raise ValueError(f"n_points: expected 0 or more, got {self.n_points}")
 
 
 @dataclass(frozen=True, slots=True)

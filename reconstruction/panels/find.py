@@ -13,6 +13,7 @@ from planning.errors import InfeasibleError
 from planning.findings import Finding, Severity
 from planning.mesh import TriangleMesh
 from planning.progress import QUIET, Monitor
+from planning.site_import.facades import facade_name
 from reconstruction.cameras import PosedPhoto
 from reconstruction.panels.facades import Facade, building_facades
 from reconstruction.panels.record import SolvedFacade
@@ -47,6 +48,10 @@ class FindParameters:
     least_panels: int = 2
     patches: PatchParameters = field(default_factory=PatchParameters)
     segmentation: SegmentationParameters = field(default_factory=SegmentationParameters)
+
+    def __post_init__(self) -> None:
+        if self.photos_per_facade < 1:
+            raise ValueError(f"photos_per_facade: expected at least 1, got {self.photos_per_facade}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,13 +145,3 @@ def _grids(
             continue
         grids[number] = segment_view(load(photo), view, parameters.segmentation, monitor, name)
     return grids
-
-
-def facade_name(number: int) -> str:
-    """A, B, ... Z, AA, AB, ... for 0, 1, ..."""
-    name = ""
-    number += 1
-    while number:
-        number, digit = divmod(number - 1, 26)
-        name = chr(ord("A") + digit) + name
-    return name

@@ -40,15 +40,14 @@ def run(options: argparse.Namespace) -> int:
 
     if (options.url is None) == (options.action in ("give", "withdraw")):
         raise InputError("give and withdraw want the url of a link; set, status and forget want none")
-    store = signing.key_store()
     match options.action:
         case "set":
             signing.set_passphrase(_passphrase())
             print("key kept; give it to a vehicle with 'signing give URL', over a cable")
         case "status":
-            print("there is no key" if store.load() is None else "there is a key")
+            print("there is a key" if signing.has_key() else "there is no key")
         case "forget":
-            store.forget()
+            signing.forget_passphrase()
             print("there is no key any more; vehicles that know it keep it")
         case "give":
             vehicle = signing.give_key(options.url)

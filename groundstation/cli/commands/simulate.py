@@ -62,7 +62,7 @@ def add_parser(subparsers: Any) -> None:
     add("--seed", type=int, default=0, help="of everything random (default 0)")
     add("--speedup", type=number, metavar="X", help="times real time (default: as fast as it goes)")
     add("--sitl", type=Path, metavar="BINARY", help="start this arducopter and fly it")
-    add("--sitl-defaults", type=Path, metavar="PARM", help="its parameters, such as ArduPilot's copter.parm")
+    add("--sitl-defaults", type=Path, metavar="PARM", help="more parameters for it, such as copter.parm")
     add("--take-off", action="store_true", help="let the vehicle at the link take off, wherever it is")
     add("--signed", action="store_true", help="sign the link with this computer's key ('signing set')")
     add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
@@ -91,11 +91,12 @@ def _fly(options: argparse.Namespace, monitor: Monitor) -> Flown:
     from groundstation.services.given_files import read_given_plan, read_given_site
     from missions.build import missions_from_plan
 
-    site = read_given_site(options.site).site
-    first = missions_from_plan(read_given_plan(options.plan), site.origin, site.home_enu_m)[0]
+    site, plan = read_given_site(options.site).site, read_given_plan(options.plan)
+    first = missions_from_plan(plan, site.origin, site.home_enu_m)[0]
     speedup, options.speedup, options.link = options.speedup or SITL_SPEEDUP, None, SITL_LINK
-    with sitl(options.sitl, first.takeoff, speedup, options.sitl_defaults, monitor):
-        return fly_files(options.plan, options.site, options.out, _wish(options), monitor=monitor)
+    endurance_s = plan.aircraft.endurance_s
+    with sitl(options.sitl, first.takeoff, speedup, endurance_s, options.sitl_defaults, monitor) as restart:
+        return fly_files(options.plan, options.site, options.out, _wish(options), monitor=monitor, between=restart)
 
 
 def _battery_change(number: int) -> None:

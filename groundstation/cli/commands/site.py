@@ -6,6 +6,7 @@ import argparse
 import re
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -47,11 +48,13 @@ def add_parser(subparsers: Any) -> None:
     add("-o", "--out", type=Path, required=True, metavar="SITE", help="site file to write; its meshes go beside it")
     add("--name", help="name of the site (default: the building's, else the file's)")
     add("--json", action="store_true", help="print one JSON object instead of text")
-    _add_place_and_content(command)
-    _add_panels_and_flight(command)
+    add_place_and_content(command)
+    _add_panels(command)
+    add_flight(command)
 
 
-def _add_place_and_content(command: argparse.ArgumentParser) -> None:
+def add_place_and_content(command: argparse.ArgumentParser) -> None:
+    """Where a model is and what of it counts; shared with other commands that read one."""
     place = command.add_argument_group("where it is (instead of what the file says)").add_argument
     place("--origin", type=_point, metavar="LAT,LON,H", help="place of the file's zero point (H: --height-reference)")
     place("--crs", help="coordinate reference system of the file's coordinates, such as EPSG:25832+7837")
@@ -72,7 +75,7 @@ def _add_place_and_content(command: argparse.ArgumentParser) -> None:
     content("--deflection", type=number, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")
 
 
-def _add_panels_and_flight(command: argparse.ArgumentParser) -> None:
+def _add_panels(command: argparse.ArgumentParser) -> None:
     grid = command.add_argument_group("panels that you state").add_argument
     grid(
         "--panel-grid",
@@ -85,6 +88,10 @@ def _add_panels_and_flight(command: argparse.ArgumentParser) -> None:
     grid("--columns", type=int, action="append", metavar="N", help="panels side by side, likewise")
     grid("--gap", type=number, default=0.0, metavar="M", help="width of the mullions between panels (default 0)")
     grid("--grid-tolerance", type=number, default=2.0, metavar="M", help="allowed distance from the mesh (default 2 m)")
+
+
+def add_flight(command: argparse.ArgumentParser) -> None:
+    """Airspace and home of a new site; shared likewise."""
     flight = command.add_argument_group("airspace and home (local metres east, north, up)").add_argument
     flight("--home", type=_point, metavar="E,N,U", help="take-off place (default: in front of the largest facade)")
     flight("--airspace-margin", type=number, default=40.0, metavar="M", help="around the building (default 40 m)")
@@ -118,9 +125,9 @@ def run(options: argparse.Namespace) -> int:
     check_not_index(options.out)
     check_output(options.out, [options.file])
     started = time.perf_counter()
-    import_options = _import_options(options)
+    wishes = replace(import_options(options), panel_grids=_grids(options), grid_tolerance_m=options.grid_tolerance)
     with expecting(FileKind.BUILDING, options.file):
-        imported = run_job("site import", lambda context: import_site(options.file, import_options, context))
+        imported = run_job("site import", lambda context: import_site(options.file, wishes, context))
     model = write_imported_site(options.out, imported, options.file)
     seconds = time.perf_counter() - started
     site = model.site
@@ -159,7 +166,14 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _import_options(options: argparse.Namespace) -> ImportOptions:
+def import_options(options: argparse.Namespace) -> ImportOptions:
+    """What the user said about a model, but for panels.
+
+    Raises
+    ------
+    InputError
+        The origin is no place on earth.
+    """
     from planning.site import Origin
     from planning.site_import.options import ImportOptions
 
@@ -175,8 +189,6 @@ def _import_options(options: argparse.Namespace) -> ImportOptions:
         height_reference=options.height_reference,
         up=options.up,
         unit=options.units,
-        panel_grids=_grids(options),
-        grid_tolerance_m=options.grid_tolerance,
         building=options.building,
         ground_z=options.ground,
         home_enu_m=options.home,

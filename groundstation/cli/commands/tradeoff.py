@@ -10,6 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.plan import add_request_arguments, request_of
+from groundstation.cli.commands.score import add_set_arguments
+from groundstation.cli.commands.score import request_of as score_request_of
+from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.options import checked_seed
 from planning.errors import InputError
 
@@ -44,6 +47,15 @@ ROUTE_EPILOG = """examples:
 """
 
 
+SEGMENT_EPILOG = """Sets of photos are those of 'score segmentation'. --width should be that of your photos: sizes
+above it change nothing.
+
+examples:
+  tradeoff segment -o tradeoff --seeds 5 --width 5280
+  tradeoff segment -o tradeoff --set made-curved --seeds 20 --sizes 800,1600 --detectors gradient,hough
+"""
+
+
 def add_parser(subparsers: Any) -> None:
     """Describe the command and what it compares."""
     parser = subparsers.add_parser(
@@ -54,6 +66,7 @@ def add_parser(subparsers: Any) -> None:
     kinds = parser.add_subparsers(title="what to compare", metavar="WHAT", required=True)
     _add_plan(kinds)
     _add_route(kinds)
+    _add_segment(kinds)
 
 
 def _add_plan(kinds: Any) -> None:
@@ -102,6 +115,26 @@ def _add_route(kinds: Any) -> None:
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
 
 
+def _add_segment(kinds: Any) -> None:
+    parser = kinds.add_parser(
+        "segment",
+        help="accuracy against time of the search for glass panels",
+        description="Turn the knobs of the search for glass panels one at a time on photos with truth, such as made\n"
+        "facades; write tradeoff-segment.csv and tradeoff-segment.png.",
+        epilog=SEGMENT_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        conflict_handler="resolve",
+    )
+    parser.set_defaults(run=run_segment)
+    _add_output(parser)
+    add_set_arguments(parser)
+    add_parameter_arguments(parser)
+    varied = parser.add_argument_group("what varies (lists with commas)").add_argument
+    varied("--sizes", type=_counts, default="400,800,1600,2400,3200", metavar="LIST", help="default: %(default)s")
+    varied("--samples", type=_wholes, default="32,128,512,0", metavar="LIST", help="0: all (default: %(default)s)")
+    varied("--detectors", type=_words, default=(), metavar="LIST", help="such as gradient,hough,lsd (default: none)")
+
+
 def _add_output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
@@ -136,6 +169,13 @@ def _count(text: str) -> int:
 
 def _counts(text: str) -> tuple[int, ...]:
     return tuple(_count(word) for word in _words(text))
+
+
+def _wholes(text: str) -> tuple[int, ...]:
+    words = _words(text)
+    if not all(word.isdecimal() for word in words):
+        raise argparse.ArgumentTypeError(f"expected whole numbers such as 32,128,0, got '{text}'")
+    return tuple(map(int, words))
 
 
 def run_plan(options: argparse.Namespace) -> int:
@@ -276,3 +316,28 @@ def _print_tour(report: TourReport) -> None:
     reference = "lower bound" if case.optimum is None else "optimum"
     last_s = max(curve.end_s for curve in report.curves.values())
     _print_answers(report.answers, gap_text, lambda gap: f"within {100.0 * gap:g} % of the {reference}", last_s)
+
+
+def run_segment(options: argparse.Namespace) -> int:
+    """Compare settings of the search for panels and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.segmentation import segment_tradeoff
+    from reconstruction.scores.tradeoff import SegmentVariants, variant_rows
+
+    try:
+        variants = SegmentVariants(options.sizes, options.samples, options.detectors)
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    request = score_request_of(argparse.Namespace(**{**vars(options), "samples": None}))
+    made = run_job("tradeoff segment", lambda context: segment_tradeoff(request, variants, options.out, context))
+    rows = variant_rows(made.runs)
+    if options.json:
+        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), "settings": rows})
+        return 0
+    print(f"{made.runs[0].scores.n_panels} panels in {rows[0]['photos']} photos")
+    print(f"  {'setting':<22}{'s a photo':>10}{'mIoU':>9}{'worst':>9}{'missed':>8}")
+    for row in rows:
+        single, worst = row["individual_miou"], row["individual_miou_worst"]
+        print(f"  {row['setting']:<22}{row['seconds']:>10.3f}{single:>9.4f}{worst:>9.4f}{row['missed']:>8}")
+    print(f"{made.csv_path}\n{made.picture_path}")
+    return 0

@@ -13,7 +13,7 @@ from reconstruction.made_facades.cases import simple_case
 from reconstruction.made_facades.record import Disturbances, Layout, MadeFacade
 from reconstruction.made_facades.render import make_facade
 from reconstruction.made_facades.wall import Wall
-from reconstruction.panels.find import FindParameters, facade_name, find_panels
+from reconstruction.panels.find import FindParameters, find_panels
 from reconstruction.rectify.surface import FacadeSurface
 from tests.reconstruction.rectify.scenes import surface_mesh
 
@@ -68,15 +68,3 @@ def test_photos_of_nothing_are_refused_in_words() -> None:
     ground = box_mesh(np.array([-300.0, -300.0, -1.0]), np.array([300.0, 300.0, 0.0]))
     with pytest.raises(InfeasibleError, match="upright facade"):
         find_panels([photos[0].photo], ground, load_from(photos))
-
-
-def test_facades_are_named_as_columns_of_a_table() -> None:
-    assert [facade_name(number) for number in (0, 25, 26, 51, 52, 701, 702)] == [
-        "A",
-        "Z",
-        "AA",
-        "AZ",
-        "BA",
-        "ZZ",
-        "AAA",
-    ]

@@ -1,0 +1,77 @@
+"""`photos`: what the photos on a card are worth, before leaving the site."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+EPILOG = """examples:
+  photos /media/card/DCIM tower.site.json --plan tower.plan.json
+  photos photos/ tower.site.json --scale 4 --json
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "photos",
+        help="check photos and the coverage that they really achieve",
+        description="Read all photos of a flight: poses, blur, exposure, doubles, and which sections of which panels\n"
+        "they show, against the plan that was flown.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("photos", type=Path, metavar="PHOTOS", help="folder of photos, as they come from the camera's card")
+    add("site", type=Path, metavar="SITE", help="site file with its panels")
+    add("--plan", type=Path, metavar="PLAN", help="plan that was flown")
+    add("--colmap", type=Path, metavar="FOLDER", help="COLMAP model of the photos, for better poses")
+    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
+    add(
+        "--scale",
+        type=int,
+        choices=(1, 2, 4, 8),
+        default=1,
+        help="decode photos at 1/N of their size: quicker, less sure of small blur (default 1)",
+    )
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read, check, print; returns the exit status."""
+    from groundstation.cli.console import counted, print_findings, print_json, run_job
+    from groundstation.services.photo_intake import intake_summary, take_in
+    from groundstation.services.units import per_cent
+    from reconstruction.photos.quality import QualityLimits
+
+    limits = QualityLimits(scale=options.scale)
+    intake = run_job(
+        "photos",
+        lambda context: take_in(
+            options.photos,
+            options.site,
+            options.plan,
+            limits,
+            heights=options.heights,
+            colmap=options.colmap,
+            monitor=context,
+        ),
+    )
+    summary = intake_summary(intake)
+    if options.json:
+        print_json(summary)
+        return 0
+    blur = summary["blur_px_median"]
+    sharpness = "" if blur is None else f", blur {blur:.2f} px in the middle"
+    print(f"{counted(summary['photos'], 'photo')} with a pose, {summary['usable']} usable{sharpness}")
+    share = per_cent(summary["covered"], summary["total"], 1)
+    print(f"they show {summary['covered']} of {summary['total']} sections ({share:.1f} %)")
+    if "planned" in summary:
+        print(f"the plan promised {summary['planned']} sections; {summary['missed']} of them are missing")
+    if summary["unseen_panels"]:
+        print(f"{counted(summary['unseen_panels'], 'panel')} in no photo at all")
+    print(intake.occlusion)
+    print_findings(intake.findings)
+    return 0

@@ -1,0 +1,71 @@
+"""`prepare`: the photos of the second flight and a site to the data set that is reconstructed."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+EPILOG = """Writes images/, sparse/0 and points.ply as COLMAP and splatting programs read them, transforms.json for
+nerfstudio, and panels/, masks/ and normals/ (docs/file-formats.md, reflight-dataset/1).
+
+examples:
+  prepare photos/ tower.site.json -o tower.dataset
+  prepare photos/ tower.site.json -o tower.dataset --colmap sparse/0 --normal-step 4
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "prepare",
+        help="make the data set that is reconstructed",
+        description="Draw the panels into every photo, render facade masks and normals, refine the mesh on the glass.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("photos", type=Path, metavar="PHOTOS", help="folder of photos, as they come from the camera's card")
+    add("site", type=Path, metavar="SITE", help="site file with its panels")
+    add("-o", "--out", type=Path, required=True, metavar="FOLDER", help="new folder for the data set")
+    add("--colmap", type=Path, metavar="FOLDER", help="COLMAP model of the photos, for better poses")
+    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
+    add("--normal-step", type=int, default=2, metavar="N", help="photo pixels per pixel of normal maps (default 2)")
+    add("--points", type=int, default=100_000, metavar="N", help="points that reconstruction starts from")
+    add("--hidden-panels", choices=("auto", "on", "off"), default="auto", help="take out what something hides")
+    add("--lens-distortion", choices=("auto", "on", "off"), default="auto", help="straighten the photos")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Prepare, write, print; returns the exit status."""
+    from groundstation.cli.console import counted, print_findings, print_json, run_job
+    from groundstation.cli.options import in_words_of_options
+    from groundstation.services.photo_dataset import prepare_files, prepared_summary
+    from reconstruction.dataset.prepare import PrepareParameters
+
+    with in_words_of_options():
+        parameters = PrepareParameters(
+            options.normal_step, options.points, options.hidden_panels, options.lens_distortion
+        )
+    prepared, findings = run_job(
+        "prepare",
+        lambda context: prepare_files(
+            options.photos,
+            options.site,
+            options.out,
+            parameters,
+            heights=options.heights,
+            colmap=options.colmap,
+            monitor=context,
+        ),
+    )
+    if options.json:
+        print_json(prepared_summary(prepared))
+        return 0
+    print(f"{options.out}: {counted(len(prepared.photos), 'photo')} prepared")
+    for decision in prepared.decisions:
+        print(f"  {decision}")
+    print_findings(findings)
+    return 0

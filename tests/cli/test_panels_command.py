@@ -1,0 +1,66 @@
+"""`panels`: photos and a coarse model to a site."""
+
+import numpy as np
+import pytest
+
+from planning.site_file import read_site
+from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
+
+AT = f"--origin={ORIGIN.lat_deg},{ORIGIN.lon_deg},{ORIGIN.ellipsoid_height_m}"
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory):
+    """A folder of photos and a coarse model, and what they show."""
+    folder = tmp_path_factory.mktemp("flight")
+    made = made_photos(0.0, (0.0, 12.0, -10.0))
+    write_flight(folder / "photos", made)
+    write_model(folder / "coarse.ply", made[0].case.wall)
+    return folder, made
+
+
+def test_photos_and_a_mesh_become_a_site_that_can_be_planned(flight, reflight, tmp_path):
+    folder, made = flight
+    out = tmp_path / "found.site.json"
+    done = reflight("panels", folder / "photos", folder / "coarse.ply", "-o", out, AT, "--json")
+    assert done.status == 0, done
+    assert done.json["panels"] == len(made[0].panels)
+    assert done.json["facades"][0]["photos"] == 3
+    assert 0.0 < done.json["facades"][0]["corner_sigma_m"] < 2.0
+    site = read_site(out).site
+    truth = {(panel.row, panel.column): panel.corners_enu_m for panel in made[0].panels}
+    panels = site.facades[0].panels
+    assert panels[0].id == "A-01-01"
+    for panel in panels:
+        row, column = (int(part) - 1 for part in panel.id.split("-")[1:])
+        assert np.abs(np.array(panel.corners_enu_m) - truth[row, column]).max() < 0.3
+    assert (tmp_path / "found.facades.json").is_file()
+    planned = reflight("plan", out, "-o", tmp_path / "p.plan.json", "--views", 12, "--json")
+    assert planned.status == 0, planned
+    assert planned.json["covered"] > 0
+
+
+def test_a_site_gets_its_panels_anew_and_keeps_the_rest(flight, reflight, tmp_path):
+    folder, made = flight
+    first, second = tmp_path / "a.site.json", tmp_path / "sub" / "b.site.json"
+    second.parent.mkdir()
+    assert reflight("panels", folder / "photos", folder / "coarse.ply", "-o", first, AT).status == 0
+    done = reflight("panels", folder / "photos", first, "-o", second, "--photos-per-facade", 1)
+    assert done.status == 0, done
+    assert "1 photo;" in done.out
+    one, other = read_site(first), read_site(second)
+    assert other.site.airspace == one.site.airspace
+    assert len(other.building.triangles) == len(one.building.triangles)
+    assert other.site.n_panels == len(made[0].panels)
+
+
+def test_wrong_input_is_refused_in_words(flight, reflight, tmp_path):
+    folder, _ = flight
+    out = tmp_path / "x.site.json"
+    photos, mesh = folder / "photos", folder / "coarse.ply"
+    assert "at least 1" in reflight("panels", photos, mesh, "-o", out, AT, "--photos-per-facade", 0).error
+    assert "no such file" in reflight("panels", photos, tmp_path / "none.ply", "-o", out, AT).error
+    assert "expected a folder of photos" in reflight("panels", mesh, mesh, "-o", out, AT).error
+    far = reflight("panels", photos, mesh, "-o", out, "--origin=48,11,500").error
+    assert "km from the site" in far
+    assert not out.exists()
