@@ -23,11 +23,13 @@ def photo_vertices(sortie: Sortie, by_id: Mapping[str, Viewpoint]) -> NDArray[np
     path, found = sortie.path_enu_m, [-1]
     for viewpoint_id in sortie.viewpoint_ids:
         position, last = by_id[viewpoint_id].position_enu_m, found[-1]
-        at = (v for v in range(last + 1, len(path)) if math.dist(path[v], position) <= SAME_PLACE_M)
-        vertex = next(at, None)
-        if vertex != last + 1 and last >= 0 and math.dist(path[last], position) <= SAME_PLACE_M:
+        vertex = last + 1
+        while vertex < len(path) and math.dist(path[vertex], position) > SAME_PLACE_M:
+            vertex += 1
+        is_next = vertex == last + 1 < len(path)
+        if not is_next and last >= 0 and math.dist(path[last], position) <= SAME_PLACE_M:
             vertex = last
-        if vertex is None:
+        if vertex == len(path):
             return None
         found.append(vertex)
     return np.array(found[1:], np.int64)

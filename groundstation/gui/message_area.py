@@ -51,7 +51,7 @@ class MessageArea(QWidget):
         layout.setContentsMargins(6, 2, 6, 2)
         layout.addWidget(self._list)
         layout.addLayout(line)
-        self._all.toggled.connect(self._list.setVisible)
+        self._all.toggled.connect(self._show_all)
         self._jump.clicked.connect(self._jump_to_last)
         self._list.itemActivated.connect(self._activated)
         workspace.messageShown.connect(self.add)
@@ -76,7 +76,8 @@ class MessageArea(QWidget):
         self._list.addItem(row)
         while self._list.count() > MAX_MESSAGES:
             self._list.takeItem(0)
-        self._list.scrollToBottom()
+        if self._list.isVisible():  # a list that is hidden would lay out all of its rows for this
+            self._list.scrollToBottom()
 
     def messages(self) -> tuple[Message, ...]:
         """All messages, the oldest first."""
@@ -90,6 +91,10 @@ class MessageArea(QWidget):
     def copy_all(self) -> None:
         """All messages to the clipboard, to send them to somebody."""
         QGuiApplication.clipboard().setText(self.texts())
+
+    def _show_all(self, is_wanted: bool) -> None:
+        self._list.setVisible(is_wanted)
+        self._list.scrollToBottom()
 
     def _words(self) -> dict[Severity, str]:
         return {

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.catalogue import profile
-from planning.coverage.sections import NOT_SEEN, PanelFrames
+from planning.checks.measures import pose_of
+from planning.coverage.sections import NOT_SEEN
 from planning.insight.reasons import SectionReasons, section_reasons
 from planning.insight.sampling import PanelSampling, panel_sampling
 from planning.insight.sections import PlanInsight, assembled
@@ -132,35 +133,49 @@ def take_in_hand(
 def insight_of(revision: Revision, reasons: SectionReasons, before: PlanInHand | None = None) -> PlanInsight:
     """What a plan in hand covers, from what is measured on it already; `before` is the same plan before an edit."""
     prepared, plan = revision.prepared, revision.plan
-    model = prepared.problem.model
-    n_sections = model.grid.n_sections
-    sections = np.full((len(plan.viewpoints), len(model.frames)), NOT_SEEN, np.int16)
-    for number, viewpoint in enumerate(plan.viewpoints):
-        panel, section = np.divmod(revision.elements_of_pose(viewpoint), n_sections)
-        sections[number, panel] = section
+    if before is None:
+        sections, sampling = _measured(revision)
+    else:
+        sections, sampling = _measured_since(revision, before)
     counts = revision.counts.astype(np.int32)
-    sampling = _sampling(revision, sections, before)
     return assembled(prepared.site_model, prepared, plan, sections, counts, sampling, reasons)
 
 
-def _sampling(revision: Revision, sections: NDArray[np.int16], before: PlanInHand | None) -> PanelSampling:
-    """Pixel sizes of all panels; after an edit only those are computed that a view sees or saw which it changed."""
+def _measured(revision: Revision) -> tuple[NDArray[np.int16], PanelSampling]:
+    """What each view covers, and pixel sizes of all panels."""
     model, viewpoints = revision.prepared.problem.model, revision.plan.viewpoints
-    frames, positions = model.frames, viewpoint_arrays(viewpoints).positions_enu_m
-    if before is None:
-        return panel_sampling(frames, model.camera, positions, sections)
-    old, new = set(before.plan.viewpoints), set(viewpoints)
-    is_new = np.array([view not in old for view in viewpoints], bool)
-    is_old = np.array([view not in new for view in before.plan.viewpoints], bool)
-    touched = (sections[is_new] != NOT_SEEN).any(axis=0) | (before.insight.sections[is_old] != NOT_SEEN).any(axis=0)
-    some = PanelFrames(*(getattr(frames, part.name)[touched] for part in fields(frames)))
-    part = panel_sampling(some, model.camera, positions, sections[:, touched])
-    kept = before.insight.sampling
+    sections = np.full((len(viewpoints), len(model.frames)), NOT_SEEN, np.int16)
+    for number in range(len(viewpoints)):
+        _fill_row(sections, number, revision)
+    return sections, panel_sampling(model.frames, model.camera, viewpoint_arrays(viewpoints).positions_enu_m, sections)
+
+
+def _fill_row(sections: NDArray[np.int16], number: int, revision: Revision) -> None:
+    elements = revision.elements_of_pose(revision.plan.viewpoints[number])
+    panel, section = np.divmod(elements, revision.prepared.problem.model.grid.n_sections)
+    sections[number, panel] = section
+
+
+def _measured_since(revision: Revision, before: PlanInHand) -> tuple[NDArray[np.int16], PanelSampling]:
+    """As `_measured`, where only what an edit changed is computed: new views, and the panels that these see or saw."""
+    model, viewpoints = revision.prepared.problem.model, revision.plan.viewpoints
+    known = {pose_of(viewpoint): row for row, viewpoint in enumerate(before.plan.viewpoints)}
+    rows = np.array([known.get(pose_of(viewpoint), -1) for viewpoint in viewpoints], np.int64)
+    is_kept, is_gone = rows >= 0, np.ones(len(before.plan.viewpoints), bool)
+    is_gone[rows[is_kept]] = False
+    sections = np.full((len(viewpoints), len(model.frames)), NOT_SEEN, np.int16)
+    sections[is_kept] = before.insight.sections[rows[is_kept]]
+    for number in np.flatnonzero(~is_kept).tolist():
+        _fill_row(sections, number, revision)
+    seen = np.concatenate([sections[~is_kept], before.insight.sections[is_gone]]) != NOT_SEEN
+    touched = np.flatnonzero(seen.any(axis=0))
+    positions = viewpoint_arrays(viewpoints).positions_enu_m
+    part = panel_sampling(model.frames, model.camera, positions, sections, touched)
     merged = {}
     for name in (field.name for field in fields(PanelSampling)):
-        merged[name] = getattr(kept, name).copy()
+        merged[name] = getattr(before.insight.sampling, name).copy()
         merged[name][touched] = getattr(part, name)
-    return PanelSampling(**merged)
+    return sections, PanelSampling(**merged)
 
 
 def _fits(prepared: Prepared, plan: Plan, site_model: SiteModel) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,6 +96,7 @@ class Measures:
     flights: Mapping[FlightKey, TimedFlight | None]
 
 
+_NOT_KNOWN = object()
 _NO_GAPS = Gaps({}, {})
 NOTHING_KNOWN = Measures({}, {}, np.zeros((0, 0), np.int64), _NO_GAPS, _NO_GAPS, {})
 
@@ -140,10 +141,12 @@ def _completed(
     keys: Iterable[Key], known: Mapping[Key, Value], measured: Callable[[list[Key]], Sequence[Value]]
 ) -> dict[Key, Value]:
     """Values of all keys: those that are known, the others `measured` together."""
-    wanted = dict.fromkeys(keys)
-    missing = [key for key in wanted if key not in known]
-    new = dict(zip(missing, measured(missing), strict=True)) if missing else {}
-    return {key: new[key] if key in new else known[key] for key in wanted}
+    # A key is a path or a pair of places: hashing it is what takes time.
+    values: dict[Key, Any] = {key: known.get(key, _NOT_KNOWN) for key in keys}
+    missing = [key for key, value in values.items() if value is _NOT_KNOWN]
+    if missing:
+        values.update(zip(missing, measured(missing), strict=True))
+    return values
 
 
 def _nearest_m(model: CoverageModel, by_pose: Mapping[Pose, Viewpoint], poses: list[Pose]) -> list[float]:

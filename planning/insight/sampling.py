@@ -8,9 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.coverage.sections import NOT_SEEN, PanelFrames
+from planning.jit import kernel
 from planning.plan import Camera
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SMALLEST = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,9 +37,13 @@ class PanelSampling:
 
 
 def panel_sampling(
-    frames: PanelFrames, camera: Camera, positions_enu_m: Array, sections: NDArray[np.integer]
+    frames: PanelFrames,
+    camera: Camera,
+    positions_enu_m: Array,
+    sections: NDArray[np.integer],
+    panels: Ints | None = None,
 ) -> PanelSampling:
-    """Sampling of all panels.
+    """Sampling of all panels, or of some.
 
     Parameters
     ----------
@@ -43,22 +51,51 @@ def panel_sampling(
         Of the views, shape (n, 3).
     sections
         Section of each panel that each view covers, shape (n, m), `NOT_SEEN` for none.
+    panels
+        Numbers of the panels wanted, shape (k,): the result has as many. None for all.
     """
-    view, panel = np.nonzero(sections != NOT_SEEN)
-    rays = positions_enu_m[view] - frames.centroids[panel]
-    distance = np.linalg.norm(rays, axis=1)
-    along = np.einsum("kc,kc->k", rays, frames.normals[panel])
-    across_m = distance * camera.pixel_angle_rad
-    # Covered means theta < 90 degrees, so the height above the pane is positive, though it may be tiny.
-    on_pane_m = across_m * distance / np.maximum(along, np.finfo(np.float64).tiny)
-    best_m, worst_m = _extremes(across_m, panel, len(frames))
-    best_on_pane_m, worst_on_pane_m = _extremes(on_pane_m, panel, len(frames))
-    return PanelSampling(best_m, worst_m, best_on_pane_m, worst_on_pane_m)
+    if panels is None:
+        panels = np.arange(len(frames))
+    found = np.full((4, len(panels)), np.nan)
+    _extremes(
+        np.ascontiguousarray(positions_enu_m),
+        np.ascontiguousarray(sections, np.int16),
+        panels,
+        frames.centroids,
+        frames.normals,
+        camera.pixel_angle_rad,
+        found,
+    )
+    return PanelSampling(*found)
 
 
-def _extremes(values: Array, panel: NDArray[np.int64], n_panels: int) -> tuple[Array, Array]:
-    """Least and greatest value of each panel; NaN where it has none."""
-    least, greatest = np.full(n_panels, np.nan), np.full(n_panels, np.nan)
-    np.fmin.at(least, panel, values)
-    np.fmax.at(greatest, panel, values)
-    return least, greatest
+@kernel
+def _extremes(
+    positions_enu_m: Array,
+    sections: NDArray[np.int16],
+    panels: Ints,
+    centroids: Array,
+    normals: Array,
+    pixel_angle_rad: float,
+    found: Array,
+) -> None:
+    """Least and greatest sampling of each panel, put into `found`, shape (4, k), as `PanelSampling` has them."""
+    for view in range(len(positions_enu_m)):
+        for place in range(len(panels)):
+            panel = panels[place]
+            if sections[view, panel] == NOT_SEEN:
+                continue
+            squared, along = 0.0, 0.0
+            for axis in range(3):
+                ray = positions_enu_m[view, axis] - centroids[panel, axis]
+                squared += ray * ray
+                along += ray * normals[panel, axis]
+            distance = np.sqrt(squared)
+            across_m = distance * pixel_angle_rad
+            # Covered means theta < 90 degrees, so the height above the pane is positive, though it may be tiny.
+            on_pane_m = across_m * distance / max(along, SMALLEST)
+            # Unlike `<`, these take a number rather than the NaN that stands there first.
+            found[0, place] = np.fmin(found[0, place], across_m)
+            found[1, place] = np.fmax(found[1, place], across_m)
+            found[2, place] = np.fmin(found[2, place], on_pane_m)
+            found[3, place] = np.fmax(found[3, place], on_pane_m)

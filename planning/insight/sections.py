@@ -77,6 +77,11 @@ class PlanInsight:
         return SectionState(int(self.states[panel, section]))
 
     @property
+    def panels_per_view(self) -> NDArray[np.int64]:
+        """Number of panels that each view covers, shape (n,)."""
+        return np.asarray(np.count_nonzero(self.sections != NOT_SEEN, axis=1))
+
+    @property
     def covered_per_panel(self) -> NDArray[np.int64]:
         """Covered sections of each panel, shape (m,)."""
         return np.asarray(np.count_nonzero(self.states == SectionState.COVERED, axis=1))

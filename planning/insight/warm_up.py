@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from planning.catalogue import DEFAULT_PROFILE, profile
 from planning.insight.clearance import route_clearance
 from planning.insight.reasons import section_reasons
+from planning.insight.sampling import panel_sampling
 from planning.insight.things import first_things_hit, things_of
 from planning.plan import Constraints, Sortie
 from planning.prepare import prepare
@@ -16,6 +19,8 @@ def compile_kernels() -> None:
     model = SCENES["single-panel"]()
     prepared = prepare(model, profile(DEFAULT_PROFILE).camera, Constraints())
     section_reasons(model, prepared)
+    frames, camera = prepared.problem.model.frames, prepared.problem.model.camera
+    panel_sampling(frames, camera, frames.centroids + frames.normals, np.zeros((len(frames), len(frames)), np.int16))
     space = prepared.problem.space
     things = things_of(model, space)
     route_clearance(Sortie((), ((0.0, -20.0, 5.0), (5.0, -20.0, 5.0)), 5.0, 5.0), space, things)

@@ -72,3 +72,26 @@ def test_a_round_frees_what_was_left_behind(application):
         assert gone() is None
     finally:
         collector.close()
+
+
+def test_the_long_search_waits_while_the_window_is_busy(application):
+    import weakref
+
+    from groundstation.gui.garbage import FULL_EVERY, GarbageCollector
+
+    busy = [True]
+    collector = GarbageCollector(is_busy=lambda: busy[0])
+    try:
+        thing = Cycle()
+        litter(gc.get_threshold()[0] + 1)
+        collector._collect()
+        gone = weakref.ref(thing)
+        del thing  # older than a round: only the long search finds it
+        for _ in range(2 * FULL_EVERY):
+            collector._collect()
+        assert gone() is not None
+        busy[0] = False
+        collector._collect()
+        assert gone() is None
+    finally:
+        collector.close()

@@ -151,6 +151,76 @@ def test_the_chart_tells_quality_bound_and_time_left_while_a_plan_runs(applicati
     assert "left" not in chart.text()
 
 
+def curve_picture(plot, curve):
+    from groundstation.gui.view3d.canvas import image_array
+
+    plot.set_curve(curve)
+    return image_array(plot.grab().toImage()).astype(int)
+
+
+def rows_of(image, colour):
+    """Rows of pixels in which a colour is, the lowest last."""
+    wanted = [int(colour[place : place + 2], 16) for place in (1, 3, 5)]
+    return np.flatnonzero((np.abs(image - wanted).max(axis=2) < 60).any(axis=1))
+
+
+@pytest.mark.parametrize("size", [(330, 300), (260, 110), (900, 600)])
+def test_the_curve_stands_below_its_bound_and_both_where_their_values_are(application, size):
+    from groundstation.gui.plan.curve_plot import Curve, CurvePlot
+    from groundstation.gui.theme import colours
+
+    plot = CurvePlot("time in s", "covered sections")
+    plot.resize(*size)
+    x, y = np.array([0.0, 5.0, 10.0]), np.array([500.0, 500.0, 500.0])
+    drawn = curve_picture(plot, Curve(x, y, 10.0, 1000.0, 750.0, 4.0))
+    box = plot._box()
+    for value, colour in ((500.0, colours().covered), (750.0, colours().error)):
+        middle = box.bottom() - box.height() * value / 1000.0
+        assert np.median(rows_of(drawn, colour)) == pytest.approx(middle, abs=1.5)
+    bare = curve_picture(plot, Curve(x, y, 10.0, 1000.0))
+    assert not len(rows_of(bare, colours().error)), "no bound, no line"
+
+
+def test_an_empty_curve_and_a_tiny_widget_are_no_trouble(application):
+    from groundstation.gui.plan.curve_plot import Curve, CurvePlot
+
+    plot = CurvePlot("time in s", "covered sections")
+    none = np.zeros(0)
+    for size in ((330, 300), (20, 15), (1, 1)):
+        plot.setMinimumHeight(1)
+        plot.resize(*size)
+        curve_picture(plot, Curve(none, none, 1.0, 1.0, 1.0, 0.0))
+        curve_picture(plot, Curve(np.array([0.0]), np.array([3.0]), 1.0, 3.0))
+
+
+@given(st.floats(1e-6, 1e7), st.floats(1e-3, 2.0))
+def test_ticks_are_round_evenly_apart_and_far_enough(end, least):
+    from groundstation.gui.plan.curve_plot import ticks
+
+    found = ticks(end, least)
+    assert found[0] == 0.0
+    assert found[-1] <= end * (1.0 + 1e-6)
+    step = found[1] if len(found) > 1 else end + 1.0
+    assert step >= least * end * (1.0 - 1e-6) or len(found) == 1
+    assert np.allclose(np.diff(found), step)
+    if len(found) > 1:
+        assert f"{step:e}"[0] in "125"
+
+
+def test_of_thousands_of_improvements_only_those_that_can_be_seen_are_drawn(application):
+    from PySide6.QtCore import QRectF
+
+    from groundstation.gui.plan.curve_plot import Curve, steps
+
+    x = np.linspace(0.1, 9.9, 20_000)
+    curve = Curve(x, 1000.0 * x, 10.0, 10_000.0)
+    drawn = steps(curve, QRectF(0.0, 0.0, 200.0, 100.0))
+    assert len(drawn) <= 2 * 200
+    assert drawn[-1].x() == pytest.approx(198.0)
+    assert all(b.x() >= a.x() and b.y() <= a.y() for a, b in pairwise(drawn)), "never back, never down"
+    assert all(a.x() == b.x() or a.y() == b.y() for a, b in pairwise(drawn)), "steps"
+
+
 def shown(state, n=0):
     from groundstation.gui.plan.hemisphere_view import ShownSection
 
@@ -218,6 +288,6 @@ def test_the_chart_never_draws_a_falling_curve_from_rising_points(application):
 
     chart = QualityChart(Clock())
     chart.show_history(tuple(QualityPoint(t, v) for t, v in ((0.1, 5.0), (0.2, 9.0), (1.5, 12.0))), 20.0)
-    x, y = chart._line.getData()
-    assert all(a <= b for a, b in pairwise(np.asarray(x)))
-    assert all(a <= b for a, b in pairwise(np.asarray(y)))
+    curve = chart.plot.curve()
+    assert all(a <= b for a, b in pairwise(curve.x))
+    assert all(a <= b for a, b in pairwise(curve.y))

@@ -27,6 +27,7 @@ def sortie(path: list[Vec3], places: list[Vec3]) -> tuple[Sortie, dict[str, View
         ([HOME, TOP, NEAR, FAR, TOP, HOME], [NEAR, NEAR, FAR], [2, 2, 3]),
         ([HOME, TOP, NEAR, FAR, NEAR, TOP, HOME], [NEAR, FAR, NEAR], [2, 3, 4]),
         ([HOME, TOP, FAR, NEAR, TOP, HOME], [TOP, TOP], [1, 1]),
+        ([HOME, TOP, FAR, NEAR], [FAR, NEAR, NEAR], [2, 3, 3]),
         ([HOME, TOP, HOME], [], []),
         ([HOME, TOP, FAR, NEAR, TOP, HOME], [NEAR, FAR], None),
         ([HOME, TOP, FAR, TOP, HOME], [NEAR], None),

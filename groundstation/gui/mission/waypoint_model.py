@@ -55,34 +55,51 @@ class WaypointModel(QAbstractTableModel):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._rows: tuple[WaypointRow, ...] = ()
+        self._items: tuple[tuple[int, Item], ...] = ()
         self._row_of: dict[Item, int] = {}
         self._panels: Mapping[str, int] = {}
         self._units = UnitSystem.METRIC
         self._position, self._height = PositionShown.LOCAL, HeightShown.LOCAL
 
     def set_rows(self, rows: Sequence[WaypointRow], panels_covered: Mapping[str, int] | None = None) -> None:
-        """Show other waypoints; `panels_covered` by viewpoint, where it is known."""
-        self.beginResetModel()
-        self._rows, self._panels = tuple(rows), panels_covered or {}
-        self._row_of = {}
-        for number, row in enumerate(self._rows):
-            self._row_of.setdefault(item_of_row(row), number)
-        self.endResetModel()
+        """Show other waypoints; `panels_covered` by viewpoint, as before where it is not given.
+
+        The same waypoints with other values, as after most edits, leave filter, order and selection as they are.
+        """
+        before, after = self._rows, tuple(rows)
+        items = tuple((row.sortie, item_of_row(row)) for row in after)
+        if items != self._items:
+            self.beginResetModel()
+            self._rows, self._items, self._row_of = after, items, {}
+            for number, (_, item) in enumerate(items):
+                self._row_of.setdefault(item, number)
+            self.endResetModel()
+        else:
+            self._rows = after
+            changed = [number for number, row in enumerate(after) if row != before[number]]
+            self._rows_changed(changed, Column.SORTIE, Column.LOCKED)
+        if panels_covered is not None:
+            self.set_panels_covered(panels_covered)
 
     def set_panels_covered(self, panels_covered: Mapping[str, int]) -> None:
         """Fill the column of covered panels."""
-        self._panels = panels_covered
-        self._cells_changed(Column.PANELS, Column.PANELS)
+        before, self._panels = self._panels, panels_covered
+        changed = [
+            number
+            for number, row in enumerate(self._rows)
+            if _covered_by(row, before) != _covered_by(row, panels_covered)
+        ]
+        self._rows_changed(changed, Column.PANELS, Column.PANELS)
 
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
         self._units = units
-        self._cells_changed(Column.FIRST, Column.LEG)
+        self._column_changed(Column.FIRST, Column.LEG)
 
     def set_shown(self, position: PositionShown, height: HeightShown) -> None:
         """Show positions in another frame, heights above another reference."""
         self._position, self._height = position, height
-        self._cells_changed(Column.FIRST, Column.HEIGHT)
+        self._column_changed(Column.FIRST, Column.HEIGHT)
 
     def item(self, row: int) -> Item:
         """What a row stands for."""
@@ -135,10 +152,15 @@ class WaypointModel(QAbstractTableModel):
             return self._tip(Column(section))
         return None
 
-    def _cells_changed(self, first: Column, last: Column) -> None:
-        if self._rows:
-            self.dataChanged.emit(self.index(0, first), self.index(len(self._rows) - 1, last))
+    def _column_changed(self, first: Column, last: Column) -> None:
+        """Cells and titles of some columns."""
+        self._rows_changed(range(len(self._rows)), first, last)
         self.headerDataChanged.emit(Qt.Orientation.Horizontal, first, last)
+
+    def _rows_changed(self, rows: Sequence[int], first: Column, last: Column) -> None:
+        """Some columns of these rows, rising, and of those between them."""
+        if rows:
+            self.dataChanged.emit(self.index(rows[0], first), self.index(rows[-1], last))
 
     def _value(self, row: WaypointRow, column: Column) -> Any:
         view = row.viewpoint
@@ -167,7 +189,7 @@ class WaypointModel(QAbstractTableModel):
             case Column.ARRIVAL:
                 return row.arrival_s
             case Column.PANELS:
-                return None if view is None else self._panels.get(view.id)
+                return _covered_by(row, self._panels)
             case Column.LOCKED:
                 return view is not None and view.locked
 
@@ -226,6 +248,11 @@ class WaypointModel(QAbstractTableModel):
             Column.PANELS: self.tr("Panels that this photo covers; known after a check"),
         }
         return tips.get(column)
+
+
+def _covered_by(row: WaypointRow, panels_covered: Mapping[str, int]) -> int | None:
+    """Panels that the photo of a row covers; None where none is taken, or it is not known."""
+    return None if row.viewpoint is None else panels_covered.get(row.viewpoint.id)
 
 
 def item_of_row(row: WaypointRow) -> Item:

@@ -68,9 +68,17 @@ class WaypointTable(QWidget):
 
     def set_rows(self, rows: Sequence[WaypointRow]) -> None:
         """Show the waypoints of another plan; filter, order and references stay."""
-        chosen, was_empty = self._sortie.currentData(), self._model.rowCount() == 0
+        was_empty = self._model.rowCount() == 0
         self._model.set_rows(rows)
         numbers = sorted({row.sortie for row in rows})
+        if numbers != [self._sortie.itemData(index) for index in range(1, self._sortie.count())]:
+            self._offer_sorties(numbers)
+            self._filter_rows()
+        if was_empty:  # after an edit the columns are as wide as they must be
+            self._view.resizeColumnsToContents()
+
+    def _offer_sorties(self, numbers: Sequence[int]) -> None:
+        chosen = self._sortie.currentData()
         with QSignalBlocker(self._sortie):
             self._sortie.clear()
             self._sortie.addItem(self.tr("All sorties"), None)
@@ -78,9 +86,6 @@ class WaypointTable(QWidget):
                 text = self.tr("Sortie {0}").format(number) if number else self.tr("In no sortie")
                 self._sortie.addItem(text, number)
             self._sortie.setCurrentIndex(max(0, self._sortie.findData(chosen)))
-        self._filter_rows()
-        if was_empty:  # after an edit the columns are as wide as they must be
-            self._view.resizeColumnsToContents()
 
     def set_panels_covered(self, panels_covered: Mapping[str, int]) -> None:
         """Say how many panels each viewpoint covers."""

@@ -45,6 +45,7 @@ class PlanLists(QTabWidget):
         self._workspace, self._desk = workspace, desk
         self._measuring: Job[object] | None = None
         self._listed: tuple[Plan | None, Origin | None] = (None, None)
+        self._counted: PlanInHand | None = None
         self._explained: PlanInHand | None = None
         self._measured: tuple[PlanInHand | None, int] = (None, 0)
         self.compare_window: QWidget | None = None
@@ -118,11 +119,9 @@ class PlanLists(QTabWidget):
         if self._listed[0] is not plan or self._listed[1] is not origin:
             self._listed = (plan, origin)
             self.waypoints.set_rows(() if plan is None else waypoint_rows(plan, origin))
-        covered: dict[str, int] = {}
-        if in_hand is not None:
-            panels = (in_hand.insight.sections >= 0).sum(axis=1)
-            covered = dict(zip(in_hand.insight.view_ids, panels.tolist(), strict=True))
-        self.waypoints.set_panels_covered(covered)
+        if self._counted is not in_hand:
+            self._counted = in_hand
+            self.waypoints.set_panels_covered(_panels_covered(in_hand))
         self._show_selection()
 
     def _show_selection(self) -> None:
@@ -220,3 +219,10 @@ class PlanLists(QTabWidget):
 
         self.compare_window = CompareWindow(self._workspace, document.site, tuple(entries), self.window())
         self.compare_window.show()
+
+
+def _panels_covered(in_hand: PlanInHand | None) -> dict[str, int]:
+    """Number of panels that each view covers, by its identifier; empty where that is not known."""
+    if in_hand is None:
+        return {}
+    return dict(zip(in_hand.insight.view_ids, in_hand.insight.panels_per_view.tolist(), strict=True))

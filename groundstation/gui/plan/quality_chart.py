@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import pyqtgraph as pg
-from PySide6.QtCore import QEvent, Qt, QTimer
+import numpy as np
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.theme import colours
+from groundstation.gui.plan.curve_plot import Curve, CurvePlot
 from groundstation.services.units import per_cent
 from planning.progress import Clock, QualityPoint
 
@@ -27,18 +27,7 @@ class QualityChart(QWidget):
         self._bound: float | None = None
         self._started_s: float | None = None
         self._budget_s = 0.0
-        self._plot = pg.PlotWidget()
-        self._plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._plot.setMenuEnabled(False)
-        self._plot.setMouseEnabled(x=False, y=False)
-        self._plot.hideButtons()
-        self._plot.setMinimumHeight(110)
-        self._line = self._plot.plot(stepMode="right")
-        self._bound_line = pg.InfiniteLine(angle=0, movable=False)
-        self._now_line = pg.InfiniteLine(angle=90, movable=False)
-        for line in (self._bound_line, self._now_line):
-            line.setVisible(False)
-            self._plot.addItem(line, ignoreBounds=True)
+        self.plot = CurvePlot(self.tr("time in s"), self.tr("covered sections"))
         self._words, self._left = QLabel(), QLabel()
         self._words.setWordWrap(True)
         self.enough = QPushButton(self.tr("Good enough, stop here"))
@@ -49,13 +38,12 @@ class QualityChart(QWidget):
         below.addWidget(self.enough)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
-        layout.addWidget(self._plot, 1)
+        layout.addWidget(self.plot, 1)
         layout.addWidget(self._words)
         layout.addLayout(below)
         self._redraw = QTimer(self)
         self._redraw.setInterval(REDRAW_MS)
         self._redraw.timeout.connect(self._draw)
-        self._dress()
         self._draw()
 
     def start(self, budget_s: float) -> None:
@@ -87,29 +75,9 @@ class QualityChart(QWidget):
         self._points, self._bound = list(points), bound
         self._draw()
 
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
-        """Follow the theme."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_redraw"):
-            self._dress()
-
     def text(self) -> str:
         """What stands below the curve."""
         return f"{self._words.text()} {self._left.text()}".strip()
-
-    def _dress(self) -> None:
-        found = colours()
-        self._plot.setBackground(found.base)
-        for side, text in (("left", self.tr("covered sections")), ("bottom", self.tr("time in s"))):
-            axis = self._plot.getAxis(side)
-            axis.setLabel(text, color=found.text)
-            axis.setPen(found.line)
-            axis.setTextPen(found.text)
-            axis.enableAutoSIPrefix(False)
-        self._plot.showGrid(x=True, y=True, alpha=0.15)
-        self._line.setPen(pg.mkPen(found.covered if not found.is_dark else found.accent, width=2.5))
-        self._bound_line.setPen(pg.mkPen(found.error, width=1.5, style=Qt.PenStyle.DashLine))
-        self._now_line.setPen(pg.mkPen(found.muted, width=1, style=Qt.PenStyle.DotLine))
 
     def _draw(self) -> None:
         times, values = [p.t_s for p in self._points], [p.value for p in self._points]
@@ -118,16 +86,9 @@ class QualityChart(QWidget):
         end_s = max([*(1.05 * t_s for t_s in times[-1:]), 0.0 if elapsed_s is None else elapsed_s, 1.0])
         if times and end_s > times[-1]:
             times, values = [*times, end_s], [*values, values[-1]]
-        self._line.setData(times, values)
-        self._bound_line.setVisible(self._bound is not None)
-        highest = max([*values, 1.0])
-        if self._bound is not None:
-            self._bound_line.setValue(self._bound)
-            highest = max(highest, self._bound)
-        self._now_line.setVisible(elapsed_s is not None)
-        self._now_line.setValue(0.0 if elapsed_s is None else elapsed_s)
-        self._plot.setXRange(0.0, 1.05 * end_s, padding=0.0)
-        self._plot.setYRange(0.0, 1.08 * highest, padding=0.0)
+        highest = max([*values, self._bound or 0.0, 1.0])
+        curve = Curve(np.array(times), np.array(values), 1.05 * end_s, 1.08 * highest, self._bound, elapsed_s)
+        self.plot.set_curve(curve)
         self._say(values, elapsed_s)
 
     def _say(self, values: list[float], elapsed_s: float | None) -> None:

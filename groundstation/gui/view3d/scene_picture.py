@@ -25,7 +25,7 @@ from groundstation.gui.view3d.layers import Drawable, Layer
 from groundstation.gui.view3d.navigator import Navigator
 from groundstation.gui.view3d.orbit import Orbit, facing
 from groundstation.gui.view3d.overlay import Overlay
-from groundstation.gui.view3d.paint import ColourScale, flat
+from groundstation.gui.view3d.paint import ColourScale, flat, shaded
 from groundstation.gui.view3d.picking import Hit, PickIndex, pick
 from groundstation.gui.view3d.pinhole import photo_pinhole
 from groundstation.gui.view3d.plan_scene import PlanScene, plan_scene
@@ -332,8 +332,7 @@ class ScenePicture(QWidget):
 
     def _paint_panels(self) -> None:
         if self._site is not None:
-            panels = panels_drawable(self._site.frames, self._panel_colours(self._site))
-            self._canvas.recolour(Layer.PANELS, panels.colours)
+            self._canvas.recolour(Layer.PANELS, shaded(self._panel_colours(self._site), self._site.frames.normals))
         self._show_legend()
 
     def _paint_domes(self) -> None:

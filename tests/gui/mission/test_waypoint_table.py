@@ -60,10 +60,10 @@ def test_model_keeps_qts_rules_through_resets_units_and_empty_plans(model):
 
 def test_a_thousand_views_are_shown_in_a_blink(table):
     rows = waypoint_rows(make_plan([(ring(500), {}), (ring(500, 32.0, 500), {})]))
-    started = time.perf_counter()
+    started = time.thread_time()  # whatever else the machine does
     table.set_rows(rows)
     assert len(shown(table)) == 1008
-    assert time.perf_counter() - started < 0.1
+    assert time.thread_time() - started < 0.1
 
 
 def test_cells_say_what_the_row_holds(model):
@@ -182,6 +182,72 @@ def test_another_plan_does_not_speak_for_the_user(table):
     table.set_rows(waypoint_rows(make_plan([(ring(3), {})])))
     table.set_rows(())
     assert heard == []
+
+
+def moved(plan, viewpoint_id):
+    """The plan with one viewpoint, and its vertex of the path, a metre further up."""
+
+    def up(place):
+        return (place[0], place[1], place[2] + 1.0)
+
+    old = next(view for view in plan.viewpoints if view.id == viewpoint_id)
+    views = [replace(view, position_enu_m=up(old.position_enu_m)) if view is old else view for view in plan.viewpoints]
+    sorties = [
+        replace(
+            sortie,
+            path_enu_m=tuple(up(place) if place == old.position_enu_m else place for place in sortie.path_enu_m),
+        )
+        for sortie in plan.sorties
+    ]
+    return replace(plan, viewpoints=tuple(views), sorties=tuple(sorties))
+
+
+def test_an_edit_changes_cells_and_leaves_filter_order_and_selection(table):
+    from PySide6.QtCore import Qt
+
+    from groundstation.gui.mission.waypoint_model import Column
+
+    plan = example_plan()
+    table.set_rows(waypoint_rows(plan))
+    table._photos_only.setChecked(True)
+    table.view().sortByColumn(Column.VIEWPOINT, Qt.SortOrder.DescendingOrder)
+    table.set_selection(Item(ItemKind.VIEWPOINT, "v0003"))
+    resets, changed = [], []
+    table.model().modelReset.connect(lambda: resets.append(1))
+    table.model().dataChanged.connect(lambda first, last: changed.append((first.row(), last.row())))
+    edited = waypoint_rows(moved(plan, "v0003"))
+    table.set_rows(edited)
+    assert not resets
+    at = next(number for number, row in enumerate(edited) if row.viewpoint and row.viewpoint.id == "v0003")
+    assert len(changed) == 1
+    assert changed[0][0] == at, "what comes before is as it was"
+    assert texts(table.model(), at)[5] == f"{edited[at].position_enu_m[2]:.1f}"
+    assert shown(table) == [f"v{number:04d}" for number in range(9, -1, -1)]
+    current = table.view().selectionModel().currentIndex()
+    assert table.view().model().index(current.row(), 2).data() == "v0003"
+    table.set_rows(edited)
+    assert len(changed) == 1, "nothing changed"
+
+
+def test_only_the_cells_of_views_that_cover_more_or_less_change(model):
+    model.set_rows(waypoint_rows(example_plan()), {f"v{number:04d}": number for number in range(10)})
+    changed = []
+    model.dataChanged.connect(lambda first, last: changed.append((first.row(), first.column(), last.row())))
+    model.set_panels_covered({f"v{number:04d}": 99 if number == 4 else number for number in range(10)})
+    (row, column, last), *others = changed
+    assert not others
+    assert row == last
+    assert texts(model, row)[2] == "v0004"
+    assert texts(model, row)[column] == "99"
+
+
+def test_as_many_other_waypoints_are_other_waypoints(table):
+    plan = make_plan([(ring(4), {}), (ring(3, 30.0, 4), {})])
+    table.set_rows(waypoint_rows(plan))
+    table._sortie.setCurrentIndex(2)
+    assert shown(table) == ["", "", "v0004", "v0005", "v0006", "", ""]
+    table.set_rows(waypoint_rows(make_plan([(ring(3), {}), (ring(4, 30.0, 3), {})])))
+    assert shown(table) == ["", "", "v0003", "v0004", "v0005", "v0006", "", ""]
 
 
 def test_what_the_choosers_say_is_what_the_columns_show(table):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planning.insight.clearance import MAX_SAMPLES, route_clearance
@@ -24,6 +24,7 @@ def along(*points, spacing_m=0.5):
 point = st.tuples(st.floats(-38, 38), st.floats(-38, -0.5), st.floats(0.5, 30))
 
 
+@settings(max_examples=40)
 @given(st.lists(point, min_size=2, max_size=6))
 def test_samples_and_minima_are_those_of_a_slow_twin(points):
     found = along(*points, spacing_m=2.0)

@@ -1,6 +1,7 @@
 """Comparing plans: equal plans are equal, differences are found where they are, and all are counted in one way."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -13,11 +14,11 @@ from planning.plan import Constraints, viewpoint_arrays
 from planning.reach_kernel import UNREACHABLE
 from tests.planning.insight.cases import NEAR, plan, prepared, scene
 
-MODEL, SITE, PLAN = scene("kiosk"), prepared("kiosk"), plan("kiosk")
+model, site, planned = partial(scene, "kiosk"), partial(prepared, "kiosk"), partial(plan, "kiosk")
 
 
-def compared(*plans, site=SITE):
-    return compare_plans(MODEL, site, plans, [f"plan {number}" for number in range(len(plans))])
+def compared(*plans, on=None):
+    return compare_plans(model(), on or site(), plans, [f"plan {number}" for number in range(len(plans))])
 
 
 def values(comparison, code, subject=""):
@@ -26,11 +27,11 @@ def values(comparison, code, subject=""):
 
 
 def first_views(n):
-    return replace(PLAN, viewpoints=PLAN.viewpoints[:n], sorties=())
+    return replace(planned(), viewpoints=planned().viewpoints[:n], sorties=())
 
 
 def test_a_plan_beside_itself_is_equal_in_every_row_and_better_in_none():
-    same = compared(PLAN, PLAN)
+    same = compared(planned(), planned())
     for row in same.rows:
         assert row.values[0] == row.values[1]
         assert row.best == ()
@@ -40,22 +41,22 @@ def test_a_plan_beside_itself_is_equal_in_every_row_and_better_in_none():
 
 
 def test_rows_hold_what_is_measured_one_by_one():
-    found = compared(PLAN, first_views(4))
-    counts = [exact_coverage(SITE.problem.model, viewpoint_arrays(p.viewpoints)) for p in (PLAN, first_views(4))]
+    found = compared(planned(), first_views(4))
+    counts = [exact_coverage(site().problem.model, viewpoint_arrays(p.viewpoints)) for p in (planned(), first_views(4))]
     covered = [c > 0 for c in counts]
     assert values(found, "views") == (12.0, 4.0)
     assert values(found, "covered") == tuple(float(c.sum()) for c in covered)
-    possible = (SITE.problem.reachability.verdicts != UNREACHABLE).sum()
+    possible = (site().problem.reachability.verdicts != UNREACHABLE).sum()
     assert values(found, "possible-share") == pytest.approx([c.sum() / possible for c in covered])
     assert values(found, "depth", "2") == tuple(float((c >= 2).sum()) for c in counts)
     assert values(found, "only-here") == (float((covered[0] & ~covered[1]).sum()), 0.0)
-    facade_a = (SITE.problem.reachability.verdicts[:9] != UNREACHABLE).sum()
+    facade_a = (site().problem.reachability.verdicts[:9] != UNREACHABLE).sum()
     assert values(found, "facade-share", "A") == pytest.approx([c[:9].sum() / facade_a for c in covered])
     np.testing.assert_array_equal(found.only(0, 1), covered[0] & ~covered[1])
     np.testing.assert_array_equal(found.more_covered_per_panel(0, 1), covered[0].sum(axis=1) - covered[1].sum(axis=1))
-    measured = {f.code: f.value for f in check_plan(PLAN, MODEL)}
+    measured = {f.code: f.value for f in check_plan(planned(), model())}
     assert values(found, "clearance") == (pytest.approx(measured["leg-distance"], abs=1e-5), None)
-    errors = [f for f in check_plan(first_views(4), MODEL) if f.severity is Severity.ERROR]
+    errors = [f for f in check_plan(first_views(4), model()) if f.severity is Severity.ERROR]
     assert values(found, "findings", "error") == (0.0, float(len(errors)))
     assert errors
 
@@ -73,8 +74,8 @@ def test_the_better_value_is_the_one_that_its_row_says():
 
 
 def test_plans_made_for_other_constraints_are_counted_under_the_first_ones_and_noted():
-    other = replace(PLAN, constraints=Constraints(8.0, section_step_deg=15.0, occlusion="auto"))
-    found = compared(PLAN, other)
+    other = replace(planned(), constraints=Constraints(8.0, section_step_deg=15.0, occlusion="auto"))
+    found = compared(planned(), other)
     assert values(found, "covered")[0] == values(found, "covered")[1]
     (note,) = found.notes
     assert "plan 1 was made for other constraints" in note
@@ -85,8 +86,8 @@ def test_plans_made_for_other_constraints_are_counted_under_the_first_ones_and_n
 
 
 def test_each_plan_is_seen_with_its_own_camera():
-    tele = replace(PLAN, camera=replace(PLAN.camera, name="tele", focal_length_mm=49.16))
-    found = compared(PLAN, tele)
+    tele = replace(planned(), camera=replace(planned().camera, name="tele", focal_length_mm=49.16))
+    found = compared(planned(), tele)
     assert values(found, "covered")[1] < values(found, "covered")[0]
     best = values(found, "gsd-best")
     # Four times the focal length: a quarter of the pixel where the same panel is covered, if it is.
@@ -95,11 +96,11 @@ def test_each_plan_is_seen_with_its_own_camera():
 
 
 def test_what_any_plan_covers_counts_as_possible_for_all():
-    verdicts = SITE.problem.reachability.verdicts
-    covered = exact_coverage(SITE.problem.model, viewpoint_arrays(PLAN.viewpoints)) > 0
-    nothing = replace(SITE.problem.reachability, verdicts=np.full_like(verdicts, UNREACHABLE))
-    site = replace(SITE, problem=replace(SITE.problem, reachability=nothing))
-    found = compared(PLAN, first_views(0), site=site)
+    verdicts = site().problem.reachability.verdicts
+    covered = exact_coverage(site().problem.model, viewpoint_arrays(planned().viewpoints)) > 0
+    nothing = replace(site().problem.reachability, verdicts=np.full_like(verdicts, UNREACHABLE))
+    hopeless = replace(site(), problem=replace(site().problem, reachability=nothing))
+    found = compared(planned(), first_views(0), on=hopeless)
     np.testing.assert_array_equal(found.is_possible, covered)
     assert values(found, "possible-share") == (1.0, 0.0)
 
@@ -114,4 +115,4 @@ def test_plans_without_views_have_no_pixels_and_no_clearance():
 @pytest.mark.parametrize("n", [0, 1])
 def test_less_than_two_plans_are_refused(n):
     with pytest.raises(ValueError, match="expected two plans or more"):
-        compared(*[PLAN] * n)
+        compared(*[planned()] * n)

@@ -110,7 +110,7 @@ def test_sections_that_can_be_covered_have_no_reason_and_all_that_cannot_have_on
     assert found.of(panel, section) == ()
 
 
-@pytest.mark.parametrize("name", ["kiosk", "court", "canyon"])
+@pytest.mark.parametrize("name", ["kiosk", "canyon", pytest.param("court", marks=pytest.mark.slow)])
 def test_random_places_find_no_rule_that_would_give_for_much_less(name):
     site = prepared(name)
     model, found = scene(name), reasons(name)

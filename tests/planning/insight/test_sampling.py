@@ -63,3 +63,13 @@ def test_without_views_nothing_is_known():
     found = panel_sampling(FRAMES, CAMERA, np.zeros((0, 3)), np.zeros((0, len(FRAMES)), np.int16))
     assert np.isnan(found.best_m).all()
     assert np.isnan(found.worst_on_pane_m).all()
+
+
+def test_some_panels_have_what_they_have_among_all():
+    rng = np.random.default_rng(1)
+    positions = rng.uniform([-40.0, -60.0, 3.0], [40.0, -1e-9, 60.0], (20, 3))
+    sections = np.where(rng.random((20, len(FRAMES))) < 0.2, 3, NOT_SEEN)
+    panels = np.array([7, 3, 120])
+    all_of_them, some = (panel_sampling(FRAMES, CAMERA, positions, sections, which) for which in (None, panels))
+    for name in ("best_m", "worst_m", "best_on_pane_m", "worst_on_pane_m"):
+        np.testing.assert_array_equal(getattr(some, name), getattr(all_of_them, name)[panels])
