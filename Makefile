@@ -9,20 +9,29 @@ endif
 # Processes that share the tests; those with windows each have a virtual screen of their own.
 WORKERS ?= 2
 TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
+# Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
+unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test test-all check benchmark format translations pictures clean
+.PHONY: setup demo test test-all check check-style check-types check-imports ready-to-test alone benchmark format
+.PHONY: translations pictures clean
 
-setup: $(VENV)/.ready
+setup: $(VENV)/.ready $(VENV)/.warm
 
 # CPU torch goes in first: asked for later, as a dependency, pip could choose a CUDA build of several gigabytes.
+# pip would compile the files of packages one by one; compileall does it on all cores, and passes over what no Python can.
 $(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] not in ((3, 11), (3, 12)))' || \
 		{ echo 'Python 3.11 or 3.12 is needed; name one: make PYTHON=python3.11' >&2; exit 1; }
 	PYTHON=$(PYTHON) .ci/system-libraries
 	test -x $(PY) || $(PYTHON) -m venv $(VENV)
 	$(PY) -m pip install --quiet --upgrade --constraint constraints.txt pip setuptools
-	$(PY) -m pip install --quiet --constraint constraints.txt torch
-	$(PY) -m pip install --quiet --constraint constraints.txt --editable '.[dev,cluster]'
+	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt torch
+	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt --editable '.[dev,cluster]'
+	$(PY) -m compileall -qq -j $(WORKERS) $(VENV) || true
+	touch $@
+
+# The kernels, compiled once for all processes.
+$(VENV)/.warm: $(VENV)/.ready
 	$(PY) -m planning.warm_up
 	$(PY) -m missions.simulator.warm_up
 	touch $@
@@ -30,19 +39,34 @@ $(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
 demo: setup
 	$(PY) app.py demo --out demo-out
 
-check: setup
+check: check-style check-types check-imports
+
+check-style: $(VENV)/.ready
 	$(PY) -m ruff check .
 	$(PY) -m ruff format --check .
+
+check-types: $(VENV)/.ready
 	$(PY) -m mypy
+
+check-imports: $(VENV)/.ready
 	$(VENV)/bin/lint-imports
 
-test: check
-	$(PY) -m pytest -n $(WORKERS) -m 'not slow and not benchmark and not alone'
-	$(PY) -m pytest -m 'alone and not slow and not benchmark'
+# Compiling the kernels takes one core as long as the checks take another.
+ready-to-test: check $(VENV)/.warm
 
-test-all: check
+test:
+	$(MAKE) --jobs $(WORKERS) ready-to-test
+	$(PY) -m pytest -n $(WORKERS) -m 'not slow and not benchmark and not alone'
+	$(MAKE) alone FAST='not slow and'
+
+test-all:
+	$(MAKE) --jobs $(WORKERS) ready-to-test
 	$(PY) -m pytest -n $(WORKERS) -m 'not benchmark and not alone'
-	$(PY) -m pytest -m 'alone and not benchmark'
+	$(MAKE) alone
+
+# Only the files with such tests are read.
+alone:
+	$(PY) -m pytest -m '$(FAST) alone and not benchmark' $$(grep -rl --include='test_*.py' 'mark\.alone' tests)
 
 benchmark: setup
 	$(PY) -m tests.benchmarks

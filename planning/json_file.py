@@ -146,7 +146,7 @@ def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
     Raises
     ------
     InputError
-        There is no such folder, a folder has that name, the file is write-protected, or it is one of `sources`.
+        There is no such folder, a folder has that name, file or folder is write-protected, or it is one of `sources`.
     """
     if not path.parent.is_dir():
         raise InputError(f"{path}: cannot be written: there is no folder '{path.parent}'; make it first")
@@ -154,6 +154,12 @@ def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
         raise InputError(f"{path}: cannot be written: this is a folder; name a file in it")
     if path.exists() and not os.access(path, os.W_OK):
         raise InputError(f"{path}: cannot be written: the file is write-protected; name another one")
+    folder = path.resolve().parent
+    # Files are made anew in their folder; devices and pipes are written into.
+    if (path.is_file() or not path.exists()) and not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError(
+            f"{path}: cannot be written: the folder '{folder}' is write-protected; name a file in another one"
+        )
     for source in sources:
         if path.exists() and source.exists() and path.samefile(source):
             raise InputError(f"{path}: would replace {source}, which it is made from; name another file")

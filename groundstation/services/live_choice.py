@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-import msgspec
-
+from groundstation.services.kept import read_kept
 from groundstation.services.settings import settings_path
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import DEFAULT_BAUD
-from planning.errors import InputError
-from planning.json_file import read_toml, write_atomically
 
 
 class LinkKind(StrEnum):
@@ -43,17 +40,30 @@ class ConnectionChoice:
         `HOST:PORT`, or `DEVICE:BAUD`; empty for a simulation.
     autopilot, speed_up
         Of the simulation.
+    signed
+        Every url whose link is signed, whichever is chosen now.
     """
 
     kind: LinkKind = LinkKind.SIMULATION
     address: str = ""
     autopilot: Autopilot = Autopilot.ARDUPILOT
     speed_up: float = 1.0
+    signed: tuple[str, ...] = ()
 
     @property
     def url(self) -> str:
         """As `missions.mavlink.link` takes it; empty for the embedded simulation."""
         return "" if self.kind is LinkKind.SIMULATION else f"{self.kind.value}:{self.address}"
+
+    @property
+    def is_signed(self) -> bool:
+        """Whether the link to the chosen address is signed; a simulation's never is."""
+        return self.url in self.signed
+
+    def with_signed(self, url: str, *, is_signed: bool) -> ConnectionChoice:
+        """The same choice, with the link to an address signed from now on, or no longer."""
+        others = tuple(one for one in self.signed if one != url)
+        return replace(self, signed=(*others, url) if is_signed and url else others)
 
 
 def choice_path() -> Path:
@@ -63,24 +73,4 @@ def choice_path() -> Path:
 
 def read_choice(path: Path) -> ConnectionChoice:
     """The last choice; the first one where none was kept, or what was kept cannot be read any more."""
-    try:
-        return read_toml(path, ConnectionChoice)
-    except InputError:
-        return ConnectionChoice()
-
-
-def write_choice(path: Path, choice: ConnectionChoice) -> None:
-    """Keep a choice.
-
-    Raises
-    ------
-    InputError
-        The file cannot be written.
-    """
-    import tomli_w
-
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{path.parent}: this folder cannot be made ({error.strerror or error})") from error
-    write_atomically(path, tomli_w.dumps(msgspec.to_builtins(choice)).encode())
+    return read_kept(path, ConnectionChoice())

@@ -87,6 +87,8 @@ class _RecordContent:
     events: tuple[FlightEvent, ...] = ()
     duration_s: float | None = None
     effects: tuple[Decision, ...] = ()
+    counted_before: int | None = None
+    counted_after: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +130,15 @@ def _record(content: _RecordContent, place: str) -> FlightRecord:
         if not all(map(math.isfinite, (photo.time_s, *photo.position_enu_m))):
             raise InputError(f"{place}.photos[{i}]: expected a finite time and position")
     return FlightRecord(
-        content.sortie, content.vehicle, track, content.photos, content.events, content.duration_s, content.effects
+        content.sortie,
+        content.vehicle,
+        track,
+        content.photos,
+        content.events,
+        content.duration_s,
+        content.effects,
+        content.counted_before,
+        content.counted_after,
     )
 
 
@@ -155,6 +165,8 @@ def _record_to_json(record: FlightRecord) -> dict[str, Any]:
         "photos": msgspec.to_builtins(record.photos),
         "events": msgspec.to_builtins(record.events),
         "effects": msgspec.to_builtins(record.effects),
+        "counted_before": record.counted_before,
+        "counted_after": record.counted_after,
         "track": {field.name: _with_nulls(getattr(record.track, field.name)) for field in fields(Track)},
     }
 

@@ -1,14 +1,18 @@
-"""Photos that were taken but not told of: the camera numbers its photos, so a report lost on the radio leaves a gap."""
+"""Photos that were taken but not told of: the camera numbers its photos, so a report lost on the radio leaves a gap.
+
+Between two photos the gap is in their numbers. Before the first and after the last one it is between their numbers and
+what the camera said, before and after the flight, of how many it had counted.
+"""
 
 from __future__ import annotations
 
 import itertools
 
-from missions.flight.record import FlightRecord
+from missions.flight.record import FlightRecord, TakenPhoto
 
-REPORTED = ("camera-feedback", "image-captured")
-"""Sources that come over the radio, each photo once. Other numbers (of files, of log entries) may have gaps of their
-own."""
+FIRST_NUMBER = {"camera-feedback": 1, "image-captured": 0}
+"""Sources that come over the radio, each photo once, and the number of a camera's first photo there (MAVLink: the index
+in CAMERA_IMAGE_CAPTURED counts from 0). Other numbers (of files, of log entries) may have gaps of their own."""
 
 
 def n_lost_between(record: FlightRecord, first: int, last: int) -> int:
@@ -25,18 +29,52 @@ def n_lost_between(record: FlightRecord, first: int, last: int) -> int:
         0 where the numbers say nothing: they began again, or the camera failed in between and may have counted that.
     """
     before, after = record.photos[first], record.photos[last]
-    if before.source not in REPORTED or after.source != before.source:
+    if before.source not in FIRST_NUMBER or after.source != before.source:
         return 0
-    if any(e.code == "camera-failed" and before.time_s <= e.time_s <= after.time_s for e in record.events):
+    if _failed(record, before.time_s, after.time_s):
         return 0
     told = {photo.index for photo in record.photos[first:last] if before.index < photo.index < after.index}
     return max(0, after.index - before.index - 1 - len(told))
 
 
-def n_lost(record: FlightRecord) -> int:
-    """How many photos the camera counted in all between its first and its last report, and did not tell of.
+def n_lost_before(record: FlightRecord, photo: int) -> int:
+    """How many photos the camera counted from the beginning of the flight to one that it told of, and did not tell of.
 
-    What was lost before the first or after the last one leaves no gap and is not counted.
+    0 where it did not say how many there were before, as `n_lost_between` otherwise.
     """
+    first, counted = record.photos[0], record.counted_before
+    if counted is None or first.source not in FIRST_NUMBER or _failed(record, -float("inf"), first.time_s):
+        return n_lost_between(record, 0, photo)
+    return max(0, first.index - counted - _first_number(record, first)) + n_lost_between(record, 0, photo)
+
+
+def n_lost_after(record: FlightRecord, photo: int) -> int:
+    """How many photos the camera counted from one that it told of to the end of the flight, and did not tell of.
+
+    0 where it did not say how many there were afterwards, as `n_lost_between` otherwise.
+    """
+    last, counted = record.photos[-1], record.counted_after
+    end = len(record.photos) - 1
+    if counted is None or last.source not in FIRST_NUMBER or _failed(record, last.time_s, float("inf")):
+        return n_lost_between(record, photo, end)
+    return max(0, counted - 1 - (last.index - _first_number(record, last))) + n_lost_between(record, photo, end)
+
+
+def n_lost(record: FlightRecord) -> int:
+    """How many photos the camera counted in the flight, and did not tell of, as far as its numbers say."""
+    if not record.photos:
+        before, after = record.counted_before, record.counted_after
+        return 0 if before is None or after is None else max(0, after - before)
     pairs = itertools.pairwise(range(len(record.photos)))
-    return sum(n_lost_between(record, first, last) for first, last in pairs)
+    between = sum(n_lost_between(record, first, last) for first, last in pairs)
+    return n_lost_before(record, 0) + between + n_lost_after(record, len(record.photos) - 1)
+
+
+def _first_number(record: FlightRecord, photo: TakenPhoto) -> int:
+    """Number of a camera's first photo; some that should count from 0 count from 1, which their last photo shows."""
+    is_from_one = record.counted_after is not None and record.photos[-1].index == record.counted_after
+    return max(FIRST_NUMBER[photo.source], int(is_from_one))
+
+
+def _failed(record: FlightRecord, start_s: float, end_s: float) -> bool:
+    return any(event.code == "camera-failed" and start_s <= event.time_s <= end_s for event in record.events)

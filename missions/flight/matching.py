@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.flight.lost_reports import n_lost_between
+from missions.flight.lost_reports import n_lost, n_lost_after, n_lost_before, n_lost_between
 from missions.flight.outcome import Reason
 from missions.flight.record import FlightRecord, TakenPhoto
 from planning.frames import heading_difference_rad
@@ -223,21 +223,31 @@ def _match_sortie(
             reason = reasons[view] if near is None else near[0]
             nearest = None if near is None else refs[left[near[1]]]
             found[view] = ViewMatch(views[view].id, number, reason, None, nearest)
-    return _with_lost_reports([found[view] for view in range(len(views))], records)
+    return _with_lost_reports([found[view] for view in range(len(views))], records, own)
 
 
-def _with_lost_reports(found: list[ViewMatch], records: Sequence[FlightRecord]) -> list[ViewMatch]:
+def _with_lost_reports(found: list[ViewMatch], records: Sequence[FlightRecord], own: list[int]) -> list[ViewMatch]:
     """The matches, with the views whose photo was taken but not told of.
 
-    Between two photos of views they are known where the camera counted as many as there are views without any photo;
-    where it counted fewer or more, which of them were photographed is not known.
+    Between two photos of views, before the first and after the last one, they are known where the camera counted as
+    many as there are views without any photo; where it counted fewer or more, which of them were photographed is not
+    known. A sortie that was flown in several pieces has no one beginning and end.
     """
     told = [(view, match.photo) for view, match in enumerate(found) if match.photo is not None]
-    for (before, first), (after, last) in itertools.pairwise(told):
-        silent = [view for view in range(before + 1, after) if found[view].reason is Reason.NO_PHOTO]
-        if not silent or first.record != last.record or first.photo > last.photo:
-            continue
-        if n_lost_between(records[first.record], first.photo, last.photo) == len(silent):
+    stretches = [
+        (range(before + 1, after), n_lost_between(records[first.record], first.photo, last.photo))
+        for (before, first), (after, last) in itertools.pairwise(told)
+        if first.record == last.record and first.photo <= last.photo
+    ]
+    if len(own) == 1 and told:
+        (first_view, first), (last_view, last) = told[0], told[-1]
+        stretches.append((range(first_view), n_lost_before(records[own[0]], first.photo)))
+        stretches.append((range(last_view + 1, len(found)), n_lost_after(records[own[0]], last.photo)))
+    elif len(own) == 1:
+        stretches.append((range(len(found)), n_lost(records[own[0]])))
+    for views, n_photos in stretches:
+        silent = [view for view in views if found[view].reason is Reason.NO_PHOTO]
+        if n_photos == len(silent):
             for view in silent:
                 found[view] = replace(found[view], reason=Reason.REPORT_LOST)
     return found

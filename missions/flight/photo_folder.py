@@ -8,34 +8,33 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.flight.logs.flights import HEIGHT_DIFFERENCE_M, MAX_DISTANCE_M, LogFlights
+from missions.flight.logs.flights import LogFlights
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.photo_files.folder import clock_s, in_order, read_photos
+from planning.photo_files.places import (
+    PhotoHeights,
+    absolute_height_m,
+    photo_places,
+    photos_near,
+    receiver_findings,
+)
 from planning.photo_files.record import PhotoMetadata
 from planning.progress import QUIET, Monitor
 from planning.site import Site
 
 Floats = NDArray[np.float64]
 
-PhotoHeights = Literal["auto", "takeoff", "absolute"]
-"""What heights are counted from: the site's home and the height above take-off; the absolute height, as the receiver
-measured it; or the better one: absolute where every position is fixed by RTK, else above take-off."""
-
 SORTIE_GAP_S = 60.0
 """Photos further apart are of two sorties: views follow each other in seconds, changing a battery takes minutes. A
 sortie that is parted needlessly does no harm: several records may be of one."""
-
-DISAGREEMENT_M = 0.5
-"""Worth a word if the two positions in a file are further apart: they should be the same, and differ by rounding."""
 
 INFRARED = "InfraredCamera"
 
@@ -73,31 +72,13 @@ def photo_flights(
         As `read_photo_flights`.
     """
     findings: list[Finding] = []
-    here = in_order(_near(_usable(photos, label, findings), site, label, findings))
+    near, elsewhere = photos_near(_usable(photos, label, findings), site, label)
+    here = in_order(near)
     times_s = _times_s(here)
-    points = _points_enu_m(here, site, heights, label, findings)
-    findings += _receiver_findings(here)
-    records = tuple(_record(here, times_s, points, group) for group in _sorties(here, times_s))
+    places = photo_places(here, site, heights, label)
+    findings += [*elsewhere, *places.findings, *receiver_findings(here)]
+    records = tuple(_record(here, times_s, places.points_enu_m, group) for group in _sorties(here, times_s))
     return LogFlights(records, tuple(findings))
-
-
-def _near(photos: list[PhotoMetadata], site: Site, label: str, findings: list[Finding]) -> list[PhotoMetadata]:
-    """Photos of this site, wherever their heights count from."""
-    from planning.geodesy.enu import enu_from_geodetic
-
-    lat, lon = _columns(photos, "lat_deg", "lon_deg")
-    away_m = np.linalg.norm(enu_from_geodetic(site.origin, lat, lon, site.origin.ellipsoid_height_m), axis=1)
-    near = [photo for photo, m in zip(photos, away_m.tolist(), strict=True) if m <= MAX_DISTANCE_M]
-    if not near:
-        raise InputError(
-            f"{label}: the photos were taken {away_m.min() / 1000.0:.1f} km from the site '{site.name}'; expected at "
-            f"most {MAX_DISTANCE_M / 1000.0:g} km; are they the right photos, and the right site?"
-        )
-    if len(near) < len(photos):
-        n = len(photos) - len(near)
-        text = f"{n} of {len(photos)} photos were taken far from the site and are left out"
-        findings.append(Finding(Severity.WARNING, "photos-elsewhere", text, "", float(n), 0.0, "photos"))
-    return near
 
 
 def _usable(photos: Sequence[PhotoMetadata], label: str, findings: list[Finding]) -> list[PhotoMetadata]:
@@ -116,7 +97,7 @@ def _usable(photos: Sequence[PhotoMetadata], label: str, findings: list[Finding]
             missing["a position"] += 1
         elif photo.taken_at is None and not by_exposure:
             missing["a time"] += 1
-        elif _absolute_m(photo) is None and photo.height_above_takeoff_m is None:
+        elif absolute_height_m(photo) is None and photo.height_above_takeoff_m is None:
             missing["a height"] += 1
         else:
             usable.append(photo)
@@ -137,84 +118,6 @@ def _times_s(photos: Sequence[PhotoMetadata]) -> Floats:
     by_exposure = all(photo.exposed_at is not None for photo in photos)
     clocks = (photo.exposed_at if by_exposure else photo.taken_at for photo in photos)
     return np.array([clock_s(time) for time in clocks if time is not None], np.float64)
-
-
-def _absolute_m(photo: PhotoMetadata) -> float | None:
-    return photo.height_ellipsoid_m if photo.height_ellipsoid_m is not None else photo.altitude_amsl_m
-
-
-def _points_enu_m(
-    photos: Sequence[PhotoMetadata], site: Site, heights: PhotoHeights, label: str, findings: list[Finding]
-) -> Floats:
-    """Positions in the site's frame, shape (n, 3); one way of counting heights for all."""
-    from planning.geodesy.enu import enu_from_geodetic, geodetic_from_enu
-    from planning.geodesy.geoid import ellipsoid_from_amsl_m
-
-    lat, lon, ellipsoid, amsl, above = _columns(
-        photos, "lat_deg", "lon_deg", "height_ellipsoid_m", "altitude_amsl_m", "height_above_takeoff_m"
-    )
-    home_m = float(geodetic_from_enu(site.origin, [site.home_enu_m]).ellipsoid_height_m[0])
-    absolute_m = np.where(np.isfinite(ellipsoid), ellipsoid, ellipsoid_from_amsl_m(lat, lon, amsl))
-    takeoff_m = home_m + above
-    n_fixed = sum(photo.is_rtk_fixed for photo in photos)
-    chosen, reason = _choice(heights, absolute_m, takeoff_m, n_fixed)
-    other_m, height_m = (absolute_m, takeoff_m) if chosen == "takeoff" else (takeoff_m, absolute_m)
-    is_known = np.isfinite(height_m)
-    if not is_known.all():
-        n = int((~is_known).sum())
-        what = "above take-off" if chosen == "takeoff" else "above sea level or ellipsoid"
-        if not is_known.any():
-            raise InputError(f"{label}: no photo says its height {what}; choose the other way of counting heights")
-        text = f"{n} of {len(photos)} photos do not say their height {what}; theirs is counted the other way"
-        findings.append(Finding(Severity.WARNING, "height-mixed", text, "", float(n), 0.0, "photos"))
-        height_m = np.where(is_known, height_m, other_m)
-    findings.append(Finding(Severity.NOTE, "height-reference", reason))
-    apart_m = (other_m - height_m)[np.isfinite(other_m) & is_known]
-    median_m = float(np.median(apart_m)) if len(apart_m) else 0.0
-    if abs(median_m) > HEIGHT_DIFFERENCE_M:
-        other = "absolute heights" if chosen == "takeoff" else "heights above take-off"
-        text = (
-            f"by their {other} the photos would lie {abs(median_m):.1f} m {'higher' if median_m > 0.0 else 'lower'}: "
-            "the site's own height, the receiver, or the place of take-off is off by that"
-        )
-        findings.append(Finding(Severity.WARNING, "height-disagreement", text, "", median_m, HEIGHT_DIFFERENCE_M, "m"))
-    return enu_from_geodetic(site.origin, lat, lon, height_m)
-
-
-def _choice(heights: PhotoHeights, absolute_m: Floats, takeoff_m: Floats, n_fixed: int) -> tuple[str, str]:
-    """Which heights count, `takeoff` or `absolute`, and why."""
-    n = len(takeoff_m)
-    if heights != "auto":
-        return heights, f"heights are counted as asked for: {heights}"
-    if n_fixed == n and np.isfinite(absolute_m).all():
-        return "absolute", "heights are those above the ellipsoid, because RTK was fixed in all photos"
-    if not np.isfinite(takeoff_m).any():
-        return "absolute", "heights are absolute ones, good to some metres: the photos do not say those above take-off"
-    why = f"because RTK was fixed in only {n_fixed} of {n} photos"
-    return "takeoff", f"heights are those above take-off, counted from the site's home, {why}"
-
-
-def _columns(photos: Sequence[PhotoMetadata], *names: str) -> Iterator[Floats]:
-    """Fields of all photos, each shape (n,), NaN where one is None."""
-    for name in names:
-        values = [getattr(photo, name) for photo in photos]
-        yield np.array([np.nan if value is None else value for value in values], np.float64)
-
-
-def _receiver_findings(photos: Sequence[PhotoMetadata]) -> Iterator[Finding]:
-    """What the photos say of their positions' quality."""
-    apart = [photo.position_disagreement_m for photo in photos if photo.position_disagreement_m is not None]
-    worst_m = max(apart, default=0.0)
-    if worst_m > DISAGREEMENT_M:
-        text = f"EXIF and XMP of a photo give positions {worst_m:.1f} m apart; EXIF's are taken"
-        yield Finding(Severity.WARNING, "position-disagreement", text, "", worst_m, DISAGREEMENT_M, "m")
-    flags = [photo for photo in photos if photo.rtk_flag is not None]
-    n_loose = sum(not photo.is_rtk_fixed for photo in flags)
-    if n_loose and any(photo.rtk_flag for photo in flags):
-        text = (
-            f"RTK was not fixed in {n_loose} of {len(flags)} photos: their positions are good to decimetres or metres"
-        )
-        yield Finding(Severity.WARNING, "rtk-not-fixed", text, "", float(n_loose), 0.0, "photos")
 
 
 def _sorties(photos: Sequence[PhotoMetadata], times_s: Floats) -> list[list[int]]:

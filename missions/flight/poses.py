@@ -18,11 +18,12 @@ def taken_poses(plan: Plan, records: Sequence[FlightRecord], matching: Matching)
     by_id = {view.id: view for view in plan.viewpoints}
     view_of = {match.photo: by_id[match.view_id] for match in matching.views if match.photo is not None}
     refs = (PhotoRef(record, photo) for record, flown in enumerate(records) for photo in range(len(flown.photos)))
-    poses = ((ref, _pose(records[ref.record].photos[ref.photo], view_of.get(ref))) for ref in refs)
+    poses = ((ref, pose_of_photo(records[ref.record].photos[ref.photo], view_of.get(ref))) for ref in refs)
     return {ref: pose for ref, pose in poses if pose is not None}
 
 
-def _pose(photo: TakenPhoto, view: Viewpoint | None) -> Viewpoint | None:
+def pose_of_photo(photo: TakenPhoto, view: Viewpoint | None) -> Viewpoint | None:
+    """Where a photo was taken from and looks to; None where neither it nor its view says the direction."""
     heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
     if view is not None:
         heading_deg = view.heading_deg if heading_deg is None else heading_deg

@@ -101,6 +101,8 @@ class FlightRecord:
         From lift-off to touch-down; None where the record does not hold both.
     effects
         Decisions of the simulator; empty for real flights.
+    counted_before, counted_after
+        Photos that the camera had counted before and after the flight; None where it did not say.
     """
 
     sortie: int
@@ -110,3 +112,5 @@ class FlightRecord:
     events: tuple[FlightEvent, ...] = ()
     duration_s: float | None = None
     effects: tuple[Decision, ...] = ()
+    counted_before: int | None = None
+    counted_after: int | None = None

@@ -7,14 +7,11 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from missions.flight.flight_file import Flight, plan_sha256
 from missions.flight.lost_reports import n_lost
 from missions.flight.outcome import Reason, SortieOutcome, Summary, ViewOutcome
 from missions.flight.record import FlightRecord
 from planning.checks.case import Case, judge
 from planning.findings import Finding, Severity
-from planning.plan import Plan
-from planning.site import SiteModel
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,22 +80,6 @@ def flight_findings(
         *_durations(sorties, limits),
         *_batteries(case, records, sorties),
     )
-
-
-def belonging(flight: Flight, plan: Plan, site_model: SiteModel) -> tuple[Finding, ...]:
-    """Whether a flight was flown at this site with this plan."""
-    site = site_model.site
-    if flight.site != site.name or flight.origin != site.origin:
-        text = f"the flight was at site '{flight.site}', this is '{site.name}'; take its own site file"
-        return (Finding(Severity.ERROR, "flight-site", text),)
-    found = []
-    if flight.site_sha256 and site_model.sha256 and flight.site_sha256 != site_model.sha256:
-        text = "the site file has changed since the flight; distances and coverage are those of the site as it is now"
-        found.append(Finding(Severity.WARNING, "flight-site", text))
-    if flight.plan_sha256 and flight.plan_sha256 != plan_sha256(plan):
-        text = "the flight was flown with another plan, or this one has changed since; views match as far as they fit"
-        found.append(Finding(Severity.WARNING, "flight-plan", text))
-    return tuple(found) or (Finding(Severity.OK, "flight-site", "the flight belongs to this site and plan"),)
 
 
 def _sorties_known(records: Sequence[FlightRecord], sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""Custom mode numbers of the two autopilots' flight modes: `data/modes.toml`."""
+"""Flight modes of the two autopilots by custom mode number and by name: `data/modes.toml`."""
 
 from __future__ import annotations
 
@@ -28,3 +28,17 @@ def mode_numbers(autopilot: Autopilot) -> dict[str, int]:
     if autopilot is Autopilot.ARDUPILOT:
         return written
     return {name: px4_custom_mode(*divmod(number, 100)) for name, number in written.items()}
+
+
+@cache
+def _names(autopilot: Autopilot) -> dict[int, str]:
+    return {number: name for name, number in mode_numbers(autopilot).items()}
+
+
+def mode_name(autopilot: Autopilot, custom_mode: int) -> str:
+    """Name of the mode in a heartbeat; `mode 42` for one that is not known."""
+    names = _names(autopilot)
+    if autopilot is Autopilot.PX4:
+        main, sub = px4_main_and_sub(custom_mode)
+        return names.get(custom_mode) or names.get(px4_custom_mode(main, 0)) or f"mode {main}.{sub}"
+    return names.get(custom_mode) or f"mode {custom_mode}"

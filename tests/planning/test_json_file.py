@@ -62,10 +62,26 @@ def test_a_write_protected_file_is_left_alone(tmp_path, monkeypatch):
     path.write_text("mine")
     path.chmod(0o444)
     # The superuser may write everything, so the system's answer is set.
-    monkeypatch.setattr("os.access", lambda *_: False)
-    with pytest.raises(InputError, match="write-protected"):
+    monkeypatch.setattr("os.access", lambda place, _: place != path)
+    with pytest.raises(InputError, match="the file is write-protected"):
         write_atomically(path, b"other")
     assert path.read_text() == "mine"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes of a POSIX system")
+def test_a_write_protected_folder_is_told_of_before_work_begins(tmp_path, monkeypatch):
+    locked, link, pipe = tmp_path / "locked", tmp_path / "link.json", tmp_path / "locked" / "pipe"
+    locked.mkdir()
+    (locked / "old.json").write_text("old")
+    link.symlink_to(locked / "old.json")
+    os.mkfifo(pipe)
+    # The superuser may write everywhere, so the system's answer is set.
+    monkeypatch.setattr("os.access", lambda place, _: place != locked)
+    for path in (locked / "new.json", locked / "old.json", link):
+        with pytest.raises(InputError, match=r"folder '.*locked' is write-protected; name a file in another one"):
+            check_output(path)
+    check_output(pipe)
+    check_output(tmp_path / "new.json")
 
 
 @pytest.mark.parametrize(

@@ -6,13 +6,14 @@ the motors ran. What never left its place and took no photo is no flight.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.flight.logs.raw import Floats, RawLog, RawPhoto, Row, table
+from missions.flight.logs.raw import Floats, RawLog, RawPhoto, Row, camera_angles_rad, table
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from planning.errors import InputError
 from planning.findings import Finding, Severity
@@ -201,7 +202,8 @@ def _record(log: RawLog, place: _Place, photos: list[RawPhoto], start_s: float, 
     """The flight between two times; None where there was none."""
     within = (place.time_s >= start_s) & (place.time_s <= end_s)
     time_s, positions = place.time_s[within], place.position_enu_m[within]
-    taken = [photo for photo in photos if start_s <= photo.time_s <= end_s]
+    # A report that was lost and asked for again comes late.
+    taken = sorted((photo for photo in photos if start_s <= photo.time_s <= end_s), key=lambda photo: photo.time_s)
     moved_m = float(np.linalg.norm(np.ptp(positions, axis=0))) if len(positions) else 0.0
     if len(positions) == 0 or (moved_m < FLOWN_M and not taken):
         return None
@@ -219,6 +221,8 @@ def _record(log: RawLog, place: _Place, photos: list[RawPhoto], start_s: float, 
         photos=tuple(p for photo in taken if (p := _photo(photo, place, track, zero_s)) is not None),
         events=tuple(sorted(shifted, key=lambda event: event.time_s)),
         duration_s=_duration_s(time_s, positions[:, 2] - place.site.home_enu_m[2]),
+        counted_before=next((n for at_s, n in reversed(log.counted) if at_s <= start_s + ARMED_LATE_S), None),
+        counted_after=next((n for at_s, n in log.counted if at_s >= end_s - ARMED_LATE_S), None),
     )
 
 
@@ -269,11 +273,7 @@ def _photo(photo: RawPhoto, place: _Place, track: Track, zero_s: float) -> Taken
     if not np.isfinite(position).all():
         return None
     speed = np.linalg.norm([_at(when, track.time_s, track.velocity_enu_m_s[:, axis])[0] for axis in range(3)])
-    heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
-    if heading_deg is None:
-        heading_deg = _degrees_at(when, track.time_s, track.gimbal_heading_rad)
-    if pitch_deg is None:
-        pitch_deg = _degrees_at(when, track.time_s, track.gimbal_pitch_rad)
+    heading_deg, pitch_deg = _camera_deg(photo, track)
     return TakenPhoto(
         index=photo.index,
         time_s=photo.time_s - zero_s,
@@ -284,6 +284,25 @@ def _photo(photo: RawPhoto, place: _Place, track: Track, zero_s: float) -> Taken
         source=photo.source,
         file=photo.file,
     )
+
+
+def _camera_deg(photo: RawPhoto, track: Track) -> tuple[float | None, float | None]:
+    """Heading and pitch of the camera at a photo.
+
+    In this order: what the log says of the camera itself; the gimbal's own messages; the attitude that came with the
+    photo, where no gimbal is heard; the heading of the nose.
+    """
+    when = np.array([photo.time_s])
+    heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
+    if pitch_deg is None:
+        pitch_deg = _degrees_at(when, track.time_s, track.gimbal_pitch_rad)
+    angles = None if pitch_deg is not None or photo.q_wxyz is None else camera_angles_rad(*photo.q_wxyz)
+    if angles is not None:
+        own_heading_deg, pitch_deg = map(math.degrees, angles)
+        heading_deg = own_heading_deg if heading_deg is None else heading_deg
+    if heading_deg is None:
+        heading_deg = _degrees_at(when, track.time_s, track.gimbal_heading_rad)
+    return heading_deg, pitch_deg
 
 
 def _degrees_at(when: Floats, time_s: Floats, angles_rad: Floats) -> float | None:

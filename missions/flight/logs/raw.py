@@ -28,7 +28,13 @@ YAW_LOCK, YAW_IN_VEHICLE_FRAME, YAW_IN_EARTH_FRAME = 16, 32, 64
 class RawPhoto:
     """A photo as a log tells of it; NaN and None where it does not say.
 
-    `heading_deg` and `gimbal_pitch_deg` are the camera's, clockwise from north and against the horizon.
+    Parameters
+    ----------
+    heading_deg, gimbal_pitch_deg
+        Of the camera, clockwise from north and against the horizon.
+    q_wxyz
+        Attitude that came with the photo, to north, east, down. It counts only where no gimbal is heard at that time,
+        because it may be the vehicle's: PX4 gives the gimbal's if it has one, else its own.
     """
 
     index: int
@@ -41,6 +47,7 @@ class RawPhoto:
     gimbal_pitch_deg: float | None = None
     source: str = "log"
     file: str = ""
+    q_wxyz: tuple[float, float, float, float] | None = None
 
 
 Row = tuple[float, ...]
@@ -70,6 +77,8 @@ class RawLog:
         What the camera said it took.
     triggers
         What it was told to take; they count where it says nothing.
+    counted
+        Time, and how many photos the camera had counted by then.
     """
 
     vehicle: str = ""
@@ -83,6 +92,7 @@ class RawLog:
     armed: list[tuple[float, bool]] = field(default_factory=list)
     photos: list[RawPhoto] = field(default_factory=list)
     triggers: list[RawPhoto] = field(default_factory=list)
+    counted: list[tuple[float, int]] = field(default_factory=list)
     events: list[FlightEvent] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 

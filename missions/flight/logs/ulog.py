@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.flight.logs.raw import RawLog, RawPhoto, Row, camera_angles_rad
+from missions.flight.logs.raw import RawLog, RawPhoto, Row
 from missions.flight.record import FlightEvent
 from planning.errors import InputError
 from planning.progress import QUIET, Monitor
@@ -214,11 +214,8 @@ def _photos(log: RawLog, topics: dict[str, Columns]) -> None:
         if result == 0:
             log.camera_failed(time_s, int(number))
             continue
-        angles = camera_angles_rad(*q) if not log.gimbal_pitches else None
-        heading_deg, pitch_deg = (None, None) if angles is None else map(math.degrees, angles)
-        log.photos.append(
-            RawPhoto(int(number), time_s, lat, lon, alt, heading_deg=heading_deg, gimbal_pitch_deg=pitch_deg)
-        )
+        w, x, y, z = q
+        log.photos.append(RawPhoto(int(number), time_s, lat, lon, alt, q_wxyz=(w, x, y, z)))
     triggers = _rows(topics, "camera_trigger", "seq", "feedback") or [
         (*row, 0.0) for row in _rows(topics, "camera_trigger", "seq")
     ]

@@ -65,7 +65,7 @@ def write_photos(
         gps = gps_tags(float(lat[i]), float(lon[i]), float(absolute[i]))
         exif = exif_part(
             {0x010F: "DJI", 0x0110: "M3E"},
-            {0x9003: f"{taken:%Y:%m:%d %H:%M:%S}", 0x9291: f"{taken:%f}"[:3], 0x829A: device.exposure_s},
+            {0x9003: f"{taken:%Y:%m:%d %H:%M:%S}", 0x9291: f"{taken:%f}"[:3], 0x829A: device.exposure_s, 0x920A: 12.29},
             gps if device.has_heights else {tag: value for tag, value in gps.items() if tag < 5},
         )
         save(folder / f"DJI_{taken:%Y%m%d%H%M%S}_{first + i:04d}_V.JPG", jpeg(exif, packet(properties)))

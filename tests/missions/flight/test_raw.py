@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from missions.flight.logs.raw import camera_angles_rad
 from missions.flight.logs.tlog import read_tlog
-from planning.frames import wrap_heading_deg
 
 
 def quaternion(heading: float, pitch: float) -> tuple[float, float, float, float]:
@@ -78,15 +77,17 @@ def test_older_mounts_are_understood() -> None:
 def test_a_photo_that_the_camera_says_failed_is_no_photo() -> None:
     from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+    q = quaternion(math.radians(170.0), -0.2)
+
     def shot(result: int, lat: int) -> Any:
-        q = list(quaternion(math.radians(170.0), -0.2))
-        return mavlink.MAVLink_camera_image_captured_message(2000, 0, 1, lat, 5, 10, 10, q, result + 7, result, b"")
+        return mavlink.MAVLink_camera_image_captured_message(
+            2000, 0, 1, lat, 5, 10, 10, list(q), result + 7, result, b""
+        )
 
     log = read_tlog(telemetry(shot(0, 5), shot(1, 2**31 - 1)))
     (photo,) = log.photos
     assert math.isnan(photo.lat_deg)
-    assert photo.heading_deg is not None
-    assert wrap_heading_deg(photo.heading_deg) == pytest.approx(170.0, abs=1e-4)
+    assert photo.q_wxyz == pytest.approx(q, abs=1e-6)
     assert [event.code for event in log.events] == ["camera-failed"]
 
 

@@ -13,11 +13,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from missions.flight.flight_file import flight_of
 from missions.flight.outcome import FlightReport, Reason
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 from missions.flight.report import Limits, closest, report_case
-from missions.flight.report_rules import belonging
 from missions.flight.report_text import report_text, report_to_json
 from planning.checks.case import Case
 from planning.findings import Finding, Severity
@@ -261,16 +259,6 @@ def test_an_extra_photo_without_direction_covers_nothing() -> None:
     extra = TakenPhoto(99, 1.0, (0.0, -12.0, 5.0))
     made = report(photos(lambda p: (extra, *p[6:])))
     assert made.summary.covered == report(photos(lambda p: p[6:])).summary.covered
-
-
-def test_a_flight_of_another_site_or_plan_is_told_apart() -> None:
-    flight = flight_of(plan(), site(), flown())
-    assert [f.severity for f in belonging(flight, plan(), site())] == [Severity.OK]
-    elsewhere = replace(flight, site="tower")
-    assert belonging(elsewhere, plan(), site())[0].severity is Severity.ERROR
-    changed = belonging(flight, replace(plan(), seed=5), replace(site(), sha256="1" * 64))
-    assert [f.code for f in changed] == ["flight-site", "flight-plan"]
-    assert {f.severity for f in changed} == {Severity.WARNING}
 
 
 def test_the_report_is_json() -> None:

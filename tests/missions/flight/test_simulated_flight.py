@@ -6,6 +6,7 @@ import struct
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from groundstation.vehicle.conduct import conduct
@@ -42,15 +43,22 @@ def test_the_telemetry_log_tells_what_the_live_record_tells(tmp_path: Path, auto
     log = tmp_path / "flight.tlog"
     log.write_bytes(b"".join(frames))
     flights = read_log(log, site)
-    live, later = (report_flight(plan, model, records) for records in ((outcome.record,), flights.records))
-    assert live.summary.n_taken == later.summary.n_taken == 6
-    assert later.summary.covered == pytest.approx(live.summary.covered, rel=0.01)
+    (record,) = flights.records
+    live = outcome.record
+    # The embedded vehicle hands its messages over as they are; on the wire, numbers are rounded to 32 bits.
+    for ours, told in zip(live.photos, record.photos, strict=True):
+        assert (told.index, told.time_s, told.source) == (ours.index, ours.time_s, ours.source)
+        assert told.position_enu_m == pytest.approx(ours.position_enu_m, abs=1e-5)
+        assert (told.heading_deg, told.gimbal_pitch_deg) == pytest.approx((ours.heading_deg, ours.gimbal_pitch_deg))
+    for name in live.track.__slots__:
+        ours, told = getattr(live.track, name), getattr(record.track, name)
+        np.testing.assert_allclose(told, ours, rtol=0.0, atol=1e-6, err_msg=name)
+    assert record.duration_s == live.duration_s
+    assert set(record.events) <= set(live.events)
+
+    later = report_flight(plan, model, flights.records)
+    assert later.summary.n_taken == 6
     assert later.summary.covered >= 0.97 * later.summary.covered_planned
-    assert later.summary.duration_flown_s == pytest.approx(live.summary.duration_flown_s, abs=1.0)
-    assert later.summary.least_distance_m == pytest.approx(live.summary.least_distance_m, abs=0.1)
-    for first, second in zip(live.views, later.views, strict=True):
-        assert second.position_error_m == pytest.approx(first.position_error_m, abs=0.03)
-        assert second.heading_error_deg == pytest.approx(first.heading_error_deg, abs=0.1)
     assert all(finding.severity is not Severity.ERROR for finding in later.findings)
 
     flight = flight_of(plan, model, flights.records, later)
