@@ -90,7 +90,7 @@ def _agreed(of_plan: Value | None, given: Value | None, name: str) -> Value:
 
 def _check_each_viewpoint_once(plan: Plan) -> None:
     if not plan.sorties:
-        raise MissionError("the plan has no sorties, so there is nothing to export; plan the route first")
+        raise MissionError("the plan has no sorties: nothing says which way to fly; plan again, locked views are kept")
     seen: dict[str, int] = {}
     for number, sortie in enumerate(plan.sorties, 1):
         for viewpoint_id in sortie.viewpoint_ids:

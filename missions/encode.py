@@ -139,6 +139,7 @@ def default_autopilot(profile_id: str) -> Autopilot:
 
 
 def _encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
+    from missions.mavlink.areas import rally_points
     from missions.mavlink.check import check_items
     from missions.mavlink.fence import fence_polygons
     from missions.mavlink.items import MavlinkFile, mission_items
@@ -163,7 +164,8 @@ def _encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, option
             fences, on_fences = fence_polygons(mission, zones)
             found += on_fences
             speed_m_s = mission.speed_m_s
-            contents.append(plan_json_bytes(items, mission.takeoff, autopilot, speed_m_s, reference, fences))
+            rally = rally_points(options.site.site) if options.site is not None else ()
+            contents.append(plan_json_bytes(items, mission.takeoff, autopilot, speed_m_s, reference, fences, rally))
         findings += _in_sortie(found, mission, missions)
     return EncodedFiles(tuple(contents), tuple(findings))
 

@@ -1,4 +1,4 @@
-"""The site: panels by facade, building mesh, obstacles, airspace, no-fly volumes and home, in local ENU metres.
+"""The site: panels by facade, building mesh, obstacles, airspace, no-fly volumes, home and rally points, in ENU metres.
 
 The classes mirror `site.json` field by field; `planning.site_file` reads and writes them. Every check that a single
 object can make for itself is made in its `__post_init__`, so that a wrong site cannot exist. `SiteModel` adds the
@@ -185,6 +185,19 @@ class Airspace:
 
 
 @dataclass(frozen=True, slots=True)
+class RallyPoint:
+    """A place on the ground where an aircraft that returns by itself may land instead of home."""
+
+    id: str
+    position_enu_m: Vec3
+
+    def __post_init__(self) -> None:
+        if not self.id:
+            raise ValueError("id: expected a name, got an empty text")
+        check_point(self.position_enu_m, "position_enu_m")
+
+
+@dataclass(frozen=True, slots=True)
 class Site:
     """The content of `site.json`: everything about a place but the meshes, which it names by path."""
 
@@ -195,6 +208,7 @@ class Site:
     home_enu_m: Vec3
     building_mesh: str | None = None
     obstacles: tuple[Obstacle, ...] = ()
+    rally_points: tuple[RallyPoint, ...] = ()
     format: str = SITE_FORMAT
 
     def __post_init__(self) -> None:

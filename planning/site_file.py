@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +56,8 @@ def site_to_json(site: Site) -> dict[str, Any]:
     content = {"format": content.pop("format"), **content}
     if content["building_mesh"] is None:
         del content["building_mesh"]
+    if not content["rally_points"]:
+        del content["rally_points"]
     content["obstacles"] = [_without_none(obstacle) for obstacle in content["obstacles"]]
     for facade in content["facades"]:
         facade["panels"] = [_without_none(panel) for panel in facade["panels"]]
@@ -73,6 +76,16 @@ def site_bytes(site: Site) -> bytes:
 def site_sha256(site: Site) -> str:
     """SHA-256 of the site file that `write_site` would write, hexadecimal."""
     return hashlib.sha256(site_bytes(site)).hexdigest()
+
+
+def is_planned_on(planned_sha256: str, model: SiteModel) -> bool:
+    """Whether a plan was made for a site, by the checksum that the plan states; True where one of them states none.
+
+    Rally points that were marked since change no plan.
+    """
+    if not (planned_sha256 and model.sha256) or planned_sha256 == model.sha256:
+        return True
+    return bool(model.site.rally_points) and planned_sha256 == site_sha256(replace(model.site, rally_points=()))
 
 
 def write_site(path: Path, site: Site) -> str:

@@ -19,7 +19,7 @@ from PySide6.QtGui import (
 )
 
 from groundstation.gui.mission.map_paint import (
-    paint_home,
+    paint_landings,
     paint_north,
     paint_plan,
     paint_scale_bar,
@@ -233,7 +233,7 @@ def painted_map(site: SiteShapes, plan: PlanShapes, tiles_path: Path, units: Uni
         paint_tiles(painter, viewport, levels, picture_of, lambda _tile: True)
         paint_site(painter, viewport, site, LIGHT)
         paint_plan(painter, viewport, plan)
-        paint_home(painter, viewport.screen(site.home[None])[0], LIGHT)
+        paint_landings(painter, viewport.screen(site.landings()), LIGHT)
         paint_scale_bar(painter, viewport, units, LIGHT)
         paint_north(painter, QRectF(10, 10, 36, 36).center(), LIGHT)
         corner = QRectF(0, 0, *MAP_PX).bottomRight()

@@ -62,9 +62,10 @@ def map_svg(site: SiteShapes, plan: PlanShapes, units: UnitSystem) -> str:
         tip = spot + 6.0 * np.array([math.sin(turn), -math.cos(turn)])
         parts.append(f'<polyline points="{_points(np.array([spot, tip]))}" fill="none" stroke="{colour}"/>')
         parts.append(f'<circle cx="{spot[0]:.1f}" cy="{spot[1]:.1f}" r="1.8" fill="{colour}"/>')
-    home = place(site.home[None])[0]
-    parts.append(f'<circle cx="{home[0]:.1f}" cy="{home[1]:.1f}" r="9" fill="#1b6e3c"/>')
-    parts.append(_text((home[0], home[1] + 4.5), "H", "#ffffff"))
+    for number, (x, y) in enumerate(place(site.landings())):
+        colour, letter = ("#7a4fa3", "R") if number else ("#1b6e3c", "H")
+        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="9" fill="{colour}"/>')
+        parts.append(_text((x, y + 4.5), letter, "#ffffff"))
     lat_deg, _ = geodetic_from_world(float(middle[0]), float(middle[1]))
     parts += _scale_bar(256.0 * metres_per_point(lat_deg, 0.0) / scale, units, height)
     parts += [_north(width)]

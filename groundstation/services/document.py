@@ -26,6 +26,7 @@ class ItemKind(StrEnum):
     NO_FLY = "no-fly"
     AIRSPACE = "airspace"
     HOME = "home"
+    RALLY = "rally"
     VIEWPOINT = "viewpoint"
     SORTIE = "sortie"
     LEG = "leg"
@@ -148,6 +149,8 @@ def exists(document: Document, item: Item) -> bool:
             return model is not None and any(obstacle.id == item.id for obstacle in model.site.obstacles)
         case ItemKind.NO_FLY:
             return model is not None and any(zone.id == item.id for zone in model.site.airspace.no_fly)
+        case ItemKind.RALLY:
+            return model is not None and any(point.id == item.id for point in model.site.rally_points)
         case ItemKind.BUILDING | ItemKind.AIRSPACE | ItemKind.HOME:
             return model is not None
 

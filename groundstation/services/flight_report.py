@@ -12,11 +12,12 @@ from groundstation.services.project_file import check_not_index
 from missions.flight.flight_file import Flight, flight_of, write_flight
 from missions.flight.logs.flights import LogFlights
 from missions.flight.logs.read import read_log
-from missions.flight.photo_folder import PhotoHeights, read_photo_flights
+from missions.flight.photo_folder import read_photo_flights
 from missions.flight.report import report_flight
 from planning.errors import InputError
 from planning.findings import Finding
 from planning.json_file import check_output
+from planning.photo_files.places import PhotoHeights
 from planning.progress import QUIET, Monitor
 from planning.site import Site
 

@@ -40,6 +40,7 @@ from planning.json_file import check_output
 from planning.plan import Plan
 from planning.progress import QUIET, Monitor
 from planning.site import SiteModel
+from planning.site_file import is_planned_on
 
 SIMULATED = "sim"
 """Name of the link to the simulated vehicle in this process."""
@@ -203,7 +204,7 @@ def check_site(plan: Plan, site_model: SiteModel) -> None:
     InputError
         It says so itself, by its checksum or its origin.
     """
-    is_other = plan.site_sha256 and site_model.sha256 and plan.site_sha256 != site_model.sha256
+    is_other = not is_planned_on(plan.site_sha256, site_model)
     if is_other or (plan.origin is not None and plan.origin != site_model.site.origin):
         raise InputError(
             f"the plan was made for the site '{plan.site}' as it was then, and this is "
@@ -250,6 +251,7 @@ class _Case:
             wishes=wish.effects,
             home_enu_m=orders.home_enu_m,
             seed=seed,
+            autopilot=self.autopilot,
         )
         vehicle = SimulatedVehicle(self.autopilot, airframe, origin, orders.home_enu_m)
         direct = DirectLink(vehicle)

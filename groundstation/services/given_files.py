@@ -24,6 +24,9 @@ from planning.site_file import read_site
 
 TSPLIB_SUFFIXES = (".tsp", ".atsp")
 
+PHOTO_STARTS = (b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n", b"II*\x00", b"MM\x00*", b"BM")
+"""First bytes of JPEG, PNG, TIFF (two kinds) and BMP files."""
+
 
 class FileKind(Enum):
     """What can be found under a name; the value is what a message calls it."""
@@ -34,6 +37,7 @@ class FileKind(Enum):
     MISSION = "a mission file"
     BUILDING = "a building model"
     TSPLIB = "a TSPLIB instance"
+    PHOTO = "a photo"
     FOLDER = "a folder"
     EMPTY = "an empty file"
     NOTHING = "nothing of that name"
@@ -47,6 +51,7 @@ EXPECTED = {
     FileKind.MISSION: "a mission file (.kmz, .plan, .waypoints, .kml or .csv)",
     FileKind.BUILDING: "a building model (.ifc, .gml, .xml, .json, .obj, .ply, .glb or .stl)",
     FileKind.TSPLIB: "a TSPLIB instance (.tsp or .atsp)",
+    FileKind.PHOTO: "a photo (JPEG, PNG, TIFF or BMP)",
 }
 """Kinds that are asked for."""
 
@@ -74,6 +79,7 @@ READERS_KNOW_BETTER = (
     (FileKind.MISSION, FileKind.FOLDER),
     (FileKind.PROJECT, FileKind.FOLDER),
     (FileKind.BUILDING, FileKind.OTHER),
+    (FileKind.PHOTO, FileKind.OTHER),
 )
 """Where the reader's own message says more: it lists all formats, or what the folder lacks."""
 
@@ -146,6 +152,8 @@ def kind_of(path: Path) -> FileKind | None:
         return FileKind.EMPTY
     if text.startswith((b"{", b"[")):
         return _kind_of_json(path)
+    if head.startswith(PHOTO_STARTS):
+        return FileKind.PHOTO
     if is_mission(head):
         return FileKind.MISSION
     if _is_building(path):

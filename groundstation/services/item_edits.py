@@ -7,17 +7,25 @@ from typing import TypeVar
 
 from groundstation.services.document import Item, ItemKind
 from groundstation.services.panel_edits import with_facades
-from groundstation.services.site_edits import check_new_name, index_of, obstacle_ids, with_site, with_zones
-from planning.site import Facade, NoFlyZone, Obstacle, Panel, Site, SiteModel
+from groundstation.services.site_edits import (
+    check_new_name,
+    index_of,
+    obstacle_ids,
+    rally_ids,
+    with_rally_points,
+    with_site,
+    with_zones,
+)
+from planning.site import Facade, NoFlyZone, Obstacle, Panel, RallyPoint, Site, SiteModel
 
-Named = TypeVar("Named", Obstacle, NoFlyZone, Panel)
+Named = TypeVar("Named", Obstacle, NoFlyZone, Panel, RallyPoint)
 
-REMOVABLE = frozenset({ItemKind.OBSTACLE, ItemKind.NO_FLY, ItemKind.FACADE, ItemKind.PANEL})
+REMOVABLE = frozenset({ItemKind.OBSTACLE, ItemKind.NO_FLY, ItemKind.FACADE, ItemKind.PANEL, ItemKind.RALLY})
 """Kinds of things that have a name of their own and that a site can do without."""
 
 
 def remove_item(model: SiteModel, item: Item) -> SiteModel:
-    """Without a facade, panel, obstacle or no-fly zone.
+    """Without a facade, panel, obstacle, no-fly zone or rally point.
 
     Raises
     ------
@@ -45,12 +53,15 @@ def remove_item(model: SiteModel, item: Item) -> SiteModel:
             rest = tuple(panel for panel in site.facades[index].panels if panel.id != item.id)
             facade = (replace(site.facades[index], panels=rest),) if rest else ()
             return with_facades(model, site.facades[:index] + facade + site.facades[index + 1 :])
+        case ItemKind.RALLY:
+            index = index_of(rally_ids(model), item.id, "rally point")
+            return with_rally_points(model, site.rally_points[:index] + site.rally_points[index + 1 :])
         case _:
             raise ValueError(f"a site always has its {item.kind}")
 
 
 def rename_item(model: SiteModel, item: Item, name: str) -> SiteModel:
-    """With another name for a facade, panel, obstacle or no-fly zone; panels called after their facade follow it.
+    """With another name for what has one; panels called after their facade follow it.
 
     Raises
     ------
@@ -80,6 +91,9 @@ def rename_item(model: SiteModel, item: Item, name: str) -> SiteModel:
             panels = _renamed(site.facades[index].panels, item.id, name, "panel")
             facade = replace(site.facades[index], panels=panels)
             return with_facades(model, (*site.facades[:index], facade, *site.facades[index + 1 :]))
+        case ItemKind.RALLY:
+            check_new_name(name, rally_ids(model), "rally point")
+            return with_rally_points(model, _renamed(site.rally_points, item.id, name, "rally point"))
         case _:
             raise ValueError(f"the {item.kind} of a site has no name")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -16,6 +16,8 @@ from missions.flight.record import FlightRecord
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import FrameObserver, Link, memory_pair, open_link
 from missions.mavlink.messages import Message
+from missions.mavlink.signing import Signer
+from missions.mavlink.wire import Counts
 from missions.simulator.airframe import Airframe
 from missions.simulator.build import make_airframe
 from missions.simulator.effects.link_loss import through_air
@@ -68,11 +70,17 @@ class OpenedLink:
         Decisions of the simulation; none for a real vehicle.
     simulated
         The vehicle, where the other end is the embedded simulation.
+    counts
+        What came in; None for the embedded simulation.
+    is_signed
+        Whether what is sent is signed, and must be.
     """
 
     link: Link
     effects: tuple[Decision, ...] = ()
     simulated: SampledVehicle | None = None
+    counts: Counts | None = None
+    is_signed: bool = False
 
 
 class Connection(Protocol):
@@ -102,11 +110,19 @@ class Connection(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class VehicleAt:
-    """A vehicle, or another program's simulation, at a url of `missions.mavlink.link`."""
+    """A vehicle, or another program's simulation, at a url of `missions.mavlink.link`.
+
+    Parameters
+    ----------
+    signer
+        Gives the link's signer, the same one each time, so that its time stamps grow when a link is opened again; None:
+        unsigned.
+    """
 
     url: str
     speed_up: float = 1.0
     is_simulated: bool = False
+    signer: Callable[[], Signer] | None = None
 
     @property
     def name(self) -> str:
@@ -115,9 +131,10 @@ class VehicleAt:
 
     def open(self, _orders: SortieOrders, clock: Clock, observe: FrameObserver) -> OpenedLink:
         """Open the url."""
-        link = open_link(self.url, clock=clock)
+        signer = None if self.signer is None else self.signer()
+        link = open_link(self.url, signer=signer, clock=clock)
         link.observe(observe)
-        return OpenedLink(link)
+        return OpenedLink(link, counts=link.counts, is_signed=signer is not None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,7 +174,13 @@ class Simulation:
         """Put the aircraft at home, switched on a while ago."""
         sortie = self.plan.sorties[orders.number - 1]
         airframe, decisions = make_airframe(
-            self.plan, self.site_model, sortie, conditions=self.conditions, wishes=self.wishes, seed=self.seed
+            self.plan,
+            self.site_model,
+            sortie,
+            conditions=self.conditions,
+            wishes=self.wishes,
+            seed=self.seed,
+            autopilot=self.autopilot,
         )
         flown = with_charge(airframe, self.charge, decisions)
         vehicle = SampledVehicle(self.autopilot, flown, self.site_model.site.origin)

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from groundstation.services.live_events import ViewState
 from missions.flight.matching import DEFAULT_GATES, Gates
+from missions.flight.poses import pose_of_photo
 from missions.flight.record import TakenPhoto
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits
 from planning.checks.case import Case
 from planning.checks.measures import pose_of
 from planning.evaluate import sights
-from planning.frames import heading_difference_rad, wrap_heading_deg
+from planning.frames import heading_difference_rad
 from planning.plan import Viewpoint
 
 
@@ -123,17 +124,6 @@ def matching_view(photo: TakenPhoto, views: Sequence[Viewpoint], gates: Gates) -
         if misfit < least:
             best, least = view, misfit
     return best
-
-
-def pose_of_photo(photo: TakenPhoto, view: Viewpoint | None) -> Viewpoint | None:
-    """Where a photo was taken from and looks to; None where nothing says the direction."""
-    heading_deg, pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
-    if view is not None:
-        heading_deg = view.heading_deg if heading_deg is None else heading_deg
-        pitch_deg = view.gimbal_pitch_deg if pitch_deg is None else pitch_deg
-    if heading_deg is None or pitch_deg is None:
-        return None
-    return Viewpoint("photo", photo.position_enu_m, wrap_heading_deg(heading_deg), min(90.0, max(-180.0, pitch_deg)))
 
 
 def _errors(photo: TakenPhoto, view: Viewpoint | None) -> tuple[float | None, float | None, float | None]:

@@ -186,6 +186,13 @@ class LinkChanged:
 
 
 @dataclass(frozen=True, slots=True)
+class LinkProblem:
+    """The link is open, and something about it has to be put right before vehicle and ground station understand."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class LogProblem:
     """The telemetry log cannot be written."""
 
@@ -221,5 +228,13 @@ class FlightEnded:
 
 
 LiveEvent = (
-    FlightChanged | PhotoCounted | WarningRaised | WarningCleared | Answered | LinkChanged | LogProblem | FlightEnded
+    FlightChanged
+    | PhotoCounted
+    | WarningRaised
+    | WarningCleared
+    | Answered
+    | LinkChanged
+    | LinkProblem
+    | LogProblem
+    | FlightEnded
 )

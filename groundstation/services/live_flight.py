@@ -37,6 +37,7 @@ from groundstation.services.live_readouts import BEFORE_TAKE_OFF, allowed_reques
 from groundstation.services.live_record import FlightKeeper
 from groundstation.services.live_requests import DONE, ORDERS, REACHED, REFUSALS
 from groundstation.services.live_settings import USUAL, FlightSettings
+from groundstation.services.live_signing import SigningNews
 from groundstation.services.live_sortie import LiveSortie
 from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
@@ -99,6 +100,7 @@ class LiveFlight:
         self._awaited: Request | None = None
         self._ordered: deque[Request] = deque()
         self._news = FlightNews(publish, self._coverage)
+        self._signing = SigningNews(publish)
         self._put_in_hand(sortie, VehicleState())
         for record in flown:
             for photo in record.photos:
@@ -234,6 +236,7 @@ class LiveFlight:
     def _notice(self) -> None:
         """Publish what is new."""
         self._notice_link()
+        self._signing.look(self._wire.opened, is_heard=self._machine.state.heartbeat is not None)
         machine, run = self._machine, self._run
         self._news.photos(machine.state.photos, self._sortie.viewpoint_ids)
         for outcome in self._news.new_answers(machine.answers):

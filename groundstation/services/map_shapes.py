@@ -47,6 +47,8 @@ class SiteShapes:
         Panels by facade, shape (p, 4, 2); panels above one another are drawn once.
     home
         Shape (2,).
+    rally
+        Rally points, each shape (2,).
     """
 
     origin: Origin
@@ -55,15 +57,20 @@ class SiteShapes:
     airspace: Area
     facades: tuple[tuple[Item, Floats], ...]
     home: Floats
+    rally: tuple[tuple[Item, Floats], ...]
 
     @property
     def is_on_map(self) -> bool:
         """False near the poles, where Web Mercator ends."""
         return abs(self.origin.lat_deg) < MAX_LAT_DEG
 
+    def landings(self) -> Floats:
+        """Home and the rally points, shape (1 + n, 2)."""
+        return np.array([self.home, *(place for _, place in self.rally)])
+
     def extent(self) -> Floats:
         """Points, shape (n, 2), that are in sight when the whole site is."""
-        return np.concatenate([*self.airspace.rings, self.home[None], *(p.reshape(-1, 2) for _, p in self.facades)])
+        return np.concatenate([*self.airspace.rings, self.landings(), *(p.reshape(-1, 2) for _, p in self.facades)])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,6 +119,10 @@ def site_shapes(model: SiteModel) -> SiteShapes:
         airspace=Area(Item(ItemKind.AIRSPACE), (box,)),
         facades=_facades(model),
         home=world_from_enu(origin, [site.home_enu_m])[0],
+        rally=tuple(
+            (Item(ItemKind.RALLY, point.id), world_from_enu(origin, [point.position_enu_m])[0])
+            for point in site.rally_points
+        ),
     )
 
 

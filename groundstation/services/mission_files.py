@@ -23,6 +23,7 @@ from planning.planner import share_out_anew
 from planning.prepare import prepare
 from planning.progress import QUIET, Monitor
 from planning.site import SiteModel
+from planning.site_file import is_planned_on
 
 MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
 
@@ -121,7 +122,7 @@ def in_order_of_sorties(paths: Sequence[Path]) -> tuple[Path, ...]:
 
 def readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
     """What the pilot must know of a plan before it flies on this site."""
-    if plan.site_sha256 and plan.site_sha256 != site_model.sha256:
+    if not is_planned_on(plan.site_sha256, site_model):
         text = (
             f"the site file of '{site_model.site.name}' has changed since this plan was made; what the mission takes "
             "from it (return height, fences) is as it is now"

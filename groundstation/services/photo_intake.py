@@ -17,6 +17,7 @@ from planning.effects import Decision
 from planning.findings import Finding
 from planning.photo_files.folder import read_photos
 from planning.photo_files.places import PhotoHeights
+from planning.photo_files.record import PhotoMetadata
 from planning.plan import Constraints, Plan
 from planning.prepare import coverage_model, decide_occlusion, wish_of
 from planning.progress import QUIET, Monitor
@@ -38,6 +39,8 @@ class PhotoIntake:
         Of `photos`, in their order.
     usable
         Which of them count: those that could be decoded.
+    metadata
+        Of all photos that could be read, in the order of time, with a pose or without.
     """
 
     photos: tuple[PosedPhoto, ...]
@@ -45,6 +48,7 @@ class PhotoIntake:
     coverage: AchievedCoverage
     occlusion: Decision
     usable: tuple[bool, ...]
+    metadata: tuple[PhotoMetadata, ...]
     findings: tuple[Finding, ...]
 
 
@@ -58,20 +62,34 @@ def take_in(
     colmap: Path | None = None,
     monitor: Monitor = QUIET,
 ) -> PhotoIntake:
+    """Read a folder of photos over a site file, and a plan file where one was flown; see `take_in_photos`."""
+    model = read_given_site(site)
+    flown = None if plan is None else read_given_plan(plan)
+    return take_in_photos(folder, model, flown, limits, heights=heights, colmap=colmap, monitor=monitor)
+
+
+def take_in_photos(
+    folder: Path,
+    model: SiteModel,
+    flown: Plan | None = None,
+    limits: QualityLimits | None = None,
+    *,
+    heights: PhotoHeights = "auto",
+    colmap: Path | None = None,
+    monitor: Monitor = QUIET,
+) -> PhotoIntake:
     """Read a folder of photos over a site.
 
     Parameters
     ----------
-    plan
-        That was flown: the coverage counts as it did there, and what it promised is compared.
+    flown
+        Plan that was flown: the coverage counts as it did there, and what it promised is compared.
 
     Raises
     ------
     InputError
         Photos, site, plan or COLMAP model cannot be used.
     """
-    model = read_given_site(site)
-    flown = None if plan is None else read_given_plan(plan)
     read = read_photos(folder, monitor)
     posed = pose_photos(read.photos, model.site, folder, heights=heights)
     photos, findings = better_poses(posed, colmap, folder)
@@ -89,7 +107,7 @@ def take_in(
     planned = () if flown is None else flown.viewpoints
     coverage = achieved_coverage(counted, shown, planned, panel_ids(model.site), monitor)
     everything = (*read.findings, *posed.findings, *findings, *quality.findings, *coverage.findings)
-    return PhotoIntake(photos, quality, coverage, occlusion, usable, everything)
+    return PhotoIntake(photos, quality, coverage, occlusion, usable, read.photos, everything)
 
 
 def panel_ids(site: Site) -> list[str]:

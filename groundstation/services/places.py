@@ -16,7 +16,14 @@ _NAMED = {
 
 _KIND_NAMES = frozenset(kind.value for kind in ItemKind)
 
-_BY_ID = (ItemKind.VIEWPOINT, ItemKind.PANEL, ItemKind.FACADE, ItemKind.OBSTACLE, ItemKind.NO_FLY)
+_BY_ID = (
+    ItemKind.VIEWPOINT,
+    ItemKind.PANEL,
+    ItemKind.FACADE,
+    ItemKind.OBSTACLE,
+    ItemKind.NO_FLY,
+    ItemKind.RALLY,
+)
 """Kinds that a bare identifier may mean, in this order: findings name viewpoints and panels far more often."""
 
 

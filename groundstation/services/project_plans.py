@@ -20,6 +20,7 @@ from planning.findings import Finding, Severity
 from planning.json_file import to_record
 from planning.plan_file import plan_to_json, read_plan
 from planning.request import PlanRequest
+from planning.site_file import is_planned_on
 
 
 def read_entry(folder: Path, record: PlanRecord) -> tuple[PlanEntry | None, list[Finding]]:
@@ -126,7 +127,7 @@ def add_plans(document: Document, paths: Sequence[Path]) -> tuple[Document, tupl
         if same is not None:
             raise InputError(f"{path}: the project holds this plan already, as '{same.title}'; leave it out")
         site = document.site
-        if site is not None and plan.site_sha256 and plan.site_sha256 != site.sha256:
+        if site is not None and not is_planned_on(plan.site_sha256, site):
             text = f"{path}: this plan was made for another state of the site, or for another site ('{plan.site}')"
             notes.append(Finding(Severity.WARNING, "site-changed", text))
         title = title_of(path.name)

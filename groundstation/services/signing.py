@@ -10,6 +10,7 @@ from missions.mavlink.key_store import KeyStore
 from missions.mavlink.link import ChannelLink, open_link
 from missions.mavlink.messages import Address, Heartbeat, Message
 from missions.mavlink.signing import Signer, forget_key, key_from_passphrase
+from missions.mavlink.wire import Counts
 from planning.errors import InputError, LinkError, LinkTimeout
 from planning.progress import Clock
 
@@ -54,8 +55,54 @@ def link_signer() -> Signer:
     """
     signer = key_store().signer()
     if signer is None:
-        raise InputError("there is no signing key on this computer; make one with 'signing set'")
+        raise InputError("there is no signing key on this computer; set one ('signing set', or Key in the Fly tab)")
     return signer
+
+
+def has_key() -> bool:
+    """Whether there is a key on this computer.
+
+    Raises
+    ------
+    InputError
+        It is there, and cannot be read.
+    """
+    return key_store().load() is not None
+
+
+def forget_passphrase() -> None:
+    """Keep no key on this computer; vehicles that know it keep it."""
+    key_store().forget()
+
+
+def signing_problem(counts: Counts, *, is_signed: bool, is_heard: bool) -> str:
+    """Why two ends of a link that is open do not understand each other, and what to do; empty where nothing shows it.
+
+    Parameters
+    ----------
+    counts
+        What came in.
+    is_signed
+        Whether this end signs, and lets nothing else in.
+    is_heard
+        Whether an autopilot was heard.
+    """
+    if is_signed and not is_heard and counts.refused > counts.unsigned:
+        return (
+            "the vehicle signs with another key than this computer's; set the passphrase that it was given, or give it "
+            "this computer's key over a cable"
+        )
+    if is_signed and not is_heard and counts.unsigned > 0:
+        return (
+            "the vehicle does not sign what it sends; give it this computer's key over a cable, or connect without "
+            "signing"
+        )
+    if not is_signed and counts.signed > 0:
+        return (
+            "the vehicle signs what it sends, and may not obey a link that is not signed; disconnect, and connect "
+            "signed with its key"
+        )
+    return ""
 
 
 def give_key(url: str, clock: Clock = time.perf_counter) -> Address:

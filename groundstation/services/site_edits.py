@@ -18,7 +18,7 @@ from planning.errors import InputError
 from planning.frames import Vec3
 from planning.geodesy.geoid import amsl_from_ellipsoid_m, ellipsoid_from_amsl_m
 from planning.mesh import TriangleMesh
-from planning.site import Airspace, NoFlyZone, Obstacle, Origin, Site, SiteModel, box_geometry
+from planning.site import Airspace, NoFlyZone, Obstacle, Origin, RallyPoint, Site, SiteModel, box_geometry
 from planning.site_file import site_sha256
 
 COORDINATE_DECIMALS = 3
@@ -197,6 +197,47 @@ def move_home(model: SiteModel, home_enu_m: Vec3, *, on_ground: bool = False) ->
             model.site, home_enu_m=_rounded((east, north, model.site.airspace.ground_z_m if on_ground else up))
         )
     return with_site(model, site)
+
+
+def rally_ids(model: SiteModel) -> list[str]:
+    """Identifiers of all rally points, in order."""
+    return [point.id for point in model.site.rally_points]
+
+
+def with_rally_points(model: SiteModel, points: Iterable[RallyPoint]) -> SiteModel:
+    """With other rally points."""
+    return with_site(model, replace(model.site, rally_points=tuple(points)))
+
+
+def add_rally_point(model: SiteModel, position_enu_m: Vec3) -> tuple[SiteModel, str]:
+    """With one more rally point; returns its name as well.
+
+    Raises
+    ------
+    InputError
+        The place is too far away.
+    """
+    name = first_free(lambda number: f"rally-{number}", set(rally_ids(model)))
+    with input_checked():
+        point = RallyPoint(name, _rounded(position_enu_m))
+    return with_rally_points(model, (*model.site.rally_points, point)), name
+
+
+def move_rally_point(model: SiteModel, point_id: str, position_enu_m: Vec3, *, on_ground: bool = False) -> SiteModel:
+    """With a rally point elsewhere, put on the ground where wanted.
+
+    Raises
+    ------
+    InputError
+        The place is too far away.
+    """
+    points = list(model.site.rally_points)
+    index = index_of(rally_ids(model), point_id, "rally point")
+    east, north, up = position_enu_m
+    with input_checked():
+        place = _rounded((east, north, model.site.airspace.ground_z_m if on_ground else up))
+        points[index] = RallyPoint(point_id, place)
+    return with_rally_points(model, points)
 
 
 def rename_site(model: SiteModel, name: str) -> SiteModel:

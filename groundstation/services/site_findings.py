@@ -13,6 +13,7 @@ from planning.errors import InfeasibleError
 from planning.findings import Finding, Severity
 from planning.plan import Constraints
 from planning.progress import QUIET, Monitor
+from planning.rally import rally_findings
 from planning.site import NoFlyZone, SiteModel, panel_corners
 from planning.space import FreeSpace, free_space, unchecked_space
 
@@ -43,6 +44,7 @@ def site_findings(
         found.append(Finding(Severity.ERROR, "home-unusable", str(error).removeprefix("home_enu_m: "), "home"))
         space = unchecked_space(model, min_distance_m)
     monitor.report("checking the site", 1, 2)
+    found += [finding for finding in rally_findings(model, space) if finding.severity is not Severity.OK]
     return (*found, *_heights(model), *_without_effect(model), *_facades_in_reach(model, space))
 
 

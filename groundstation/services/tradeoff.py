@@ -115,7 +115,7 @@ def plan_tradeoff(
         rows = [row for report in reports for row in plan_rows(report)]
         panels = [panel for report in reports for panel in plan_panels(report)]
         title = "\n".join(plan_title(report) for report in reports)
-        names = _write(folder, "tradeoff-plan", rows, title, panels, COVERAGE_AXIS)
+        names = write_results(folder, "tradeoff-plan", rows, title, panels, COVERAGE_AXIS)
     return PlanTradeoff(tuple(reports), failed, *(out / name for name in names))
 
 
@@ -148,7 +148,7 @@ def route_tradeoff(
         rows = [row for report in reports for row in tour_rows(report)]
         title = "\n".join(tour_title(report) for report in reports)
         panels = [tour_panel(report) for report in reports]
-        names = _write(folder, "tradeoff-route", rows, title, panels, TOUR_AXIS)
+        names = write_results(folder, "tradeoff-route", rows, title, panels, TOUR_AXIS)
     return RouteTradeoff(reports, *(out / name for name in names))
 
 
@@ -234,10 +234,10 @@ def output_folder(path: Path) -> Iterator[Path]:
             folder.rmdir()
 
 
-def _write(
+def write_results(
     folder: Path, stem: str, rows: Sequence[Mapping[str, Any]], title: str, panels: Sequence[Panel], axis: GapAxis
 ) -> tuple[str, str]:
-    """Write table and picture; returns their names."""
+    """Write a table and a picture into a folder; returns their names."""
     columns = list(dict.fromkeys(column for row in rows for column in row))
     with (folder / f"{stem}.csv").open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, columns, restval="")

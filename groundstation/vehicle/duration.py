@@ -1,8 +1,8 @@
 """How long an autopilot takes for a mission's items: the plan's motion, and the waits that are in the items.
 
 Plans reckon with an aircraft that turns at the waypoint, as DJI's do. Both MAVLink autopilots turn nose and gimbal on
-the way, and what is left of the turn is in the hold: they are faster. PX4 more so: its hold counts from when the nose
-points and the place is within the item's radius, before the aircraft rests.
+the way, and what is left of the turn is in the hold. PX4 brakes more gently (`px4_motion`), but its hold counts from
+when the place is within the item's radius, before the aircraft rests or the nose points.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ import numpy as np
 from pymavlink.dialects.v20 import common as mavlink
 
 from groundstation.vehicle.orders import SortieOrders
-from groundstation.vehicle.setup import landing
-from missions.mavlink.autopilots import Autopilot
+from groundstation.vehicle.setup import landing, leg_late_s
+from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem
+from missions.mavlink.px4_motion import px4_leg_s, px4_turn_s
 from missions.model import Mission
 from planning.frames import Vec3, wrap_heading_deg
 from planning.geodesy.enu import enu_from_geodetic
-from planning.timing import MotionLimits, leg_times_s, motion_limits, rest_to_rest_s
+from planning.timing import MotionLimits, leg_times_s, motion_limits
 
 
 def items_duration_s(orders: SortieOrders, autopilot: Autopilot) -> float:
@@ -34,31 +35,29 @@ def items_duration_s(orders: SortieOrders, autopilot: Autopilot) -> float:
     mission = orders.mission
     rules = replace(mission.rules, max_speed_m_s=None)
     limits = replace(motion_limits(mission.aircraft, rules), horizontal_m_s=mission.speed_m_s)
+    if mission.aircraft.max_jerk_m_s3 is None:
+        limits = replace(limits, jerk_m_s3=facts(autopilot).own_jerk_m_s3 or math.inf)
     headings = {photo.viewpoint_id: photo.heading_deg for waypoint in mission.waypoints for photo in waypoint.photos}
     items, here, nose_deg, total_s = orders.items[autopilot], orders.home_enu_m, 0.0, 0.0
     for item, following in zip(items, (*items[1:], None), strict=True):
         if item.command in (mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT):
             there = _place(item, mission)
-            leg_s = float(leg_times_s(np.array([np.subtract(there, here)]), limits)[0])
+            item_s = float(leg_times_s(np.array([np.subtract(there, here)]), limits)[0]) + item.params[0]
             if autopilot is Autopilot.PX4 and item.command == mavlink.MAV_CMD_NAV_WAYPOINT:
-                leg_s = max(leg_s / 2.0, leg_s - _tail_s(item.params[1], limits))
+                x, y, z = (b - a for a, b in zip(here, there, strict=True))
+                item_s = px4_leg_s((x, y, z), limits, item.params[1]) + item.params[0]
             if autopilot is Autopilot.PX4 and following is not None and following.viewpoint_id:
-                wanted_deg = headings[following.viewpoint_id]
-                turn_rad = math.radians(abs(wrap_heading_deg(wanted_deg - nose_deg)))
-                leg_s, nose_deg = max(leg_s, turn_rad / limits.yaw_rate_rad_s), wanted_deg
+                turn_deg = abs(wrap_heading_deg(headings[following.viewpoint_id] - nose_deg))
+                item_s = max(item_s, px4_turn_s(turn_deg, math.degrees(limits.yaw_rate_rad_s)))
+                nose_deg = headings[following.viewpoint_id]
             here = there
-            total_s += leg_s + item.params[0]
+            total_s += item_s
+            total_s += leg_late_s(autopilot) if item.command == mavlink.MAV_CMD_NAV_WAYPOINT else 0.0
         elif item.command == mavlink.MAV_CMD_NAV_DELAY:
             total_s += item.params[0]
         elif item.command == mavlink.MAV_CMD_NAV_LAND:
             total_s += _landing_s(here, orders.home_enu_m, autopilot, limits)
     return total_s
-
-
-def _tail_s(radius_m: float, limits: MotionLimits) -> float:
-    """Time for the last metres to a stop, inside the radius in which PX4 takes a waypoint as reached."""
-    a_m_s2, j_m_s3 = limits.acceleration_m_s2, limits.jerk_m_s3
-    return float(rest_to_rest_s(2.0 * radius_m, limits.horizontal_m_s, a_m_s2, j_m_s3)) / 2.0
 
 
 def _place(item: MissionItem, mission: Mission) -> Vec3:

@@ -9,9 +9,10 @@
     FLYING     -> ENDED       landed and disarmed
     any        -> ENDED       it cannot go on: what failed, and what to do, stands in the outcome
 
-`steps.py` holds what is done in each phase. Pilot's orders (pause, resume, return, land) go out beside it at any time.
-Losing the link ends nothing: it is shown, the aircraft goes on by itself, and when it is heard again what it has on
-board is read back once more.
+`steps.py` and `upload_steps.py` hold what is done in each phase. Pilot's orders (pause, resume, return, land) go out
+beside it at any time. Losing the link ends nothing: it is shown, the aircraft goes on by itself, and when it is heard
+again what it has on board is read back once more. Reports of photos that the radio lost are asked for again, beside it
+too (`camera_reports.py`).
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from collections import deque
 from collections.abc import Generator
 from typing import Any, Protocol
 
+from groundstation.vehicle.camera_reports import CameraReports
 from groundstation.vehicle.commands import CommandCall, CommandOutcome
 from groundstation.vehicle.modes import set_mode_command
 from groundstation.vehicle.orders import SortieOrders
@@ -82,6 +84,7 @@ class FlightRun:
         self.answers: tuple[CommandOutcome, ...] = ()
         self.notes: tuple[FlightEvent, ...] = ()
         self.recorder: Recorder | None = None
+        self.camera_reports = CameraReports()
         self.may_start = options.starts_itself
         self.was_ordered_away = False
         self._frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
@@ -118,10 +121,12 @@ class FlightRun:
         before = self.state
         self.state = folded(before, received, self._frame)
         if self.state is not before and self.recorder is not None:
-            self.recorder.take(received.message)
+            self.recorder.take(received)
         for machine in (self._machine, self._order_call, self._aside):
             if machine is not None and machine.outcome is None:
                 self._outbox += machine.receive(received)
+        if self.state is not before:
+            self.camera_reports.receive(received)
         return self._advance()
 
     def tick(self, now_s: float) -> list[Message]:
@@ -191,6 +196,8 @@ class FlightRun:
             self._watch_flight()
             self._pass_orders_on()
             self._step()
+        if self.state.address is not None:
+            self._outbox += self.camera_reports.tick(self.now_s, self.state.address.system)
         if self.now_s >= self._heartbeat_s + HEARTBEAT_EVERY_S:
             self._heartbeat_s = self.now_s
             self._outbox.append(GROUND_HEARTBEAT)
@@ -233,7 +240,7 @@ class FlightRun:
             else:
                 self.note("link-lost", "no heartbeat; the aircraft goes on by itself")
             if has_link and self.phase is Phase.FLYING:
-                from groundstation.vehicle.steps import reread_mission
+                from groundstation.vehicle.upload_steps import reread_mission
 
                 self.aside(reread_mission(self))
         self._had_link = has_link

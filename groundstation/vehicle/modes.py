@@ -8,7 +8,7 @@ from pathlib import Path
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import CommandLong
-from missions.mavlink.mode_numbers import mode_numbers, px4_custom_mode, px4_main_and_sub
+from missions.mavlink.mode_numbers import mode_numbers, px4_main_and_sub
 from planning.json_file import read_toml
 
 DATA_PATH = Path(__file__).parent / "data" / "vehicle.toml"
@@ -36,20 +36,6 @@ class VehicleNumbers:
 def numbers() -> VehicleNumbers:
     """Sensor bits by name."""
     return read_toml(DATA_PATH, VehicleNumbers)
-
-
-@cache
-def _names(autopilot: Autopilot) -> dict[int, str]:
-    return {number: name for name, number in mode_numbers(autopilot).items()}
-
-
-def mode_name(autopilot: Autopilot, custom_mode: int) -> str:
-    """Name of the mode in a heartbeat; `mode 42` for one that is not known."""
-    names = _names(autopilot)
-    if autopilot is Autopilot.PX4:
-        main, sub = px4_main_and_sub(custom_mode)
-        return names.get(custom_mode) or names.get(px4_custom_mode(main, 0)) or f"mode {main}.{sub}"
-    return names.get(custom_mode) or f"mode {custom_mode}"
 
 
 def set_mode_command(autopilot: Autopilot, name: str, system: int, component: int) -> CommandLong:

@@ -26,6 +26,8 @@ class Verdict(Enum):
     OK = "ok"
     WAIT = "wait"
     """Not known yet, or not yet well; it may become so by itself."""
+    WARN = "warn"
+    """It may be flown so; the pilot should know."""
     BAD = "bad"
     """It will not become well by itself."""
 
@@ -44,10 +46,18 @@ class PreflightCheck:
 
 @dataclass(frozen=True, slots=True)
 class OnBoard:
-    """What was read back from the vehicle and compared: None while that is not done."""
+    """What was read back from the vehicle and compared: None while that is not done.
+
+    Parameters
+    ----------
+    failsafes
+        What the vehicle will do by itself, by its parameters (`failsafes.py`); empty while they were not read.
+    """
 
     mission: bool | None = None
     fence: bool | None = None
+    rally: bool | None = None
+    failsafes: tuple[PreflightCheck, ...] = ()
 
 
 def preflight_checks(
@@ -64,12 +74,14 @@ def preflight_checks(
         _wind(state, orders),
         _board("mission", on_board.mission),
         *([_board("geofence", on_board.fence)] if orders.fences else []),
+        *([_rally(len(orders.rally), on_board.rally)] if orders.rally else []),
+        *on_board.failsafes,
     )
 
 
 def is_ready(checks: tuple[PreflightCheck, ...]) -> bool:
     """Whether nothing is missing."""
-    return all(check.verdict is Verdict.OK for check in checks)
+    return all(check.verdict in (Verdict.OK, Verdict.WARN) for check in checks)
 
 
 def _link(state: VehicleState, now_s: float) -> PreflightCheck:
@@ -167,3 +179,9 @@ def _board(what: str, is_equal: bool | None) -> PreflightCheck:
     if not is_equal:
         return PreflightCheck(what, Verdict.BAD, f"what the vehicle holds is not this {what}: upload it again")
     return PreflightCheck(what, Verdict.OK, f"the {what} is on board, read back and equal")
+
+
+def _rally(n_points: int, is_equal: bool | None) -> PreflightCheck:
+    if is_equal is None:
+        return PreflightCheck("rally", Verdict.WAIT, f"the rally points ({n_points}) were not uploaded yet")
+    return PreflightCheck("rally", Verdict.OK, f"the rally points ({n_points}) are on board, read back and equal")

@@ -21,6 +21,7 @@ RATES_HZ = {
     30: 10.0,  # ATTITUDE
     285: 10.0,  # GIMBAL_DEVICE_ATTITUDE_STATUS
     1: 1.0,  # SYS_STATUS
+    2: 1.0,  # SYSTEM_TIME: what the UNIX time of a photo is since power-up
     24: 2.0,  # GPS_RAW_INT
     42: 2.0,  # MISSION_CURRENT
     245: 2.0,  # EXTENDED_SYS_STATE
@@ -46,7 +47,9 @@ class VehicleSetup:
     """What the data file holds for one autopilot; it explains the fields."""
 
     reboot: frozenset[str]
+    off: dict[str, float]
     landing: SlowLanding
+    leg_late_s: float
     needed: dict[str, float]
     from_plan: dict[str, tuple[str, float]]
 
@@ -61,16 +64,33 @@ def needs_reboot(autopilot: Autopilot) -> frozenset[str]:
     return _setups()[autopilot].reboot
 
 
+def is_switched_off(autopilot: Autopilot, name: str, value: float) -> bool:
+    """Whether a parameter with this value leaves the autopilot without camera or gimbal."""
+    return _setups()[autopilot].off.get(name) == value
+
+
 def landing(autopilot: Autopilot) -> SlowLanding:
     """How an autopilot lands when nobody says otherwise."""
     return _setups()[autopilot].landing
 
 
-def wanted_parameters(autopilot: Autopilot, mission: Mission) -> dict[str, float]:
-    """Parameters with which a mission is flown as it was planned, in the autopilot's units."""
+def leg_late_s(autopilot: Autopilot) -> float:
+    """How much longer an autopilot takes for a leg than the fastest way within the limits."""
+    return _setups()[autopilot].leg_late_s
+
+
+def wanted_parameters(autopilot: Autopilot, mission: Mission, return_height_m: float) -> dict[str, float]:
+    """Parameters with which a mission is flown as it was planned, in the autopilot's units.
+
+    Parameters
+    ----------
+    return_height_m
+        Above take-off, to which an aircraft climbs before it returns.
+    """
     setup, aircraft = _setups()[autopilot], mission.aircraft
     low, high = mission.camera.gimbal_pitch_deg
     own = {"speed_m_s": mission.speed_m_s, "gimbal_pitch_low_deg": low, "gimbal_pitch_high_deg": high}
+    own["return_height_m"] = return_height_m
     wanted = dict(setup.needed)
     for name, (field, factor) in setup.from_plan.items():
         value = own[field] if field in own else getattr(aircraft, field)

@@ -126,6 +126,8 @@ class VehicleState:
         Its last heartbeat; the value counts them.
     boot_time_s
         The vehicle's own time: seconds since it was switched on. In a simulation faster than real time it runs ahead.
+    home_altitude_amsl_m
+        From where it counts heights above home, as its positions tell; PX4 corrects it in flight.
     camera
         Attitude of the camera as the gimbal reports it, against north and the horizon.
     wind_enu_m_s
@@ -145,6 +147,7 @@ class VehicleState:
     armed: Timed[bool] | None = None
     landed: Timed[Landed] | None = None
     motion: Timed[Motion] | None = None
+    home_altitude_amsl_m: float | None = None
     attitude: Timed[Angles] | None = None
     camera: Timed[Angles] | None = None
     fix: Timed[GnssFix] | None = None

@@ -11,19 +11,17 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from groundstation.vehicle.commands import MAV_RESULT_TEMPORARILY_REJECTED, Answer, CommandCall, CommandOutcome
+from groundstation.vehicle.failsafes import NAMES, failsafe_checks
 from groundstation.vehicle.modes import MISSION_MODE, set_mode_command
-from groundstation.vehicle.orders import fence_messages
+from groundstation.vehicle.parameter_reads import ParameterReads
 from groundstation.vehicle.parameters import ParameterCall, ParameterOutcome, ParameterStatus
 from groundstation.vehicle.preflight import Verdict, is_ready
 from groundstation.vehicle.recorder import Recorder
-from groundstation.vehicle.reread import MissionReread
-from groundstation.vehicle.setup import message_requests, needs_reboot, wanted_parameters
+from groundstation.vehicle.setup import is_switched_off, message_requests, needs_reboot, wanted_parameters
 from groundstation.vehicle.state import Landed, VehicleState
+from groundstation.vehicle.upload_steps import upload, vehicle_of
 from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.messages import Address, CommandLong
-from missions.mavlink.transfer.exchange import MissionType, Route
-from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedUpload
-from missions.mavlink.transfer.wire_items import to_wire
+from missions.mavlink.messages import CommandLong
 from planning.errors import LinkRejected, LinkTimeout, MissionError
 
 if TYPE_CHECKING:
@@ -43,6 +41,9 @@ TAKE_OFF_S = 60.0
 DISARM_S = 20.0
 """Wait for the autopilot to disarm by itself after it has landed."""
 
+REPORTS_S = 10.0
+"""Wait after the landing for reports of photos that the radio lost."""
+
 REBOOT_PAUSE_S, REBOOT_S = 3.0, 60.0
 MAV_RESULT_FAILED = 4
 
@@ -55,7 +56,7 @@ def sortie_steps(run: FlightRun) -> Steps:
     run.phase = Phase.PREPARING
     yield from _prepare(run)
     run.phase = Phase.UPLOADING
-    yield from _upload(run)
+    yield from upload(run)
     run.phase = Phase.CHECKING
     yield from _check(run)
     run.phase = Phase.READY
@@ -84,36 +85,42 @@ def _connect(run: FlightRun) -> Steps:
         raise LinkRejected(f"{run.link_name}: expected {expected.value}, found {found.value}; name the other autopilot")
     if run.state.is_armed:
         raise LinkRejected(f"{run.link_name}: the vehicle is armed already; land and disarm it first")
-    run.recorder = Recorder(f"{found.value}, {run.link_name}", found)
-
-
-def _vehicle(run: FlightRun) -> tuple[Autopilot, Address]:
-    autopilot, address = run.state.autopilot, run.state.address
-    assert autopilot is not None
-    assert address is not None
-    return autopilot, address
+    run.recorder = Recorder(f"{found.value}, {run.link_name}", run.state.address)
 
 
 def _prepare(run: FlightRun) -> Steps:
     yield from _ask_for_telemetry(run)
-    autopilot, address = _vehicle(run)
+    autopilot, address = vehicle_of(run)
     changed: set[str] = set()
-    for name, value in wanted_parameters(autopilot, run.orders.mission).items():
+    for name, value in wanted_parameters(autopilot, run.orders.mission, run.orders.return_height_m).items():
         wanted = value if run.options.sets_parameters else None
         outcome: ParameterOutcome = yield ParameterCall(name, wanted, autopilot, address)
         if outcome.status is ParameterStatus.SET:
             changed.add(name)
             run.note("parameter", f"{name} was {outcome.former:g} and is {value:g} now")
+        elif outcome.status is ParameterStatus.READ and is_switched_off(autopilot, name, outcome.value or 0.0):
+            run.note(
+                "warning-setup",
+                f"{name} is {outcome.value:g}: the autopilot commands no camera, or no gimbal; set it to {value:g} and "
+                "restart the vehicle",
+            )
         elif outcome.status is ParameterStatus.READ and abs((outcome.value or 0.0) - value) > 1e-3 * abs(value):
             run.note("parameter", f"{name} is {outcome.value:g}; the plan was made for {value:g}")
         elif not outcome.is_as_wanted:
             run.note("parameter", f"{name}: {outcome.status.value}")
     if changed & needs_reboot(autopilot):
         yield from _reboot(run)
+    run.camera_reports.ask_count()
+    values: dict[str, float] = yield ParameterReads(NAMES[autopilot], autopilot, address)
+    checks = failsafe_checks(autopilot, values, run.orders)
+    run.on_board = replace(run.on_board, failsafes=checks)
+    for check in checks:
+        if check.verdict is Verdict.WARN:
+            run.note("warning-failsafe", check.text)
 
 
 def _ask_for_telemetry(run: FlightRun) -> Steps:
-    autopilot, address = _vehicle(run)
+    autopilot, address = vehicle_of(run)
     for command in message_requests(autopilot, address):
         outcome: CommandOutcome = yield CommandCall("sending telemetry", command, run.own)
         if outcome.answer is Answer.NO_ANSWER:
@@ -121,8 +128,12 @@ def _ask_for_telemetry(run: FlightRun) -> Steps:
 
 
 def _reboot(run: FlightRun) -> Steps:
-    """Restart the autopilot, once; its word for it may be lost, so its own time since power-up is what tells."""
-    autopilot, address = _vehicle(run)
+    """Restart the autopilot, once; its word for it may be lost, so what it sends afterwards is what tells.
+
+    Its time since power-up goes back, or the messages that it was asked for do not come any more. How far the time has
+    come says nothing: in a simulation it runs ahead of ours.
+    """
+    autopilot, address = vehicle_of(run)
     names = ", ".join(sorted(needs_reboot(autopilot)))
     command = CommandLong(address.system, address.component, MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, REBOOT_AUTOPILOT)
     before_s = run.state.boot_time_s or 0.0
@@ -130,48 +141,17 @@ def _reboot(run: FlightRun) -> Steps:
     if outcome.answer is Answer.REFUSED:
         raise LinkRejected(f"{outcome.text}; {names} take effect after a reboot only: restart the vehicle")
     run.note("reboot", f"the autopilot restarts, so that {names} take effect")
-    yield from _pause(run, REBOOT_PAUSE_S)
+    began_anew = yield from _wait(run, lambda state: (state.boot_time_s or before_s) < before_s, REBOOT_PAUSE_S)
     run.state = VehicleState(address=address, autopilot=autopilot)
     is_back = yield from _wait(run, lambda state: state.heartbeat is not None and state.heartbeat.value > 1, REBOOT_S)
     if not is_back:
         raise LinkTimeout(f"{run.link_name}: the vehicle did not come back within {REBOOT_S:g} s of its reboot")
-    yield from _ask_for_telemetry(run)
-    yield from _wait(run, lambda state: state.boot_time_s is not None, MODE_S)
-    if run.state.boot_time_s is None or run.state.boot_time_s >= before_s + REBOOT_PAUSE_S:
+    if not began_anew and run.state.boot_time_s is not None and run.state.boot_time_s >= before_s:
         raise LinkRejected(f"{run.link_name}: the vehicle was not rebooted; {names} take effect then: restart it")
+    yield from _ask_for_telemetry(run)
 
 
-# Transfer
-
-
-def _upload(run: FlightRun) -> Steps:
-    """Geofence first: a mission is never on board without its fence."""
-    autopilot, address = _vehicle(run)
-    if run.orders.fences:
-        route = Route(run.own, address, MissionType.FENCE)
-        yield from _put(run, "geofence", VerifiedUpload(route, fence_messages(run.orders.fences, autopilot), autopilot))
-        run.on_board = replace(run.on_board, fence=True)
-    messages = to_wire(run.orders.items[autopilot], autopilot)
-    yield from _put(run, "mission", VerifiedUpload(Route(run.own, address), messages, autopilot))
-    run.on_board = replace(run.on_board, mission=True)
-
-
-def _put(run: FlightRun, what: str, upload: VerifiedUpload) -> Steps:
-    outcome: Verified | NotVerified = yield upload
-    if isinstance(outcome, NotVerified):
-        raise LinkRejected(f"the {what} is not on the vehicle: {outcome}")
-    run.note("uploaded", f"{what}: {len(outcome.items)} items, read back and equal")
-
-
-def reread_mission(run: FlightRun) -> MissionReread:
-    """What is on board now, compared with what was uploaded."""
-    autopilot, address = _vehicle(run)
-
-    def done(text: str, is_equal: bool | None) -> None:
-        run.note("mission-reread", text)
-        run.on_board = replace(run.on_board, mission=is_equal)
-
-    return MissionReread(Route(run.own, address), to_wire(run.orders.items[autopilot], autopilot), autopilot, done)
+# Before take-off
 
 
 def _check(run: FlightRun) -> Steps:
@@ -182,7 +162,7 @@ def _check(run: FlightRun) -> Steps:
         if bad and run.options.starts_itself:
             raise MissionError("not ready for take-off: " + "; ".join(bad))
         if run.now_s > deadline_s and run.options.starts_itself:
-            missing = [f"{check.code}: {check.text}" for check in checks if check.verdict is not Verdict.OK]
+            missing = [f"{check.code}: {check.text}" for check in checks if not is_ready((check,))]
             raise LinkTimeout(f"not ready for take-off after {run.options.ready_s:g} s: " + "; ".join(missing))
         yield None
 
@@ -191,7 +171,7 @@ def _check(run: FlightRun) -> Steps:
 
 
 def _set_mode(run: FlightRun, name: str) -> Steps:
-    autopilot, address = _vehicle(run)
+    autopilot, address = vehicle_of(run)
     command = set_mode_command(autopilot, name, address.system, address.component)
     outcome: CommandOutcome = yield CommandCall(f"the mode {name}", command, run.own)
     if not outcome.is_accepted:
@@ -199,7 +179,7 @@ def _set_mode(run: FlightRun, name: str) -> Steps:
 
 
 def _arm(run: FlightRun) -> Steps:
-    _, address = _vehicle(run)
+    _, address = vehicle_of(run)
     deadline_s = run.now_s + ARMING_S
     while True:
         command = CommandLong(address.system, address.component, MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
@@ -214,7 +194,7 @@ def _arm(run: FlightRun) -> Steps:
 
 def _start(run: FlightRun) -> Steps:
     """Start the mission as each autopilot wants it; an order of the pilot meanwhile ends that."""
-    autopilot, address = _vehicle(run)
+    autopilot, address = vehicle_of(run)
     if autopilot is Autopilot.ARDUPILOT:
         # AUTO cannot be armed in (without AUTO_OPTIONS), and begins to fly only when it is told to start.
         yield from _set_mode(run, "GUIDED")
@@ -227,10 +207,14 @@ def _start(run: FlightRun) -> Steps:
         if not outcome.is_accepted:
             raise LinkRejected(f"{outcome.text}{_last_complaint(run)}")
     else:
+        # Armed first, PX4 refuses the mode for as long as it looks at the mission again from its new home. In the mode,
+        # it refuses to be armed before the mission can be flown.
+        yield from _set_mode(run, MISSION_MODE[autopilot])
         yield from _arm(run)
+        # The heartbeat says so a little later, and may be lost.
+        yield from _wait(run, lambda state: state.is_armed, MODE_S)
         if run.was_ordered_away:
             return
-        yield from _set_mode(run, MISSION_MODE[autopilot])
     wanted = MISSION_MODE[autopilot]
     in_mode = yield from _wait(run, lambda state: state.mode is not None and state.mode.value == wanted, MODE_S)
     if not in_mode and not run.was_ordered_away:
@@ -260,11 +244,14 @@ def _fly(run: FlightRun) -> Steps:
         is_down = landed is not None and landed.value is Landed.ON_GROUND
         landed_s = (landed_s or run.now_s) if is_down else None
         if landed_s is not None and run.now_s - landed_s > DISARM_S:
-            _, address = _vehicle(run)
+            _, address = vehicle_of(run)
             command = CommandLong(address.system, address.component, MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
             yield CommandCall("disarming", command, run.own)
             landed_s = run.now_s
         yield None
+    if run.camera_reports.count is not None:
+        run.camera_reports.ask_count()
+    yield from _wait(run, lambda _state: run.camera_reports.is_settled, REPORTS_S)
     run.note("landed", f"{len(run.state.photos)} photos were reported")
 
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from groundstation.vehicle.modes import mode_name, sensor_problems
+from groundstation.vehicle.modes import sensor_problems
 from groundstation.vehicle.state import (
     MAX_TEXTS,
     Angles,
@@ -28,6 +28,7 @@ from missions.flight.logs.raw import camera_angles_rad, is_yaw_from_north
 from missions.flight.record import TakenPhoto
 from missions.mavlink import messages
 from missions.mavlink.autopilots import Autopilot, facts
+from missions.mavlink.mode_numbers import mode_name
 from planning.frames import Vec3, wrap_heading_deg
 from planning.geodesy.enu import enu_from_geodetic, geodetic_from_enu
 from planning.site import Origin
@@ -41,7 +42,12 @@ CAMERA_AGE_S = 1.5
 """A photo gets the gimbal's angles of at most this long ago: gimbals report once a second or more often."""
 
 POSITION_KNOWN, CONSTANT_POSITION = 16, 128
-"""Bits of EKF_STATUS_REPORT and ESTIMATOR_STATUS: absolute horizontal position good; no position, only assumed."""
+"""Bits of EKF_STATUS_REPORT and ESTIMATOR_STATUS: absolute horizontal position good; it is only assumed not to move.
+
+PX4 sets the second with every vehicle that stands still, however well its place is known."""
+
+NO_MISSION = 65535
+"""MISSION_CURRENT's total where there is none."""
 
 VELOCITY_KNOWN, HEIGHT_KNOWN = 2, 32
 MAX_VARIANCE = 0.8
@@ -119,7 +125,7 @@ def _position(
     above_m = message.relative_alt / 1000.0
     velocity = (message.vy / 100.0, message.vx / 100.0, -message.vz / 100.0)
     motion = Motion(frame.enu_m(message.lat, message.lon, above_m), velocity, above_m)
-    return replace(state, motion=Timed(motion, now_s))
+    return replace(state, motion=Timed(motion, now_s), home_altitude_amsl_m=message.alt / 1000.0 - above_m)
 
 
 def _attitude(state: VehicleState, message: messages.Attitude, now_s: float, _: LocalFrame) -> VehicleState:
@@ -194,7 +200,8 @@ def _ekf(state: VehicleState, message: messages.EkfStatusReport, now_s: float, _
 
 def _estimator(state: VehicleState, message: messages.EstimatorStatus, now_s: float, _: LocalFrame) -> VehicleState:
     worst = max(message.vel_ratio, message.pos_horiz_ratio, message.pos_vert_ratio)
-    problem = _lacking(message.flags) or ("its measurements contradict each other" if worst > 1.0 else "")
+    flags = message.flags & ~CONSTANT_POSITION
+    problem = _lacking(flags) or ("its measurements contradict each other" if worst > 1.0 else "")
     return replace(state, estimator=Timed(EstimatorHealth(problem), now_s))
 
 
@@ -221,7 +228,8 @@ def _mission_current(
     state: VehicleState, message: messages.MissionCurrent, now_s: float, _: LocalFrame
 ) -> VehicleState:
     former = MissionProgress() if state.mission is None else state.mission.value
-    progress = MissionProgress(message.seq, message.total or former.total, former.reached)
+    total = 0 if message.total == NO_MISSION else message.total or former.total
+    progress = MissionProgress(message.seq, total, former.reached)
     return replace(state, mission=Timed(progress, now_s))
 
 
@@ -252,8 +260,28 @@ def _captured(
 ) -> VehicleState:
     if message.capture_result != 1 or not _on_globe(message.lat, message.lon):
         return state
-    place = frame.enu_m(message.lat, message.lon, message.relative_alt / 1000.0)
-    return _with_photo(state, message.image_index, message.time_boot_ms / 1000.0, place, "image-captured", now_s)
+    # Not relative_alt: that counts from the ground below, and PX4 says -1 m where it does not know the ground.
+    home_amsl_m = state.home_altitude_amsl_m
+    above_m = message.relative_alt / 1e3 if home_amsl_m is None else message.alt / 1e3 - home_amsl_m
+    place = frame.enu_m(message.lat, message.lon, above_m)
+    time_s = message.time_boot_ms / 1000.0
+    if state.boot_time_s is not None and state.boot_time_s - time_s > CAMERA_AGE_S:
+        # Its report was lost, and asked for again: camera and speed are others by now.
+        return _with_late_photo(state, message, time_s, place)
+    return _with_photo(state, message.image_index, time_s, place, "image-captured", now_s)
+
+
+def _with_late_photo(
+    state: VehicleState, message: messages.CameraImageCaptured, time_s: float, place: Vec3
+) -> VehicleState:
+    """State with a photo of a while ago, with the attitude that came with it."""
+    if any(photo.index == message.image_index and photo.position_enu_m == place for photo in state.photos):
+        return state
+    heading_deg = pitch_deg = None
+    if (angles := camera_angles_rad(*message.q)) is not None:
+        heading_deg, pitch_deg = wrap_heading_deg(math.degrees(angles[0])), math.degrees(angles[1])
+    photo = TakenPhoto(message.image_index, time_s, place, heading_deg, pitch_deg, None, "image-captured")
+    return replace(state, photos=(*state.photos, photo))
 
 
 def _with_photo(state: VehicleState, index: int, time_s: float, place: Vec3, source: str, now_s: float) -> VehicleState:

@@ -10,6 +10,8 @@ from pymavlink.dialects.v20 import common as mavlink
 from missions.mavlink.items import MissionItem, Polygon
 from missions.model import GeoPoint
 from planning.errors import MissionError
+from planning.geodesy.enu import geodetic_from_enu
+from planning.site import Site
 
 MIN_CORNERS = 3
 
@@ -96,6 +98,15 @@ def fences_of(items: Sequence[MissionItem]) -> tuple[Fence, ...]:
         elif item.command != mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT:
             raise MissionError(f"fence item {number}: the command {item.command} is no part of a fence")
     return tuple(fences)
+
+
+def rally_points(site: Site) -> tuple[GeoPoint, ...]:
+    """The rally points of a site on the globe."""
+    if not site.rally_points:
+        return ()
+    lat_deg, lon_deg, height_m = geodetic_from_enu(site.origin, [point.position_enu_m for point in site.rally_points])
+    places = zip(lat_deg, lon_deg, height_m, strict=True)
+    return tuple(GeoPoint(float(lat), float(lon), float(height)) for lat, lon, height in places)
 
 
 def rally_items(points: Sequence[GeoPoint], home: GeoPoint) -> tuple[MissionItem, ...]:

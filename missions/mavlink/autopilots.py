@@ -28,6 +28,7 @@ class AutopilotFacts:
     position_frames: frozenset[int]
     commands: frozenset[int]
     rejected: frozenset[int]
+    own_jerk_m_s3: float | None = None
 
 
 @cache

@@ -1,12 +1,16 @@
 """A mission as MAVLink items, in the order in which each autopilot really takes the photos.
 
-The order was flown in ArduCopter 4.5.6's simulation. What follows a waypoint in the list is done *while flying to the
-next navigation command*, and what is left of it when that is reached is dropped without a word. So everything that must
-happen before a photo stands before its waypoint, the trigger right behind the waypoint, and behind the trigger a
-NAV_DELAY, another navigation command, that keeps the aircraft in place while the shutter is open:
+The orders were flown in the simulations of both. On ArduPilot what follows a waypoint in the list is done *while flying
+to the next navigation command*, and what is left of it when that is reached is dropped without a word. So everything
+that must happen before a photo stands before its waypoint, the trigger right behind the waypoint, and behind that
+another navigation command that keeps the aircraft in place while the shutter is open:
 
 - ArduPilot: DO_MOUNT_CONTROL, CONDITION_YAW, NAV_WAYPOINT (hold), DO_DIGICAM_CONTROL, NAV_DELAY
-- PX4: DO_GIMBAL_MANAGER_PITCHYAW, NAV_WAYPOINT (hold, yaw), IMAGE_START_CAPTURE, NAV_DELAY
+- PX4: DO_GIMBAL_MANAGER_PITCHYAW, NAV_WAYPOINT (hold, yaw), IMAGE_START_CAPTURE, the same NAV_WAYPOINT (hold)
+
+PX4 gets no NAV_DELAY. From mid 2025 on it corrects the height of home in flight, and until March 2026 it then took the
+height of the item at hand, which a delay does not have: the aircraft flew towards 0 m above the sea (PX4 pull request
+26662; seen in its simulation).
 """
 
 from __future__ import annotations
@@ -20,6 +24,7 @@ from pymavlink.dialects.v20 import common as mavlink
 from missions.heights import altitude_amsl_m
 from missions.legs import leg_lengths_m
 from missions.mavlink.autopilots import Autopilot, facts
+from missions.mavlink.px4_motion import px4_turn_s
 from missions.model import GeoPoint, HeightReference, Mission, Photo
 from planning.frames import wrap_heading_deg
 from planning.plan import ANGLE_DECIMALS
@@ -63,6 +68,10 @@ Polygon = tuple[tuple[float, float], ...]
 """Corners of a fence, latitude and longitude in degrees."""
 
 
+RallyPlace = tuple[float, float, float]
+"""A rally point in a file: latitude and longitude in degrees, metres above home."""
+
+
 @dataclass(frozen=True, slots=True)
 class MavlinkFile:
     """What a mission file holds: items in order, without the home position that some files put before them.
@@ -75,6 +84,7 @@ class MavlinkFile:
     autopilot: Autopilot | None = None
     cruise_speed_m_s: float | None = None
     fences: tuple[Polygon, ...] = ()
+    rally: tuple[RallyPlace, ...] = ()
 
 
 RESERVED_ITEMS = 40
@@ -157,6 +167,7 @@ class _Sequence:
         turn_s, tilt_s = self.turning_s(photo)
         heading_deg = round(photo.heading_deg, ANGLE_DECIMALS)
         pitch_deg = round(photo.gimbal_pitch_deg, ANGLE_DECIMALS)
+        stay_s = max(MIN_DELAY_S, self.mission.rules.photo_s)
         if self.autopilot is Autopilot.ARDUPILOT:
             hold_s = self.ardupilot_hold_s(max(turn_s, tilt_s), leg_s)
             # Before CONDITION_YAW: a gimbal without a pan axis makes the vehicle turn to param 3, to north. And not
@@ -166,23 +177,29 @@ class _Sequence:
             yield plain(mavlink.MAV_CMD_CONDITION_YAW, heading_deg % 360.0)
             yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, hold_s)
             yield plain(mavlink.MAV_CMD_DO_DIGICAM_CONTROL, 0.0, 0.0, 0.0, 0.0, 1.0, viewpoint_id=photo.viewpoint_id)
+            yield plain(mavlink.MAV_CMD_NAV_DELAY, stay_s, -1.0, -1.0, -1.0)
         else:
-            # PX4 counts the hold from when position and yaw are reached; it does not wait for the gimbal.
-            hold_s = round(max(PX4_MIN_HOLD_S, self.mission.rules.settle_s) + max(0.0, tilt_s - leg_s), 2)
+            # PX4's hold runs while the gimbal still turns, and the nose up to the last MIS_YAW_ERR = 12 deg.
+            turn_s = px4_turn_s(self.turn_deg(photo), self.mission.aircraft.max_yaw_rate_deg_s)
+            settled_s = max(PX4_MIN_HOLD_S, self.mission.rules.settle_s) + max(0.0, max(turn_s, tilt_s) - leg_s)
+            place = (PX4_ACCEPTANCE_RADIUS_M, 0.0, heading_deg)
             yield plain(mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW, pitch_deg, 0.0, NAN, NAN, HOLD_HORIZON)
-            yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, hold_s, PX4_ACCEPTANCE_RADIUS_M, 0.0, heading_deg)
+            yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, round(settled_s, 2), *place)
             number = float(self.n_photos)
             yield plain(mavlink.MAV_CMD_IMAGE_START_CAPTURE, 0.0, 0.0, 1.0, number, viewpoint_id=photo.viewpoint_id)
-        yield plain(mavlink.MAV_CMD_NAV_DELAY, max(MIN_DELAY_S, self.mission.rules.photo_s), -1.0, -1.0, -1.0)
+            yield self.at(mavlink.MAV_CMD_NAV_WAYPOINT, point, stay_s, *place)
         self.nose_deg, self.pitch_deg = photo.heading_deg, photo.gimbal_pitch_deg
 
     def turning_s(self, photo: Photo) -> tuple[float, float]:
         """Times that the aircraft and the gimbal need to turn to a photo, from the worst where that is not known."""
         aircraft, (low, high) = self.mission.aircraft, self.mission.camera.gimbal_pitch_deg
-        turn_deg = 180.0 if self.nose_deg is None else abs(wrap_heading_deg(photo.heading_deg - self.nose_deg))
         tilt_deg = high - low if self.pitch_deg is None else abs(photo.gimbal_pitch_deg - self.pitch_deg)
         yaw_rate_deg_s = min(SLEW_YAW_DEG_S, aircraft.max_yaw_rate_deg_s)
-        return turn_deg / yaw_rate_deg_s, tilt_deg / aircraft.max_gimbal_rate_deg_s
+        return self.turn_deg(photo) / yaw_rate_deg_s, tilt_deg / aircraft.max_gimbal_rate_deg_s
+
+    def turn_deg(self, photo: Photo) -> float:
+        """How far the nose turns to a photo, half round where it may point anywhere."""
+        return 180.0 if self.nose_deg is None else abs(wrap_heading_deg(photo.heading_deg - self.nose_deg))
 
     def ardupilot_hold_s(self, turning_s: float, leg_s: float) -> float:
         """Hold that ends after all turning and settling; whole seconds, because ArduPilot drops the rest."""

@@ -556,6 +556,19 @@ class CameraFeedback(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class CameraCaptureStatus(Message):
+    """CAMERA_CAPTURE_STATUS (262): `image_count` is the number of photos ever taken."""
+
+    time_boot_ms: int
+    image_status: int = 0
+    video_status: int = 0
+    image_interval: float = 0.0
+    recording_time_ms: int = 0
+    available_capacity: float = math.nan
+    image_count: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class CameraImageCaptured(Message):
     """CAMERA_IMAGE_CAPTURED (263): `q` turns from the camera's axes to north, east, down; w first."""
 
@@ -585,3 +598,25 @@ class GimbalDeviceAttitudeStatus(Message):
     angular_velocity_y: float = math.nan
     angular_velocity_z: float = math.nan
     failure_flags: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class MountStatus(Message):
+    """MOUNT_STATUS (158), of older ArduPilots: 0.01 degrees, `pointing_a` pitch, `pointing_c` yaw from the nose."""
+
+    target_system: int
+    target_component: int
+    pointing_a: int
+    pointing_b: int
+    pointing_c: int
+
+
+@dataclass(frozen=True, slots=True)
+class MountOrientation(Message):
+    """MOUNT_ORIENTATION (265), of older PX4s: degrees; `yaw` counts from the nose, `yaw_absolute` from north."""
+
+    time_boot_ms: int
+    roll: float
+    pitch: float
+    yaw: float
+    yaw_absolute: float = 0.0

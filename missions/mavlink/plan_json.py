@@ -10,7 +10,7 @@ from typing import Any, TypeGuard
 
 from missions.heights import altitude_amsl_m, point_at_amsl
 from missions.mavlink.autopilots import Autopilot, facts
-from missions.mavlink.items import MavlinkFile, MissionItem, Params, Polygon
+from missions.mavlink.items import MavlinkFile, MissionItem, Params, Polygon, RallyPlace
 from missions.model import GeoPoint, HeightReference
 from planning.errors import InputError, MissionError
 from planning.json_file import read_json
@@ -33,8 +33,9 @@ def plan_json_bytes(
     speed_m_s: float,
     reference: HeightReference,
     fences: Sequence[Polygon] = (),
+    rally: Sequence[GeoPoint] = (),
 ) -> bytes:
-    """A mission as `.plan`; `fences` are polygons to stay out of."""
+    """A mission as `.plan`; `fences` are polygons to stay out of, `rally` places to return to."""
     polygons = [{"inclusion": False, "polygon": [list(corner) for corner in fence], "version": 1} for fence in fences]
     content = {
         "fileType": "Plan",
@@ -54,10 +55,16 @@ def plan_json_bytes(
             "vehicleType": VEHICLE_MULTIROTOR,
             "version": MISSION_VERSION,
         },
-        "rallyPoints": {"points": [], "version": RALLY_VERSION},
+        "rallyPoints": {"points": [_rally_json(point, home) for point in rally], "version": RALLY_VERSION},
         "version": PLAN_VERSION,
     }
     return (json.dumps(content, indent=4, allow_nan=False) + "\n").encode()
+
+
+def _rally_json(point: GeoPoint, home: GeoPoint) -> list[float]:
+    """Latitude, longitude, and metres above home."""
+    above_m = point.height_ellipsoid_m - home.height_ellipsoid_m
+    return [round(point.lat_deg, 9), round(point.lon_deg, 9), round(above_m, 4) + 0.0]
 
 
 def _item_json(item: MissionItem, number: int) -> dict[str, Any]:
@@ -115,6 +122,7 @@ def read_plan_json(path: Path) -> MavlinkFile:
         autopilot,
         float(speed) if _is_number(speed) and speed > 0 else None,
         tuple(_fences(content.get("geoFence"))),
+        tuple(_rally(content.get("rallyPoints"))),
     )
 
 
@@ -176,3 +184,13 @@ def _fences(fence: Any) -> Iterator[Polygon]:
         if isinstance(corners, list):
             pairs = [c[:2] for c in corners if isinstance(c, list) and len(c) >= 2 and all(map(_is_number, c[:2]))]
             yield tuple((float(lat), float(lon)) for lat, lon in pairs)
+
+
+def _rally(rally: Any) -> Iterator[RallyPlace]:
+    """Rally points; what is no place is left out."""
+    points = rally.get("points") if isinstance(rally, dict) else None
+    for point in points if isinstance(points, list) else ():
+        if isinstance(point, list) and len(point) >= 3 and all(map(_is_number, point[:3])):
+            lat, lon, above_m = map(float, point[:3])
+            if abs(lat) <= 90.0 and abs(lon) <= 180.0 and math.isfinite(above_m):
+                yield (lat, lon, above_m)

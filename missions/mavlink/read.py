@@ -40,8 +40,15 @@ def read_mavlink(path: Path, file: MavlinkFile, file_format: FileFormat) -> Read
         finish=flight.finish,
         climb_above_takeoff_m=flight.climb_m,
         speed_m_s=flight.speed_m_s,
-        findings=(*map(_as_remark, checks), *flight.findings),
+        findings=(*map(_as_remark, checks), *flight.findings, *_on_rally(file)),
     )
+
+
+def _on_rally(file: MavlinkFile) -> tuple[Finding, ...]:
+    if not file.rally:
+        return ()
+    text = f"the file has {len(file.rally)} rally points, which belong to a site and not to a plan; mark them there"
+    return (Finding(Severity.NOTE, "rally-points", text, "", float(len(file.rally))),)
 
 
 def _as_remark(finding: Finding) -> Finding:

@@ -136,6 +136,10 @@ class Counts:
         Part of no frame: noise, and frames that came in broken.
     refused
         Frames without a signature that we believe.
+    unsigned
+        Of these, those without any.
+    signed
+        Frames with a signature that nobody looked at, because this end does not sign.
     lost
         Frames that never came, by the gaps in each sender's numbers.
     """
@@ -144,6 +148,8 @@ class Counts:
     unknown: int = 0
     skipped_bytes: int = 0
     refused: int = 0
+    unsigned: int = 0
+    signed: int = 0
     lost: int = 0
 
 
@@ -225,18 +231,19 @@ class Decoder:
             self.signer.accepts(raw, source) if is_signed else message_id in self.signer.unsigned_accepted
         ):
             self.counts.refused += 1
+            self.counts.unsigned += not is_signed
             return None
         self.counts.frames += 1
+        self.counts.signed += is_signed and self.signer is None
         gap = (sequence - self._next_seq.get(source, sequence)) % 256
         if gap < HALF_ROUND:
             self.counts.lost += gap
             self._next_seq[source] = (sequence + 1) % 256
-        layout = _BY_ID.get(message_id)
-        if layout is None:
+        message = message_of(packet)
+        if message is None:
             self.counts.unknown += 1
             return Frame(raw, None)
-        values = {each.name: _from_wire(getattr(packet, each.name)) for each in layout.fields if each.is_named}
-        return Frame(raw, Received(layout.record(**values), source, time_s))
+        return Frame(raw, Received(message, source, time_s))
 
 
 def _size(buffer: bytearray, start: int) -> int | None:
@@ -256,6 +263,20 @@ def _header(raw: bytes) -> tuple[int, Address, int]:
     if raw[0] == MARKER_V1:
         return raw[2], Address(raw[3], raw[4]), raw[5]
     return raw[4], Address(raw[5], raw[6]), int.from_bytes(raw[7:10], "little")
+
+
+def message_of(packet: Any) -> Message | None:
+    """Our record of a message that pymavlink has decoded; None where it is none of ours."""
+    layout = _BY_ID.get(packet.get_msgId())
+    if layout is None:
+        return None
+    values = {each.name: _from_wire(getattr(packet, each.name)) for each in layout.fields if each.is_named}
+    return layout.record(**values)
+
+
+def message_id(record: type[Message]) -> int:
+    """Number of a message of ours."""
+    return int(_BY_RECORD[record].packet.id)
 
 
 def _from_wire(value: Any) -> Any:

@@ -42,6 +42,10 @@ SHORT_LEG_M = 0.5
 STRAIGHT_RAD = 30.0 * DEG
 """At smaller turns a waypoint without hold is flown through without braking."""
 
+LATE_S = 1.3
+"""A waypoint with a hold counts as reached this long after the aircraft is there: the target that it follows begins
+gently, waits for it, and must come to its own end. 4.7.0-dev took 0.46 to 1.15 s longer than the fastest way."""
+
 ABOVE_TERRAIN = 10
 """Frame in which such items are kept."""
 
@@ -284,7 +288,7 @@ class ArduPilotScheduler:
             straight = self._is_straight_on(goal_enu_m, next_enu_m)
             leave_m = min(self._profile.pass_m, 0.5 * math.dist(self._cockpit.guidance.here_enu_m, goal_enu_m))
             return [FlyTo(goal_enu_m, leave_m=leave_m, passes=straight)]
-        return [FlyTo(goal_enu_m), Wait(stay_s)]
+        return [FlyTo(goal_enu_m), Wait(LATE_S + stay_s)]
 
     def _next_place(self, seq: int, here_enu_m: Vec3) -> Vec3 | None:
         """Where the leg after this one leads, where it follows without a stop."""

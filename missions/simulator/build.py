@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
+from missions.mavlink.autopilots import Autopilot, facts
 from missions.simulator.effects.barometer import BarometerDrift, DriftingBarometer
 from missions.simulator.effects.battery import BatterySag, SaggingPack
 from missions.simulator.effects.facts import effect_facts
@@ -92,6 +94,7 @@ def make_airframe(
     wishes: Mapping[str, Wish] | None = None,
     home_enu_m: Vec3 | None = None,
     seed: int = 0,
+    autopilot: Autopilot | None = None,
 ) -> tuple[Multirotor, tuple[Decision, ...]]:
     """Airframe at home, ready to fly a sortie of a plan, and what was decided about each effect.
 
@@ -107,6 +110,8 @@ def make_airframe(
         None: the plan's, else the site's.
     seed
         The same seed gives the same flight.
+    autopilot
+        Whose jerk it flies with where the aircraft states none; None: without a limit.
 
     Raises
     ------
@@ -122,6 +127,8 @@ def make_airframe(
     home = home_enu_m or plan.home_enu_m or site_model.site.home_enu_m
     # The wind is simulated, and the mission says how fast to fly: only the aircraft's own limits count here.
     limits = motion_limits(plan.aircraft, FlightRules())
+    if autopilot is not None and plan.aircraft.max_jerk_m_s3 is None:
+        limits = replace(limits, jerk_m_s3=facts(autopilot).own_jerk_m_s3 or math.inf)
     pitches = math.radians(low), math.radians(high)
     return Multirotor(limits, pitches, home, _parts(scene, decisions, seed)), decisions
 

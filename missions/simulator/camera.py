@@ -44,7 +44,7 @@ class CameraControl:
     @property
     def is_fitted(self) -> bool:
         """Whether there is one, by the parameters; without, commands to it are accepted and do nothing."""
-        return self._autopilot is Autopilot.PX4 or self._parameters["CAM1_TYPE"] > 0
+        return self._parameters["TRIG_MODE" if self._autopilot is Autopilot.PX4 else "CAM1_TYPE"] > 0
 
     def trigger(self) -> None:
         """Ask for one photo now."""

@@ -73,7 +73,7 @@ class Commands:
         item = as_item(message)
         extra: list[Message] = []
         if item.command == mavlink.MAV_CMD_REQUEST_MESSAGE:
-            found = self.instruments.message(int(item.param1)) if math.isfinite(item.param1) else None
+            found = self._requested(item)
             extra, result = ([], FAILED) if found is None else ([found], ACCEPTED)
         elif item.command == mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES:
             found = self.instruments.message(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
@@ -86,6 +86,14 @@ class Commands:
             result = UNSUPPORTED
         ack = CommandAck(item.command, result, target_system=source.system, target_component=source.component)
         return [ack, *extra]
+
+    def _requested(self, item: StoredItem) -> Message | None:
+        """The message that REQUEST_MESSAGE names; of photos the one with the index in param 2."""
+        if not (math.isfinite(item.param1) and math.isfinite(item.param2)):
+            return None
+        if int(item.param1) == mavlink.MAVLINK_MSG_ID_CAMERA_IMAGE_CAPTURED:
+            return self.instruments.told_photo(int(item.param2))
+        return self.instruments.message(int(item.param1))
 
     def receive_set_mode(self, message: SetMode, source: Address) -> list[Message]:
         """SET_MODE: ArduPilot acknowledges it, PX4 does not."""

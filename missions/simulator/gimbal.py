@@ -42,8 +42,9 @@ class GimbalControl:
     @property
     def is_mounted(self) -> bool:
         """Whether there is one at all, by the parameters."""
-        name = "MNT1_TYPE" if self._autopilot is Autopilot.ARDUPILOT else "MNT_MODE_OUT"
-        return self._parameters[name] > 0
+        if self._autopilot is Autopilot.ARDUPILOT:
+            return self._parameters["MNT1_TYPE"] > 0
+        return self._parameters["MNT_MODE_IN"] >= 0
 
     @property
     def has_pan(self) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -13,6 +13,7 @@ from missions.mavlink.messages import (
     Attitude,
     AutopilotVersion,
     BatteryStatus,
+    CameraCaptureStatus,
     CameraFeedback,
     CameraImageCaptured,
     EkfStatusReport,
@@ -93,6 +94,8 @@ class Instruments:
     n_items: Callable[[], int]
     unix_start_s: float
     _place_at: tuple[Pose, WirePlace] | None = None
+    _n_photos: int = 0
+    _told: dict[int, Message] = field(default_factory=dict)
 
     @property
     def time_boot_ms(self) -> int:
@@ -262,8 +265,23 @@ class Instruments:
         quaternion, flags = self.gimbal.attitude(self._pose())
         return GimbalDeviceAttitudeStatus(0, 0, self.time_boot_ms, flags, quaternion)
 
+    def capture_status(self) -> Message:
+        """CAMERA_CAPTURE_STATUS."""
+        return CameraCaptureStatus(self.time_boot_ms, image_count=self._n_photos)
+
+    def told_photo(self, index: int) -> Message | None:
+        """What told of a photo, once more, as a camera that speaks MAVLink does; None where it cannot be had."""
+        return self._told.get(index)
+
     def photo_taken(self, number: int) -> Message:
         """What tells of a photo: ArduPilot's has the vehicle's attitude, PX4's the camera's."""
+        self._n_photos = number
+        told = self._photo(number)
+        if isinstance(told, CameraImageCaptured):
+            self._told[told.image_index] = told
+        return told
+
+    def _photo(self, number: int) -> Message:
         believed, place = self._pose(), self.here()
         if self.autopilot is Autopilot.ARDUPILOT:
             return CameraFeedback(
@@ -287,7 +305,8 @@ class Instruments:
             lat=place.lat_e7,
             lon=place.lon_e7,
             alt=round(place.altitude_amsl_m * 1000.0),
-            relative_alt=round(place.above_home_m * 1000.0),
+            # Above the ground, which PX4 does not know without a range finder.
+            relative_alt=-1000,
             q=camera_quaternion(turned.gimbal_heading_rad, turned.gimbal_pitch_rad),
             # Counted from 0, as MAVLink's XML says.
             image_index=number - 1,
@@ -305,6 +324,9 @@ class Instruments:
         """ESTIMATOR_STATUS."""
         fix = self.guidance.airframe.fix
         flags = POSITION_KNOWN if self.modes.has_position else POSITION_UNKNOWN
+        if self.modes.is_landed:
+            # PX4 says so of every aircraft that stands still.
+            flags |= mavlink.ESTIMATOR_CONST_POS_MODE
         return EstimatorStatus(
             self.time_boot_ms * 1000, flags, 0.05, 0.05, 0.05, 0.05, 0.0, 0.0,
             fix.horizontal_accuracy_m, fix.vertical_accuracy_m,
@@ -370,5 +392,6 @@ BUILDERS: dict[int, Callable[[Instruments], Message | None]] = {
     mavlink.MAVLINK_MSG_ID_WIND: Instruments.wind,
     mavlink.MAVLINK_MSG_ID_WIND_COV: Instruments.wind_cov,
     mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: Instruments.autopilot_version,
+    mavlink.MAVLINK_MSG_ID_CAMERA_CAPTURE_STATUS: Instruments.capture_status,
 }
 """Builders by message id."""

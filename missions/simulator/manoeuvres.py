@@ -8,6 +8,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.simulator.guidance import Guidance
 from missions.simulator.parameters import ParameterTable
 from missions.simulator.place import Place
+from missions.simulator.returning import Returning
 from missions.simulator.steps import Sink, Step, TouchDown, Wait, climb, climb_at_least, fly_level
 from planning.frames import Vec3
 
@@ -22,6 +23,7 @@ class Manoeuvres:
     parameters: ParameterTable
     place: Place
     guidance: Guidance
+    returning: Returning
 
     def take_off(self, top_z_m: float) -> list[Step]:
         """Climb straight up."""
@@ -40,12 +42,11 @@ class Manoeuvres:
         return [*there, Sink(ground_z_m + slow_from_m, fast_m_s), TouchDown(ground_z_m, slow_m_s)]
 
     def go_home(self) -> list[Step]:
-        """Climb to the return height, fly home, land."""
-        values, home_enu_m = self.parameters, self.place.home_enu_m
+        """Climb to the return height, fly home or to a rally point, land."""
+        values, goal = self.parameters, self.returning.goal(self.guidance.here_enu_m)
         if self.autopilot is Autopilot.ARDUPILOT:
-            rise: list[Step] = [climb_at_least(home_enu_m[2] + values["RTL_ALT"] * CM)]
             wait: list[Step] = [Wait(values["RTL_LOIT_TIME"] / 1000.0)]
         else:
-            rise = [climb_at_least(home_enu_m[2] + values["RTL_RETURN_ALT"])]
-            wait = [climb(home_enu_m[2] + values["RTL_DESCEND_ALT"]), Wait(max(0.0, values["RTL_LAND_DELAY"]))]
-        return [*rise, fly_level(home_enu_m), *wait, *self.land()]
+            lower_z_m = goal.place_enu_m[2] + values["RTL_DESCEND_ALT"]
+            wait = [climb(lower_z_m), Wait(max(0.0, values["RTL_LAND_DELAY"]))]
+        return [climb_at_least(goal.height_z_m), fly_level(goal.place_enu_m), *wait, *self.land()]

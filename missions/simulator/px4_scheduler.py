@@ -1,8 +1,8 @@
 """How PX4 goes through a mission: one item after the other, in the order of the list.
 
-A waypoint is reached when it is within its radius and the nose stands as it says; only then its hold counts. What has
-no position is done at once when its turn comes. A mission that does not pass the feasibility check is not flown. A new
-mission is taken up in flight, from its start.
+A waypoint is reached when it is within its radius. Its hold counts from then on; where the nose does not stand as it
+says when that is over, PX4 waits for the nose. What has no position is done at once when its turn comes. A mission that
+does not pass the feasibility check is not flown. A new mission is taken up in flight, from its start.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import math
 
 from pymavlink.dialects.v20 import common as mavlink
 
+from missions.mavlink.px4_motion import px4_leg_s
 from missions.simulator.guidance import DEG
 from missions.simulator.profiles import VehicleProfile
 from missions.simulator.scheduler import (
@@ -21,9 +22,10 @@ from missions.simulator.scheduler import (
     MissionState,
     is_navigation,
 )
-from missions.simulator.steps import Reach, Step, StepRunner, Wait
+from missions.simulator.steps import Reach, Stay, Step, StepRunner, Wait
 from missions.simulator.stored_item import StoredItem
 from planning.frames import Vec3
+from planning.timing import MotionLimits
 
 SHORT_LEG_M = 0.5
 """On legs shorter than this, seen from above, the nose is not turned into the course."""
@@ -191,8 +193,24 @@ class Px4Scheduler:
         passes = stay_s == 0.0 and following is not None and following.command in FLOWN_TO
         # Only a heading that the item itself asks for is waited for.
         waited_rad = heading_rad if is_waypoint and math.isfinite(item.param4) else None
-        reach = Reach(goal_enu_m, radius_m, values["NAV_MC_ALT_RAD"], waited_rad, values["MIS_YAW_ERR"] * DEG, passes)
-        return [reach, Wait(stay_s)]
+        soonest_s = self._leg_s(goal_enu_m, radius_m) if stay_s > 0.0 else 0.0
+        reach = Reach(goal_enu_m, radius_m, values["NAV_MC_ALT_RAD"], soonest_s, passes)
+        return [reach, Stay(stay_s, waited_rad, values["MIS_YAW_ERR"] * DEG)]
+
+    def _leg_s(self, goal_enu_m: Vec3, radius_m: float) -> float:
+        """Time that PX4 takes for a leg from here."""
+        guidance, values = self._cockpit.guidance, self._cockpit.parameters
+        limits = MotionLimits(
+            guidance.horizontal_m_s,
+            guidance.ascent_m_s,
+            guidance.descent_m_s,
+            values["MPC_ACC_HOR"],
+            guidance.yaw_rate_rad_s,
+            guidance.yaw_rate_rad_s,
+            values["MPC_JERK_AUTO"],
+        )
+        x, y, z = (b - a for a, b in zip(guidance.here_enu_m, goal_enu_m, strict=True))
+        return px4_leg_s((x, y, z), limits, radius_m)
 
     def _heading(self, item: StoredItem, goal_enu_m: Vec3) -> float | None:
         """Heading on the leg: the item's own, else the course; None leaves it, as looking at a place does."""

@@ -82,13 +82,15 @@ def fly_level(goal_enu_m: Vec3) -> FlyTo:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """Fly to a place until it is near and the nose stands right: what PX4 calls reached."""
+    """Fly to a place until it is near: what PX4 calls reached.
+
+    `soonest_s` is how long PX4 takes for it, which brakes more gently than the airframe does.
+    """
 
     goal_enu_m: Vec3
     radius_m: float
     height_m: float
-    heading_rad: float | None
-    heading_tolerance_rad: float
+    soonest_s: float = 0.0
     passes: bool = False
 
     def start(self, guidance: Guidance) -> None:
@@ -96,11 +98,27 @@ class Reach:
         guidance.fly_to(self.goal_enu_m, passes=self.passes)
 
     def is_done(self, guidance: Guidance, since_s: float) -> bool:
-        """Near, at height, and turned."""
+        """Near, and at height."""
         (x, y, z), (gx, gy, gz) = guidance.here_enu_m, self.goal_enu_m
-        if math.hypot(gx - x, gy - y) > self.radius_m or abs(gz - z) > self.height_m:
-            return False
-        return self.heading_rad is None or guidance.turn_left_rad(self.heading_rad) <= self.heading_tolerance_rad
+        is_near = math.hypot(gx - x, gy - y) <= self.radius_m and abs(gz - z) <= self.height_m
+        return is_near and since_s >= self.soonest_s
+
+
+@dataclass(frozen=True, slots=True)
+class Stay:
+    """Stay for a time, and until the nose stands right: PX4's hold, which does not wait for the nose to begin."""
+
+    duration_s: float
+    heading_rad: float | None
+    tolerance_rad: float
+
+    def start(self, guidance: Guidance) -> None:
+        """Nothing to do."""
+
+    def is_done(self, guidance: Guidance, since_s: float) -> bool:
+        """The time is up, and the nose is turned."""
+        is_turned = self.heading_rad is None or guidance.turn_left_rad(self.heading_rad) <= self.tolerance_rad
+        return is_turned and since_s >= self.duration_s - 1e-9
 
 
 @dataclass(frozen=True, slots=True)

@@ -217,5 +217,6 @@ _KEEP: dict[str, Callable[[float], float]] = {
     "f": lambda value: value,
     "i": _whole,
     "u": lambda value: min(max(_whole(value), 0.0), 65535.0),
+    "s": lambda value: -1.0 if value < 0.0 else 1.0,
     "-": lambda value: 0.0,
 }

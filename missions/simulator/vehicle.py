@@ -16,6 +16,7 @@ from missions.mavlink.messages import (
     Address,
     CommandInt,
     CommandLong,
+    Heartbeat,
     Message,
     MissionItemReached,
     MissionSetCurrent,
@@ -44,6 +45,7 @@ from missions.simulator.parameters import ParameterTable
 from missions.simulator.place import Place
 from missions.simulator.profiles import vehicle_profile
 from missions.simulator.px4_scheduler import Px4Scheduler
+from missions.simulator.returning import Returning
 from missions.simulator.scheduler import Cockpit, MissionState, Scheduler
 from missions.simulator.telemetry import Telemetry
 from planning.frames import Vec3
@@ -123,7 +125,8 @@ class SimulatedVehicle:
         self.camera = CameraControl(autopilot, self.parameters, self._guidance, self._shoot)
         actions = Actions(autopilot, self._guidance, self.gimbal, self.camera, self.place)
         self.stores = MissionStores(autopilot, self.place.home_item, self._may_clear, self._say)
-        manoeuvres = Manoeuvres(autopilot, self.parameters, self.place, self._guidance)
+        returning = Returning(autopilot, self.parameters, self.place, self.stores.rally, self._is_forbidden)
+        manoeuvres = Manoeuvres(autopilot, self.parameters, self.place, self._guidance, returning)
         cockpit = Cockpit(
             self.stores.mission, self._guidance, actions, manoeuvres, self.parameters, self.place,
             self._note_reached, self._say, self._is_forbidden,
@@ -174,6 +177,8 @@ class SimulatedVehicle:
         message, source = received.message, received.source
         if not self._is_for_me(message):
             return []
+        if isinstance(message, Heartbeat):
+            self._failsafe.hear_heartbeat(source)
         match message:
             case message if isinstance(message, TransferMessage):
                 self._out += self.stores.receive(received, self.now_s)

@@ -13,6 +13,7 @@ from planning.checks.measures import pose_of
 from planning.errors import InfeasibleError
 from planning.findings import Finding, Severity
 from planning.plan import Sortie, Viewpoint
+from planning.site_file import is_planned_on
 from planning.sortie_timing import SAME_PLACE_M, photo_vertices
 from planning.timing import motion_limits, photo_stop_s
 
@@ -27,7 +28,7 @@ SHORT_SETTLE_S = 1.0
 def site_file(case: Case) -> Iterator[Finding]:
     """The plan was made for this very site file; without checksums, for a site of this name."""
     plan, model = case.plan, case.site_model
-    if plan.site_sha256 and plan.site_sha256 == model.sha256:
+    if plan.site_sha256 and model.sha256 and is_planned_on(plan.site_sha256, model):
         yield Finding(Severity.OK, "site", "the plan was made for this site file")
     elif plan.site != model.site.name:
         text = f"the plan was made for site '{plan.site}', this is '{model.site.name}'; take its own site file"

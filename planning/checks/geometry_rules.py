@@ -10,6 +10,7 @@ from planning.checks.case import ROUNDING_M, Case, Rule, judge
 from planning.checks.measures import Gaps, legs_of
 from planning.findings import Finding, Severity
 from planning.plan import Sortie, viewpoint_arrays
+from planning.rally import rally_findings
 from planning.routing.legs import MIN_SPACING_M
 from planning.sortie_timing import SAME_PLACE_M
 
@@ -91,6 +92,11 @@ def no_fly_volumes(case: Case) -> Iterator[Finding]:
         )
 
 
+def rally_points(case: Case) -> Iterator[Finding]:
+    """Aircraft can land where they may have to; nothing to say where a site has no rally points."""
+    yield from rally_findings(case.site_model, case.space)
+
+
 def altitude(case: Case) -> Iterator[Finding]:
     """Height above ground stays below what needs a permit."""
     ground = case.site_model.site.airspace.ground_z_m
@@ -125,6 +131,7 @@ GEOMETRY_RULES: tuple[Rule, ...] = (
     distances_at_viewpoints,
     distances_along_paths,
     no_fly_volumes,
+    rally_points,
     altitude,
     leg_lengths,
 )

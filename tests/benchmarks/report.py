@@ -85,7 +85,8 @@ def _section(benchmark: Benchmark, run: Mapping[str, str], rows: Sequence[Mappin
 
 
 def _pictures(name: str, folder: Path) -> list[Path]:
-    return sorted(path for path in folder.glob("*.png") if path.stem == name or path.stem.startswith(f"{name}-"))
+    pictures = (path for path in folder.iterdir() if path.suffix in (".png", ".jpg"))
+    return sorted(path for path in pictures if path.stem == name or path.stem.startswith(f"{name}-"))
 
 
 def _line(row: Mapping[str, str]) -> str:

@@ -26,7 +26,7 @@ GIVEN = {
     "city": ("city.json", "a building model"),
     "tsp": ("four.tsp", "a TSPLIB instance"),
     "page": ("page.html", "a file of another kind"),
-    "binary": ("photo.jpg", "a file of another kind"),
+    "binary": ("photo.jpg", "a photo"),
 }
 """What is given, and what a message calls it."""
 
@@ -48,7 +48,7 @@ COMMANDS = {
         ("import", ..., "--site", "site.json", "-o", "out"),
         "a mission file",
         # The reader itself says these better.
-        {*MISSIONS, "folder", "page", "binary"},
+        {*MISSIONS, "folder", "page"},
     ),
     "import --site": (("import", "m.kmz", "--site", ..., "-o", "out"), "a site file", {"site"}),
     "project new --site": (("project", "new", "out", "--site", ...), "a site file", {"site"}),
@@ -56,8 +56,9 @@ COMMANDS = {
     "project add": (("project", "add", ..., "plan.json"), "the folder of a project", {"project", "index", "folder"}),
     "project show": (("project", "show", ...), "the folder of a project", {"project", "index", "folder"}),
     "project migrate": (("project", "migrate", ...), "the folder of a project", {"project", "index", "folder"}),
-    "site import": (("site", "import", ..., "-o", "out"), "a building model", {"mesh", "city", "page", "binary"}),
+    "site import": (("site", "import", ..., "-o", "out"), "a building model", {"mesh", "city", "page"}),
     "route": (("route", ...), "a TSPLIB instance", {"tsp"}),
+    "segment IMAGE": (("segment", ..., "-o", "out"), "a photo", {"page", "binary"}),
     "tradeoff plan": (("tradeoff", "plan", ..., "-o", "out"), "a site file", {"site"}),
     "tradeoff route": (("tradeoff", "route", ..., "-o", "out"), "a plan file", {"plan", "site", "tsp"}),
 }

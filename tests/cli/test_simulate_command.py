@@ -105,6 +105,12 @@ def test_a_plan_for_another_site_is_refused(reflight, pane, changed, tmp_path):
     assert "a changed site" in done.error
 
 
+def test_a_plan_without_sorties_is_refused_with_what_to_do(reflight, pane, changed, tmp_path):
+    plan = changed(pane / "plan.json", "sorties", [])
+    error = reflight("simulate", plan, pane / "site.json", "-o", tmp_path / "flight.json").error
+    assert "no sorties: nothing says which way to fly; plan again" in error
+
+
 def test_the_flight_may_not_replace_the_plan(reflight, pane):
     before = (pane / "plan.json").read_bytes()
     assert (

@@ -70,7 +70,6 @@ NOT_SHOWN = {
     "missions/flight/logs/tlog.py": "the window reads no logs",
     "missions/flight/logs/ulog.py": "the window reads no logs",
     "missions/mavlink/areas.py": "the window makes fences of no-fly volumes, which are right",
-    "missions/mavlink/signing.py": "the window signs nothing",
     "missions/mavlink/transfer/wire_items.py": "plans have no such items",
 }
 """Files that the window imports, but whose sentences nobody reads there, and why."""
@@ -93,7 +92,7 @@ NO_SENTENCE = {
         *("{0} was {1} and is {2} now", "{0} is {1}; the plan was made for {2}", "{0} items, read back and equal"),
         *("{0} photos were reported", "had that value already", "the vehicle does not know it"),
         *("the vehicle keeps another value", "the ground station disconnected; the aircraft went on by itself"),
-        *("simulated {0}", "simulation, {0} times as fast"),
+        *("simulated {0}", "simulation, {0} times as fast", "the time since boot began again"),
     ),
     "names of states, for which the window has its own words or none": (
         *("on the ground", "in the air", "taking off", "to come", "RTK float", "RTK fixed", "Exchange | None"),

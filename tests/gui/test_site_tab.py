@@ -151,6 +151,28 @@ def test_zone_and_box_are_drawn_with_the_mouse_each_in_one_step(opened):
     assert len(hands.site.airspace.no_fly) == 1
 
 
+def test_a_rally_point_is_clicked_put_down_and_removed(opened):
+    from groundstation.gui.site.site_tools import SiteTool
+
+    hands = opened("office")
+    hands.tab.detail.tools.button(SiteTool.RALLY).click()
+    hands.click((8.0, -40.0, 0.0))
+    hands.idle()
+    (point,) = hands.site.rally_points
+    np.testing.assert_allclose(point.position_enu_m, (8.0, -40.0, 0.0), atol=1.0)
+    assert hands.workspace.selection == Item(ItemKind.RALLY, point.id)
+    page = hands.tab.detail.properties.page()
+    page.point_box().boxes()[2].box().setValue(2.0)
+    assert hands.site.rally_points[0].position_enu_m[2] == 2.0
+    page._put_down()
+    assert hands.site.rally_points[0].position_enu_m[2] == 0.0
+    hands.tab.left.tree.ask_remove()
+    assert hands.site.rally_points == ()
+    hands.workspace.session.undo()
+    assert len(hands.site.rally_points) == 1
+    hands.idle()
+
+
 def test_home_in_a_bad_place_is_taken_and_told_until_it_is_put_right(opened):
     from groundstation.gui.site.site_tools import SiteTool
 

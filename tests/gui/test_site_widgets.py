@@ -7,7 +7,7 @@ import pytest
 
 from groundstation.services.document import Item, ItemKind
 from groundstation.services.item_edits import rename_item
-from groundstation.services.site_edits import add_box, add_zone, height_above_sea_m, move_home
+from groundstation.services.site_edits import add_box, add_rally_point, add_zone, height_above_sea_m, move_home
 from groundstation.services.units import UnitSystem
 from planning.findings import Finding, Severity
 from planning.scenes import SCENES
@@ -52,11 +52,11 @@ def rows(model, parent=None):
 
 def test_tree_lists_everything_on_the_site_and_survives_the_model_tester(tree_model):
     tree_model.set_site(COURT, METRIC)
-    site, facades, obstacles, zones, airspace, home = rows(tree_model)
+    site, facades, obstacles, zones, rally, airspace, home = rows(tree_model)
     assert site[:2] == ("court", "panels: 294")
     assert [row[:2] for row in facades[2]] == [("A", "panels: 126"), ("B", "panels: 168")]
     assert len(facades[2][1][2]) == 168
-    assert obstacles[1] == zones[1] == "0"
+    assert obstacles[1] == zones[1] == rally[1] == "0"
     assert airspace[1] == "145 × 135 × 52 m"
     assert home == ("Home", "0.0 m", [])
     model, _ = add_box(COURT, (0.0, -60.0, 0.0), (1.0, -58.0, 3.0))
@@ -64,6 +64,8 @@ def test_tree_lists_everything_on_the_site_and_survives_the_model_tester(tree_mo
     tree_model.set_site(model, IMPERIAL)
     assert rows(tree_model)[2][2] == [("box-1", "3 × 7 × 10 ft", [])]
     assert rows(tree_model)[3][2][0][:2] == ("no-fly-1", "33 × 66 × 180 ft")
+    tree_model.set_site(add_rally_point(COURT, (15.0, -50.0, 1.0))[0], METRIC)
+    assert rows(tree_model)[4][1:] == ("1", [("rally-1", "1.0 m", [])])
     tree_model.set_site(None, METRIC)
     assert rows(tree_model) == []
 

@@ -246,7 +246,7 @@ def test_stopping_half_way_keeps_what_was_found() -> None:
     assert [point.covered for point in planned.plan.history] == [int(point.value) for point in trace.points]
 
 
-@pytest.mark.parametrize(("scene", "budget_s"), [("court", 5.0), ("tower", 2.0)])
+@pytest.mark.parametrize(("scene", "budget_s"), [("tower", 2.0), pytest.param("court", 5.0, marks=pytest.mark.slow)])
 def test_a_time_budget_too_small_for_everything_still_gives_a_plan_soon_after(scene: str, budget_s: float) -> None:
     model = SCENES[scene]()
     started = time.process_time()

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -19,6 +20,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import office, single_panel, write_scene
 from planning.site_file import read_site
+from tests.planning.revision.cases import QUICK
 
 BOTH = pytest.mark.parametrize("autopilot", list(Autopilot))
 POSITION_M, HEADING_DEG, PITCH_DEG, COVERED, DURATION = 0.5, 3.0, 2.0, 0.97, 0.10
@@ -32,7 +34,13 @@ def model():
 
 @pytest.fixture(scope="module")
 def plan(model):
-    return plan_flight(model, PlanRequest(n_views=56, time_budget_s=5.0)).plan
+    return plan_flight(model, PlanRequest(n_views=56, greedy=QUICK)).plan
+
+
+@cache
+def self_built(profile):
+    """A plan over the office for an aircraft of that name."""
+    return plan_flight(office(), PlanRequest(n_views=12, greedy=QUICK, profile_id=profile)).plan
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +73,7 @@ def test_the_office_is_flown_as_planned(model, plan, autopilot):
 @BOTH
 @pytest.mark.parametrize("profile", ["ardupilot", "px4"])
 def test_the_office_is_flown_as_planned_by_self_built_aircraft(model, autopilot, profile):
-    plan = plan_flight(model, PlanRequest(n_views=20, time_budget_s=2.0, profile_id=profile)).plan
+    plan = self_built(profile)
     assert_kept(fly_plan(plan, model, FlightWish(autopilot=autopilot)), plan)
 
 

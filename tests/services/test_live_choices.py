@@ -50,8 +50,10 @@ def test_views_are_shared_out_so_that_each_is_in_one_sortie_that_fits():
 
 @pytest.mark.parametrize("autopilot", Autopilot)
 def test_what_an_upload_would_set_names_every_parameter_and_those_that_need_a_restart(autopilot):
-    found = parameters_to_set(autopilot, sortie().orders.mission)
-    assert {each.name: each.value for each in found} == wanted_parameters(autopilot, sortie().orders.mission)
+    orders = sortie().orders
+    found = parameters_to_set(autopilot, orders)
+    wanted = wanted_parameters(autopilot, orders.mission, orders.return_height_m)
+    assert {each.name: each.value for each in found} == wanted
     assert {each.name for each in found if each.needs_reboot} <= needs_reboot(autopilot)
 
 

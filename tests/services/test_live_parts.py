@@ -7,15 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.live_choice import ConnectionChoice, LinkKind, read_choice, write_choice
+from groundstation.services.kept import write_kept
+from groundstation.services.live_choice import ConnectionChoice, LinkKind, read_choice
 from groundstation.services.live_coverage import LiveCoverage, matching_view
 from groundstation.services.live_events import LinkState, Request, ViewState
 from groundstation.services.live_readouts import allowed_requests, battery_left_s, link_state
+from groundstation.services.live_settings import FlightSettings, read_flight_settings
 from groundstation.vehicle.run_records import Phase
 from groundstation.vehicle.state import Timed, VehicleState
 from missions.flight.matching import DEFAULT_GATES
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
+from planning.errors import InputError
 from planning.evaluate import coverage_counts
 from tests.services.live_cases import planned, sortie
 
@@ -128,8 +131,23 @@ def test_the_last_choice_comes_back_and_a_damaged_file_gives_the_first_one(tmp_p
     path = tmp_path / "deep" / "connection.toml"
     choice = ConnectionChoice(LinkKind.SERIAL, "/dev/ttyACM0:115200", Autopilot.PX4, 10.0)
     assert read_choice(path) == ConnectionChoice()
-    write_choice(path, choice)
+    write_kept(path, choice)
     assert read_choice(path) == choice
     assert choice.url == "serial:/dev/ttyACM0:115200"
     path.write_text("kind = 'pigeon'")
     assert read_choice(path) == ConnectionChoice()
+
+
+def test_whether_rtk_is_needed_comes_back_and_leave_to_set_parameters_does_not(tmp_path):
+    path = tmp_path / "flight.toml"
+    assert read_flight_settings(path) == FlightSettings()
+    write_kept(path, FlightSettings(needs_rtk=True, sets_parameters=True))
+    assert read_flight_settings(path) == FlightSettings(needs_rtk=True)
+    path.write_text("needs_rtk = 'perhaps'")
+    assert read_flight_settings(path) == FlightSettings()
+
+
+def test_what_cannot_be_kept_is_told(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="this folder cannot be made"):
+        write_kept(tmp_path / "file" / "flight.toml", FlightSettings())

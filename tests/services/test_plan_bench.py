@@ -53,3 +53,19 @@ def test_edits_one_after_another_end_where_all_at_once_do(in_hand: PlanInHand) -
     anew = insight_of(found.revision, in_hand.insight.reasons)
     np.testing.assert_array_equal(found.insight.sampling.worst_m, anew.sampling.worst_m)
     np.testing.assert_array_equal(found.insight.counts, anew.counts)
+
+
+def test_views_at_one_pose_and_a_plan_without_views_are_measured_like_others(in_hand: PlanInHand) -> None:
+    first = in_hand.revision.plan.viewpoints[0]
+    twice = add(in_hand.revision, first.position_enu_m, first.heading_deg, first.gimbal_pitch_deg)
+    none = delete(twice, [viewpoint.id for viewpoint in twice.plan.viewpoints])
+    found = in_hand
+    for revision in (twice, delete(twice, [first.id]), none, add(none, (3.0, -15.0, 8.0), 0.0, 0.0)):
+        found = found.with_revision(revision)
+        anew = insight_of(revision, in_hand.insight.reasons)
+        np.testing.assert_array_equal(found.insight.sections, anew.sections)
+        np.testing.assert_array_equal(found.insight.states, anew.states)
+        for field in fields(PanelSampling):
+            np.testing.assert_array_equal(
+                getattr(found.insight.sampling, field.name), getattr(anew.sampling, field.name)
+            )

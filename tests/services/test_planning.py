@@ -20,6 +20,7 @@ from planning.plan_file import read_plan, write_plan
 from planning.request import PlanRequest
 from planning.scenes import write_scene
 from planning.site_file import read_site
+from tests.planning.revision.cases import QUICK
 
 
 @pytest.fixture
@@ -58,11 +59,11 @@ def test_impossible_wishes_and_cancelled_work_write_nothing(site, tmp_path):
 @pytest.mark.parametrize(
     ("request_", "codes"),
     [
-        (PlanRequest(n_views=3, time_budget_s=5.0), []),
-        (PlanRequest(n_views=2000, time_budget_s=5.0), ["fewer-views"]),
-        (PlanRequest(n_batteries=9, time_budget_s=5.0), ["fewer-sorties"]),
-        (PlanRequest(n_batteries=1, time_budget_s=5.0), []),
-        (PlanRequest(share=0.5, time_budget_s=5.0), []),
+        (PlanRequest(n_views=3, greedy=QUICK), []),
+        (PlanRequest(n_views=2000, greedy=QUICK), ["fewer-views"]),
+        (PlanRequest(n_batteries=9, greedy=QUICK, time_budget_s=1.0), ["fewer-sorties"]),
+        (PlanRequest(n_batteries=1, greedy=QUICK, time_budget_s=1.0), []),
+        (PlanRequest(share=0.5, greedy=QUICK), []),
         (PlanRequest(share=1.0, method="noto", time_budget_s=5.0), ["less-coverage"]),
     ],
 )
@@ -93,7 +94,7 @@ def test_summaries_are_json(site):
 
 
 def test_planning_an_open_site_again_uses_what_the_first_plan_prepared_where_it_fits(site):
-    model, request = read_site(site), PlanRequest(n_views=3, time_budget_s=5.0)
+    model, request = read_site(site), PlanRequest(n_views=3, greedy=QUICK)
     first = plan_document_site(model, request)
     again = plan_document_site(model, replace(request, n_views=4), first.prepared)
     assert again.prepared is first.prepared

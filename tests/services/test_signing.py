@@ -10,6 +10,7 @@ from missions.mavlink.key_store import KeyStore
 from missions.mavlink.link import open_link
 from missions.mavlink.messages import Address, Heartbeat, SetupSigning
 from missions.mavlink.signing import Signer, key_from_passphrase
+from missions.mavlink.wire import Counts
 from planning.errors import InputError, LinkError
 
 PASSPHRASE = "correct horse battery staple"
@@ -101,3 +102,20 @@ def test_a_vehicle_with_another_key_is_not_heard(monkeypatch):
 def test_nothing_is_sent_to_anybody_without_a_key():
     with pytest.raises(InputError, match="no signing key"):
         signing.give_key("tcp:127.0.0.1:1")
+
+
+@pytest.mark.parametrize(
+    ("counts", "is_signed", "is_heard", "words"),
+    [
+        (Counts(), True, False, ""),
+        (Counts(refused=3, unsigned=3), True, False, "does not sign"),
+        (Counts(refused=3, unsigned=2), True, False, "another key"),
+        (Counts(refused=3, unsigned=3), True, True, ""),  # a camera beside an autopilot that signs
+        (Counts(frames=9, signed=4), False, True, "may not obey"),
+        (Counts(frames=9), False, True, ""),
+    ],
+)
+def test_ends_that_do_not_sign_alike_are_told_what_to_do(counts, is_signed, is_heard, words):
+    told = signing.signing_problem(counts, is_signed=is_signed, is_heard=is_heard)
+    assert words in told
+    assert bool(told) == bool(words)

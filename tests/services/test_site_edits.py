@@ -15,9 +15,11 @@ from groundstation.services.site_edits import (
     HeightReference,
     add_box,
     add_mesh_obstacle,
+    add_rally_point,
     add_zone,
     height_above_sea_m,
     move_home,
+    move_rally_point,
     rename_site,
     set_airspace,
     set_box,
@@ -30,7 +32,7 @@ from planning.findings import Severity
 from planning.mesh import box_mesh, write_mesh
 from planning.scenes import SCENES
 from planning.site import panel_corners
-from planning.site_file import read_site, write_site
+from planning.site_file import read_site, site_sha256, write_site
 from planning.site_import.panel_grid import GridField, PanelGridError
 from planning.site_import.polygons import unit_normals
 
@@ -286,3 +288,28 @@ def test_facade_behind_a_wall_is_out_of_reach_and_one_below_the_airspace_is_not(
     airspace = OFFICE.site.airspace
     above = set_airspace(OFFICE, (*airspace.min_enu_m[:2], 44.0), airspace.max_enu_m, 0.0)
     assert site_findings(above) == ()
+
+
+def test_rally_points_are_marked_moved_renamed_and_removed():
+    marked, first = add_rally_point(OFFICE, (20.0, -28.0, 3.0))
+    marked, second = add_rally_point(marked, (10.0, -30.0, 0.0))
+    assert (first, second) == ("rally-1", "rally-2")
+    down = move_rally_point(marked, first, (21.0, -28.0, 3.0), on_ground=True)
+    assert down.site.rally_points[0].position_enu_m == (21.0, -28.0, OFFICE.site.airspace.ground_z_m)
+    assert down.site.rally_points[1] == marked.site.rally_points[1]
+    item = Item(ItemKind.RALLY, first)
+    renamed = rename_item(marked, item, "car park")
+    assert [point.id for point in renamed.site.rally_points] == ["car park", "rally-2"]
+    with pytest.raises(InputError, match="there is a rally point 'rally-2' already"):
+        rename_item(marked, item, "rally-2")
+    with pytest.raises(InputError, match="position_enu_m"):
+        move_rally_point(marked, first, (1e7, 0.0, 0.0))
+    left = remove_item(remove_item(marked, item), Item(ItemKind.RALLY, second))
+    assert left.site == OFFICE.site
+    assert left.sha256 == site_sha256(OFFICE.site)
+
+
+def test_a_rally_point_in_a_bad_place_is_told_of():
+    marked, name = add_rally_point(OFFICE, (0.0, -5.0, 0.0))
+    (finding,) = (finding for finding in site_findings(marked) if finding.code == "rally-point")
+    assert (finding.severity, finding.place) == (Severity.ERROR, f"rally/{name}")

@@ -16,6 +16,7 @@ from planning.errors import GroundStationError, InfeasibleError, OperationCancel
 from planning.progress import QUIET, StopRequest, Trace, never
 from planning.request import PlanRequest
 from planning.scenes import SCENES
+from tests.planning.plan_cases import kiosk
 
 MAIN_FILE = """
 import sys
@@ -101,9 +102,9 @@ def test_the_work_is_done_in_one_other_process(worker):
     assert worker.run(where) == worker.run(where) != os.getpid()
 
 
-@pytest.mark.parametrize("scene", ["roof", "court"])
+@pytest.mark.parametrize("scene", [SCENES["roof"], kiosk], ids=["roof", "kiosk, whose walls hide one another"])
 def test_a_plan_is_the_one_that_is_made_here(worker, scene):
-    model, request = SCENES[scene](), PlanRequest(n_views=5, time_budget_s=60.0)
+    model, request = scene(), PlanRequest(n_views=5, time_budget_s=60.0)
     here = plan_document_site(model, request)
     there = reunited(worker.run(plan_document_site, model, request), model, None)
     assert there.plan.viewpoints == here.plan.viewpoints

@@ -136,10 +136,11 @@ def test_a_fence_says_at_each_corner_how_many_there_are():
 
 
 def test_parameters_are_in_the_autopilots_units(orders):
-    ardupilot = wanted_parameters(Autopilot.ARDUPILOT, orders.mission)
-    px4 = wanted_parameters(Autopilot.PX4, orders.mission)
+    ardupilot = wanted_parameters(Autopilot.ARDUPILOT, orders.mission, 25.0)
+    px4 = wanted_parameters(Autopilot.PX4, orders.mission, 25.0)
     assert ardupilot["WPNAV_SPEED"] == 100.0 * px4["MPC_XY_CRUISE"] == 100.0 * orders.mission.speed_m_s
     assert (ardupilot["MNT1_PITCH_MIN"], ardupilot["MNT1_PITCH_MAX"]) == orders.mission.camera.gimbal_pitch_deg
+    assert ardupilot["RTL_ALT"] == 100.0 * px4["RTL_RETURN_ALT"] == 2500.0
     assert (ardupilot["WP_YAW_BEHAVIOR"], ardupilot["CAM1_TYPE"]) == (0, 1)
 
 
@@ -153,7 +154,7 @@ def test_every_message_is_asked_for_by_its_interval():
 def test_longer_holds_take_as_much_longer(orders):
     for autopilot in Autopilot:
         items = orders.items[autopilot]
-        index = next(i for i, item in enumerate(items) if item.command == 93)
+        index = next(i for i, item in enumerate(items) if item.command in (203, 2000)) + 1
         longer = replace(items[index], params=(items[index].params[0] + 7.0, *items[index].params[1:]))
         changed = replace(orders, items={autopilot: (*items[:index], longer, *items[index + 1 :])})
         assert items_duration_s(changed, autopilot) - items_duration_s(orders, autopilot) == pytest.approx(7.0)

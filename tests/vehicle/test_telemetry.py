@@ -202,12 +202,30 @@ def test_both_winds_blow_towards_the_same_side():
 
 def test_both_estimators_say_what_they_lack():
     good = 1 | 2 | 4 | 8 | 16 | 32
-    for flags, problem in ((good, ""), (good & ~16, "no position yet"), (good | 128, "no position yet")):
+    for flags, problem in ((good, ""), (good & ~16, "no position yet"), (good & ~32, "no height yet")):
         ekf = heard(EkfStatusReport(flags, 0.1, 0.1, 0.1, 0.1, 0.0), state=connected())
         px4 = heard(EstimatorStatus(0, flags, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 1.0, 1.0), state=connected())
         assert ekf.estimator.value.problem == px4.estimator.value.problem == problem
+    # PX4 says of every aircraft that stands still that its position is taken as constant, however well it is known.
+    assert heard(EkfStatusReport(good | 128, 0.1, 0.1, 0.1, 0.1, 0.0), state=connected()).estimator.value.problem
+    px4 = heard(EstimatorStatus(0, 1023, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 1.0, 1.0), state=connected())
+    assert px4.estimator.value.problem == ""
     torn = heard(EkfStatusReport(good, 0.1, 0.9, 0.1, 0.1, 0.0), state=connected())
     assert "contradict" in torn.estimator.value.problem
+
+
+def test_without_a_mission_none_is_counted():
+    some = heard(MissionCurrent(3, 230, 3, 1), state=connected())
+    assert heard(MissionCurrent(65535, 65535, 1, 2), state=some).mission.value.total == 0
+
+
+def test_a_photos_height_counts_from_home_and_not_from_the_ground_below():
+    """PX4 says a relative height of -1 m where it does not know the ground, and else the height above that."""
+    (lat, lon), home_amsl_mm = e7((1.0, 2.0, 3.0)), 63_500
+    taken = CameraImageCaptured(2000, 0, 1, lat, lon, home_amsl_mm + 21_500, -1000, (1, 0, 0, 0), 0, 1)
+    before = heard(GlobalPositionInt(1900, lat, lon, home_amsl_mm + 21_000, 21_000, 0, 0, 0, 0), state=connected())
+    (photo,) = heard(taken, state=before).photos
+    assert photo.position_enu_m == pytest.approx((1.0, 2.0, HOME[2] + 21.5), abs=0.02)
 
 
 def test_progress_keeps_the_item_that_was_reached():

@@ -53,6 +53,10 @@ class Toy:
         Times between which it neither hears nor says anything.
     drops_photo
         Photo, from 1, that is never reported.
+    clock_rate
+        How much faster its time goes than ours, as in a simulation that is sped up.
+    forgets_requests
+        After a reboot it sends heartbeats only, until it is asked for more.
     """
 
     home: tuple[int, int]
@@ -61,6 +65,8 @@ class Toy:
     refusals: dict[int, int] = field(default_factory=dict)
     silent: tuple[float, float] = (0.0, 0.0)
     drops_photo: int = 0
+    clock_rate: float = 1.0
+    forgets_requests: bool = False
     takes_off: bool = True
     disarms_itself: bool = True
     is_armed: bool = False
@@ -68,6 +74,7 @@ class Toy:
     fix_type: int = 6
     parameters: dict[str, float] = field(default_factory=lambda: {"CAM1_TYPE": 1.0, "MNT1_TYPE": 1.0})
     fences: list = field(default_factory=list)
+    rally: list = field(default_factory=list)
 
     def __post_init__(self):
         self.now_s = 0.0
@@ -78,6 +85,7 @@ class Toy:
         self.out: deque = deque()
         self.commands = []
         self.boot_s = 0.0
+        self.tells_all = True
         self.texts = []
 
     @property
@@ -123,7 +131,7 @@ class Toy:
         self.say(MissionAck(*self.to(), ACCEPTED, mission_type))
 
     def kept(self, mission_type):
-        return self.fences if mission_type == 1 else self.items
+        return (self.items, self.fences, self.rally)[mission_type]
 
     def to(self):
         return (GROUND.system, GROUND.component)
@@ -150,6 +158,9 @@ class Toy:
             case 246:
                 self.boot_s, self.mode = self.now_s, "STABILIZE"
                 self.silent = (self.now_s, self.now_s + 5.0)
+                self.tells_all = not self.forgets_requests
+            case 511:
+                self.tells_all = True
         return ACCEPTED
 
     def take_off(self):
@@ -191,11 +202,12 @@ class Toy:
             self.say(CameraFeedback(self.n_photos, 0, 0, self.n_photos, lat, lon, 0.0, up / 1000.0, 0.0, 0.0, 0.0))
 
     def report(self, every_second):
-        boot_ms = round(1000.0 * (self.now_s - self.boot_s)) + 1
+        boot_ms = round(1000.0 * self.clock_rate * (self.now_s - self.boot_s)) + 1
         lat, lon, up = self.place
-        self.say(GlobalPositionInt(boot_ms, lat, lon, 0, up, 0, 0, 0, 0))
-        self.say(Attitude(boot_ms, 0.0, 0.0, 0.0))
-        self.say(GimbalDeviceAttitudeStatus(0, 0, boot_ms, 44, (1.0, 0.0, 0.0, 0.0)))
+        if self.tells_all:
+            self.say(GlobalPositionInt(boot_ms, lat, lon, 0, up, 0, 0, 0, 0))
+            self.say(Attitude(boot_ms, 0.0, 0.0, 0.0))
+            self.say(GimbalDeviceAttitudeStatus(0, 0, boot_ms, 44, (1.0, 0.0, 0.0, 0.0)))
         self.say(ExtendedSysState(0, 2 if self.is_flying else 1))
         if every_second:
             mode = mode_numbers(self.autopilot)[self.mode]

@@ -51,7 +51,7 @@ SEGMENT_EPILOG = """Sets of photos are those of 'score segmentation'. --width sh
 above it change nothing.
 
 examples:
-  tradeoff segment -o tradeoff --seeds 5 --width 5280
+  tradeoff segment -o tradeoff --seeds 5 --width 5280 --sizes 800,1600,2400,5280
   tradeoff segment -o tradeoff --set made-curved --seeds 20 --sizes 800,1600 --detectors gradient,hough
 """
 
@@ -130,7 +130,7 @@ def _add_segment(kinds: Any) -> None:
     add_set_arguments(parser)
     add_parameter_arguments(parser)
     varied = parser.add_argument_group("what varies (lists with commas)").add_argument
-    varied("--sizes", type=_counts, default="400,800,1600,2400,3200", metavar="LIST", help="default: %(default)s")
+    varied("--sizes", type=_counts, default="400,800,1200,1600", metavar="LIST", help="default: %(default)s")
     varied("--samples", type=_wholes, default="32,128,512,0", metavar="LIST", help="0: all (default: %(default)s)")
     varied("--detectors", type=_words, default=(), metavar="LIST", help="such as gradient,hough,lsd (default: none)")
 

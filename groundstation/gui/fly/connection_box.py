@@ -7,6 +7,7 @@ from dataclasses import replace
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
+from groundstation.gui.fly.signing_box import SigningBox
 from groundstation.gui.inputs import NumberBox
 from groundstation.services.live_choice import USUAL_ADDRESS, ConnectionChoice, LinkKind
 from missions.mavlink.autopilots import Autopilot
@@ -21,11 +22,14 @@ class ConnectionBox(QWidget):
     -------
     valueChanged(ConnectionChoice)
     connectRequested(), disconnectRequested()
+    keyActionRequested(KeyAction, str)
+        Something is to be done with the signing key, for the vehicle at a url.
     """
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
     connectRequested = Signal()  # noqa: N815
     disconnectRequested = Signal()  # noqa: N815
+    keyActionRequested = Signal(object, str)  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -33,6 +37,7 @@ class ConnectionBox(QWidget):
         self._addresses = dict(USUAL_ADDRESS)
         self._is_connected = False
         self.kind, self.autopilot, self.address = QComboBox(), QComboBox(), QLineEdit()
+        self.signing = SigningBox()
         self.speed_up = NumberBox(1.0, MAX_SPEED_UP, 1.0, " x", 0)
         self.button = QPushButton()
         self._says = QLabel()
@@ -53,6 +58,7 @@ class ConnectionBox(QWidget):
         self._form.addRow(self.tr("Autopilot"), self.autopilot)
         self._form.addRow(self.tr("Speed-up"), self.speed_up)
         self._form.addRow(self.tr("Address"), self.address)
+        self._form.addRow(self.tr("Link"), self.signing)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addLayout(self._form)
@@ -62,6 +68,8 @@ class ConnectionBox(QWidget):
         self.autopilot.currentIndexChanged.connect(self._edited)
         self.speed_up.valueChanged.connect(self._edited)
         self.address.editingFinished.connect(self._edited)
+        self.signing.valueChanged.connect(self._signed)
+        self.signing.keyActionRequested.connect(lambda action: self.keyActionRequested.emit(action, self._value.url))
         self.button.clicked.connect(self._pressed)
         self._show()
 
@@ -75,6 +83,10 @@ class ConnectionBox(QWidget):
         if value.address:
             self._addresses[value.kind] = value.address
         self._show()
+
+    def set_signed(self, url: str, is_signed: bool) -> None:
+        """The vehicle at a url signs from now on, or no longer: so does the link to it, as if it was chosen."""
+        self._take(self._value.with_signed(url, is_signed=is_signed))
 
     def set_connected(self, *, is_connected: bool, says: str) -> None:
         """Show that a connection is open, so that only closing it is offered; `says` stands below."""
@@ -95,12 +107,14 @@ class ConnectionBox(QWidget):
         self.speed_up.setValue(value.speed_up)
         self.address.setText(value.address or self._addresses[value.kind])
         del blockers
+        self.signing.setValue(value.is_signed)
         is_simulation = value.kind is LinkKind.SIMULATION
         for box, is_shown in (
             (self.kind, True),
             (self.autopilot, is_simulation),
             (self.speed_up, is_simulation),
             (self.address, not is_simulation),
+            (self.signing, not is_simulation),
         ):
             self._form.setRowVisible(box, is_shown and not self._is_connected)
         self._says.setVisible(bool(self._says.text()))
@@ -118,6 +132,9 @@ class ConnectionBox(QWidget):
         self._addresses[kind] = address or self._addresses[kind]
         autopilot = Autopilot(self.autopilot.currentData())
         self._take(replace(self._value, address=address, autopilot=autopilot, speed_up=self.speed_up.value()))
+
+    def _signed(self, is_signed: bool) -> None:
+        self._take(self._value.with_signed(self._value.url, is_signed=is_signed))
 
     def _take(self, value: ConnectionChoice) -> None:
         if value != self._value:

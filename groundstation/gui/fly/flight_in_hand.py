@@ -20,6 +20,8 @@ class FlightInHand:
     ----------
     track_enu_m
         Where the aircraft was, ten times a second at most.
+    link_problem
+        Why both ends of an open link do not understand each other; empty where nothing shows it.
     photos
         By the view that they are of.
     notes
@@ -29,6 +31,7 @@ class FlightInHand:
     sortie: LiveSortie
     view: LiveView | None = None
     link: LinkState = LinkState.OPENING
+    link_problem: str = ""
     track_enu_m: list[Vec3] = field(default_factory=list)
     photos: dict[str, PhotoCounted] = field(default_factory=dict)
     counted: PhotoCounted | None = None

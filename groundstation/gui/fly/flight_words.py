@@ -23,7 +23,8 @@ class FlightWords(QObject):
         if not desk.is_connected:
             return ""
         if desk.choice.url:
-            return desk.choice.url
+            is_signed = desk.choice.is_signed
+            return self.tr("{0}, signed").format(desk.choice.url) if is_signed else desk.choice.url
         return self.tr("Simulation, {0:g} times as fast").format(desk.choice.speed_up)
 
     def where_it_stands(self) -> str:
@@ -40,6 +41,8 @@ class FlightWords(QObject):
         if in_hand.link is LinkState.OPENING or in_hand.view is None:
             return self.tr("The link is being opened ...")
         if in_hand.link is LinkState.SILENT:
+            if in_hand.link_problem:
+                return str(self._workspace.words(in_hand.link_problem))
             return self.tr("The link is open; no vehicle was heard yet.")
         return self._phase_text(in_hand.view)
 

@@ -7,22 +7,27 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.fly.after_flight import AfterFlight
 from groundstation.gui.fly.flight_in_hand import FlightInHand
 from groundstation.gui.fly.item_limit import ItemLimit
+from groundstation.gui.fly.signing_desk import SigningDesk
 from groundstation.gui.fly.simulation_desk import SimulationDesk
 from groundstation.gui.workspace import Workspace
 from groundstation.services.jobs import JobContext
-from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice, write_choice
-from groundstation.services.live_connection import Connection, Simulation, VehicleAt
+from groundstation.services.kept import write_kept
+from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice
+from groundstation.services.live_connection import Connection, VehicleAt
 from groundstation.services.live_events import (
     Answered,
     FlightChanged,
     FlightEnded,
     LinkChanged,
+    LinkProblem,
     LinkState,
     LiveEvent,
     LiveView,
@@ -36,8 +41,15 @@ from groundstation.services.live_flight import LiveFlight
 from groundstation.services.live_limit import TooLong
 from groundstation.services.live_readouts import BEFORE_TAKE_OFF
 from groundstation.services.live_record import flights_folder
-from groundstation.services.live_settings import USUAL, FlightSettings, SetParameter, parameters_to_set
+from groundstation.services.live_settings import (
+    FlightSettings,
+    SetParameter,
+    flight_settings_path,
+    parameters_to_set,
+    read_flight_settings,
+)
 from groundstation.services.live_sortie import LiveSortie, prepare_sortie
+from groundstation.services.signing import link_signer
 from planning.checks.case import Case
 from planning.errors import InputError
 from planning.findings import Severity
@@ -79,11 +91,11 @@ class FlyDesk(QObject):
         self._case: Case | None = None
         self._preparing_id = 0
         self.choice = read_choice(choice_path())
-        self.settings: FlightSettings = USUAL
+        self.settings = read_flight_settings(flight_settings_path())
         self.simulation, self.limit = SimulationDesk(workspace, self), ItemLimit(workspace, self)
         self.number = 1
         self.in_hand: FlightInHand | None = None
-        self.after = AfterFlight(workspace, self)
+        self.after, self.signing = AfterFlight(workspace, self), SigningDesk(workspace, self)
         self._published.connect(self._take)
 
     @classmethod
@@ -125,14 +137,12 @@ class FlyDesk(QObject):
     def set_choice(self, choice: ConnectionChoice) -> None:
         """Connect in another way the next time; kept for the next start of the program too."""
         self.choice = choice
-        try:
-            write_choice(choice_path(), choice)
-        except InputError as error:
-            self._say(Severity.WARNING, str(error))
+        self._keep(choice_path(), choice)
 
     def set_settings(self, settings: FlightSettings) -> None:
-        """The pilot decided otherwise."""
+        """The pilot decided otherwise; kept for the next start of the program too."""
         self.settings = settings
+        self._keep(flight_settings_path(), settings)
         if self._flight is not None:
             self._flight.set_settings(settings)
 
@@ -149,7 +159,7 @@ class FlyDesk(QObject):
         if in_hand is None or in_hand.view is None or not (is_real and self.settings.sets_parameters):
             return ()
         autopilot = in_hand.view.state.autopilot
-        return () if autopilot is None else parameters_to_set(autopilot, in_hand.sortie.orders.mission)
+        return () if autopilot is None else parameters_to_set(autopilot, in_hand.sortie.orders)
 
     def set_sortie(self, number: int) -> None:
         """Fly another sortie of the plan, from 1; connected, it becomes the next one."""
@@ -178,6 +188,12 @@ class FlyDesk(QObject):
         self._flight_id = 0
         if flight is not None:
             flight.close(CLOSE_S)
+
+    def _keep(self, path: Path, record: object) -> None:
+        try:
+            write_kept(path, record)
+        except InputError as error:
+            self._say(Severity.WARNING, str(error))
 
     def _prepare(self, then: Callable[[LiveSortie], None]) -> None:
         plan, site_model, number, known = self.plan, self._workspace.document.site, self.number, self._case
@@ -209,11 +225,12 @@ class FlyDesk(QObject):
         if self._flight is not None:
             return
         plan = sortie.case.plan
+        charge = self.after.charge(plan, sortie.orders.number)
         self._flight_id = flight_id = next(self._ids)
         self.in_hand = FlightInHand(sortie)
         self._flight = LiveFlight(
             sortie,
-            self._connection(sortie),
+            self._connection(sortie, charge),
             lambda event: self._published.emit(flight_id, event),
             flights_folder(self._workspace.session.folder),
             flown=self.after.flown(plan),
@@ -221,24 +238,15 @@ class FlyDesk(QObject):
         )
         self._flight.start()
         self._note(Severity.NOTE, self.tr("connecting"))
-        charge = self.after.charge(plan, sortie.orders.number)
         if charge < 1.0 and self.choice.kind is LinkKind.SIMULATION:
             text = self.tr("simulated battery: {0:.0%}, as the flight before left it").format(charge)
             self._note(Severity.NOTE, text)
 
-    def _connection(self, sortie: LiveSortie) -> Connection:
-        choice, case = self.choice, sortie.case
-        if choice.kind is not LinkKind.SIMULATION:
-            return VehicleAt(choice.url)
-        return Simulation(
-            case.plan,
-            case.site_model,
-            autopilot=choice.autopilot,
-            speed_up=choice.speed_up,
-            conditions=self.simulation.conditions,
-            wishes=dict(self.simulation.wishes),
-            charge=self.after.charge(case.plan, sortie.orders.number),
-        )
+    def _connection(self, sortie: LiveSortie, charge: float) -> Connection:
+        choice = self.choice
+        if choice.kind is LinkKind.SIMULATION:
+            return self.simulation.connection(sortie, choice, charge)
+        return VehicleAt(choice.url, signer=cache(link_signer) if choice.is_signed else None)
 
     # Events
 
@@ -262,6 +270,11 @@ class FlyDesk(QObject):
                 self._note(event.warning.severity, self._words(event.warning.text))
             case WarningCleared():
                 pass
+            case LinkProblem():
+                in_hand.link_problem = event.text
+                self._note(Severity.ERROR, self._words(event.text))
+                self._say(Severity.ERROR, event.text)
+                self.stateChanged.emit()
             case LogProblem():
                 self._note(Severity.WARNING, self._words(event.text))
                 self._say(Severity.WARNING, event.text)

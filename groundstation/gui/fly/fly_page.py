@@ -70,6 +70,7 @@ class FlyPage(QObject):
         """Draw the flight into the shared view."""
         self.pictures.show(self._pictured())
         self.desk.simulation.look(self.desk.plan, self.desk.number)
+        self.desk.signing.look(self.desk.choice)
 
     def hidden(self) -> None:
         """Give the shared view back; the flight goes on."""
@@ -123,6 +124,8 @@ class FlyPage(QObject):
     def _connect(self) -> None:
         desk, workspace = self.desk, self._workspace
         self.connection.valueChanged.connect(desk.set_choice)
+        self.connection.valueChanged.connect(desk.signing.look)
+        desk.signing.serve(self.connection, self._stage.window())
         self.connection.connectRequested.connect(self._connect_vehicle)
         self.connection.disconnectRequested.connect(self._disconnect)
         self.sortie.activated.connect(lambda index: desk.set_sortie(index + 1))
@@ -256,7 +259,8 @@ class FlyPage(QObject):
         """What can be done, and where things stand, in words."""
         desk = self.desk
         self.connection.set_connected(is_connected=desk.is_connected, says=self._words.connected_to())
-        can_connect = desk.plan is not None and bool(desk.plan.sorties) and not desk.is_preparing
+        is_busy = desk.is_preparing or desk.signing.is_busy
+        can_connect = desk.plan is not None and bool(desk.plan.sorties) and not is_busy
         self.connection.set_possible(is_possible=can_connect)
         self.sortie.setEnabled(desk.plan is not None and not desk.is_in_flight and not desk.is_preparing)
         if not desk.is_connected:

@@ -9,7 +9,12 @@ from groundstation.gui.own_words import own_words
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import PreflightCheck, Verdict
 
-MARKS = {Verdict.OK: ("\u2713", "ok"), Verdict.WAIT: ("\u2026", "warning"), Verdict.BAD: ("\u2717", "error")}
+MARKS = {
+    Verdict.OK: ("\u2713", "ok"),
+    Verdict.WAIT: ("\u2026", "warning"),
+    Verdict.WARN: ("!", "warning"),
+    Verdict.BAD: ("\u2717", "error"),
+}
 """Sign and role of each verdict: none is told by colour alone."""
 
 
@@ -34,6 +39,8 @@ class PreflightList(QWidget):
         """Show checks; `note` stands above them."""
         self._note.setText(note)
         self._note.setVisible(bool(note))
+        # What is not well comes first: the list is longer than a small screen.
+        checks = tuple(sorted(checks, key=lambda check: check.verdict is Verdict.OK))
         if checks == self._checks:
             return
         self._checks = checks
@@ -89,4 +96,8 @@ class PreflightList(QWidget):
             "wind": self.tr("Wind"),
             "mission": self.tr("Mission on board"),
             "geofence": self.tr("Geofence on board"),
+            "rally": self.tr("Rally points on board"),
+            "link-loss": self.tr("Link lost"),
+            "return": self.tr("Return"),
+            "fence-action": self.tr("At the geofence"),
         }

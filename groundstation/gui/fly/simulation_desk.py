@@ -7,8 +7,9 @@ from PySide6.QtCore import QObject, Signal
 from groundstation.gui.workspace import Workspace
 from groundstation.services.effects import EffectChoice
 from groundstation.services.jobs import JobContext
-from groundstation.services.live_connection import CALM
-from groundstation.services.live_sortie import simulation_effects
+from groundstation.services.live_choice import ConnectionChoice
+from groundstation.services.live_connection import CALM, Simulation
+from groundstation.services.live_sortie import LiveSortie, simulation_effects
 from missions.simulator.scene import Conditions
 from planning.effects import Wish
 from planning.plan import Plan
@@ -31,6 +32,18 @@ class SimulationDesk(QObject):
         self._looking_id = 0
         self.conditions: Conditions = CALM
         self.wishes: dict[str, Wish] = {}
+
+    def connection(self, sortie: LiveSortie, choice: ConnectionChoice, charge: float) -> Simulation:
+        """The simulation of a sortie, as it was chosen; `charge` of the battery that it begins with, 1 full."""
+        return Simulation(
+            sortie.case.plan,
+            sortie.case.site_model,
+            autopilot=choice.autopilot,
+            speed_up=choice.speed_up,
+            conditions=self.conditions,
+            wishes=dict(self.wishes),
+            charge=charge,
+        )
 
     def choose(self, conditions: Conditions, wishes: dict[str, Wish], plan: Plan | None, number: int) -> None:
         """Simulate this sortie in other conditions the next time."""

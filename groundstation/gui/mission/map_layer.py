@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFont, QImage, QPainter
 
-from groundstation.gui.mission.map_paint import paint_home, paint_plan, paint_site
+from groundstation.gui.mission.map_paint import paint_landings, paint_plan, paint_site
 from groundstation.gui.mission.viewport import Viewport
 from groundstation.gui.theme import Colours
 from groundstation.services.map_shapes import PlanShapes, SiteShapes
@@ -59,7 +59,7 @@ class MapLayer:
         paint_site(painter, wide, site, found)
         if plan is not None:
             paint_plan(painter, wide, plan)
-        paint_home(painter, wide.screen(site.home[None])[0], found)
+        paint_landings(painter, wide.screen(site.landings()), found)
         painter.end()
         self._picture, self._made_for = picture, wide
 

@@ -31,7 +31,7 @@ MAX_TILES = 200
 MAX_OVERZOOM = 6
 """Levels above that a missing tile is taken from; a point then has become 64 pixels."""
 
-BUILDING, OBSTACLE, PAPER = QColor("#8d96a0"), QColor("#b5793f"), QColor(255, 255, 255, 220)
+BUILDING, OBSTACLE, RALLY, PAPER = (QColor("#8d96a0"), QColor("#b5793f"), QColor("#7a4fa3"), QColor(255, 255, 255, 220))
 
 
 def tile_level(viewport: Viewport, min_zoom: int, max_zoom: int) -> int:
@@ -216,14 +216,17 @@ def paint_ring(painter: QPainter, centre: NDArray[np.float64], text: str, found:
         _label(painter, QPointF(at.x(), at.y() - 26), text, found)
 
 
-def paint_home(painter: QPainter, at: NDArray[np.float64], found: Colours) -> None:
-    """Where flights begin and end: a disc with an H; `at` in pixels, shape (2,)."""
-    centre = QPointF(*at)
-    painter.setPen(QPen(PAPER, 2))
-    painter.setBrush(QColor(found.ok))
-    painter.drawEllipse(centre, 11, 11)
-    painter.setPen(QColor(found.base))
-    painter.drawText(QRectF(at[0] - 11, at[1] - 11, 22, 22), Qt.AlignmentFlag.AlignCenter, "H")
+def paint_landings(painter: QPainter, at: NDArray[np.float64], found: Colours) -> None:
+    """Where flights begin and may end: a disc with an H for home, the first, with an R for each rally point.
+
+    `at` is in pixels, shape (1 + n, 2).
+    """
+    for number, (x, y) in enumerate(at):
+        painter.setPen(QPen(PAPER, 2))
+        painter.setBrush(RALLY if number else QColor(found.ok))
+        painter.drawEllipse(QPointF(x, y), 11, 11)
+        painter.setPen(PAPER if number else QColor(found.base))
+        painter.drawText(QRectF(x - 11, y - 11, 22, 22), Qt.AlignmentFlag.AlignCenter, "R" if number else "H")
 
 
 def _label(painter: QPainter, centre: QPointF, text: str, found: Colours) -> None:

@@ -26,8 +26,10 @@ def find_item(
             return Item(ItemKind.VIEWPOINT, plan.viewpoint_ids[nearest])
     if site is None:
         return None
-    if float(np.linalg.norm(viewport.screen(site.home[None])[0] - at_px)) <= REACH_PX:
-        return Item(ItemKind.HOME)
+    landings = np.linalg.norm(viewport.screen(site.landings()) - at_px, axis=1)
+    nearest = int(np.argmin(landings))
+    if landings[nearest] <= REACH_PX:
+        return site.rally[nearest - 1][0] if nearest else Item(ItemKind.HOME)
     for item, panels in site.facades:
         corners = viewport.screen(panels.reshape(-1, 2)).reshape(-1, 4, 2)
         if _distance_px(corners, np.roll(corners, -1, axis=1), at_px) <= LINE_REACH_PX:
@@ -49,6 +51,8 @@ def place_of(item: Item, site: SiteShapes | None, plan: PlanShapes | None) -> ND
         return site.home[None]
     if item.kind is ItemKind.AIRSPACE:
         return site.airspace.rings[0]
+    if item.kind is ItemKind.RALLY:
+        return next((place[None] for point, place in site.rally if point == item), None)
     areas = (*site.no_fly, *site.solids)
     found = next((area for area in areas if area.item == item), None)
     if found is not None and found.rings:

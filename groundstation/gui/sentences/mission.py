@@ -7,7 +7,9 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP
 SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "the plan has no {0}, so nothing can be placed on the globe; add --site SITE"),
     QT_TRANSLATE_NOOP("Sentences", "the plan was made for the {0} {1}, but the site says {2}; plan again"),
-    QT_TRANSLATE_NOOP("Sentences", "the plan has no sorties, so there is nothing to export; plan the route first"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "the plan has no sorties: nothing says which way to fly; plan again, locked views are kept"
+    ),
     QT_TRANSLATE_NOOP(
         "Sentences",
         "viewpoint '{0}' is in sortie {1} and again in sortie {2}; expected each viewpoint once",
@@ -228,5 +230,9 @@ SENTENCES = (
         "Sentences",
         "the return height is below the highest point of the site: a returning aircraft may hit it; expected {0} m "
         "or more above take-off, got {1} m, and {2} m keep {3} m from everything",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the file has {0} rally points, which belong to a site and not to a plan; mark them there",
     ),
 )

@@ -13,16 +13,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "photo looks elsewhere"),
     QT_TRANSLATE_NOOP("Sentences", "the flight ended before"),
     QT_TRANSLATE_NOOP("Sentences", "the record does not say where the aircraft was"),
-    QT_TRANSLATE_NOOP("Sentences", "the flight was at site '{0}', this is '{1}'; take its own site file"),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "the site file has changed since the flight; distances and coverage are those of the site as it is now",
-    ),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "the flight was flown with another plan, or this one has changed since; views match as far as they fit",
-    ),
-    QT_TRANSLATE_NOOP("Sentences", "the flight belongs to this site and plan"),
     QT_TRANSLATE_NOOP("Sentences", "there is no record of any flight"),
     QT_TRANSLATE_NOOP(
         "Sentences",

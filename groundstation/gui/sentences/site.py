@@ -20,6 +20,9 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: there is no folder '{0}'; make it first"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: this is a folder; name a file in it"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: the file is write-protected; name another one"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "cannot be written: the folder '{0}' is write-protected; name a file in another one"
+    ),
     QT_TRANSLATE_NOOP("Sentences", "would replace {0}, which it is made from; name another file"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "expected a mesh file ({0}), got '{1}'"),
@@ -91,4 +94,15 @@ SENTENCES = (
         "facade '{0}': there is no free airspace {1} to {2} m in front of its panels ({3}) from which they are seen; "
         "turn it to the other side, widen the airspace, or remove it",
     ),
+    QT_TRANSLATE_NOOP("Sentences", "rally point"),
+    QT_TRANSLATE_NOOP("Sentences", "aircraft can land at the rally points ({0})"),
+    QT_TRANSLATE_NOOP("Sentences", "rally point '{0}' {1}"),
+    QT_TRANSLATE_NOOP("Sentences", "is not below or inside the airspace; move it, or widen the airspace"),
+    QT_TRANSLATE_NOOP("Sentences", "lies inside a building or obstacle; move it outside"),
+    QT_TRANSLATE_NOOP("Sentences", "lies in a no-fly volume, or below one; move it outside"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "has a landing column that comes within {0} m of the building or an obstacle, {1} m are required; move it away",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "rally point '{0}' lies at {1} m, below the ground at {2} m; put it on the ground"),
 )

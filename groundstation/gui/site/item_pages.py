@@ -1,4 +1,4 @@
-"""Property pages of what a site may have any number of: facades, panels, obstacles and no-fly zones."""
+"""Property pages of what a site may have any number of: facades, panels, obstacles, no-fly zones, rally points."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from PySide6.QtWidgets import QLabel, QPushButton, QWidget
 from groundstation.gui.site.pages import Page
 from groundstation.gui.site.polygon_box import PolygonBox
 from groundstation.gui.site.site_tree_model import size_text
-from groundstation.gui.site.value_boxes import ExtentBox, NameBox, coordinate_box, muted
+from groundstation.gui.site.value_boxes import ExtentBox, NameBox, PointBox, coordinate_box, muted
 from groundstation.services.document import Item
 from groundstation.services.item_edits import remove_item, rename_item
 from groundstation.services.panel_edits import flip_facade
-from groundstation.services.site_edits import set_box, set_zone
+from groundstation.services.site_edits import move_rally_point, set_box, set_zone
 from groundstation.services.units import UnitSystem, area_unit, length_unit
 from planning.coverage.sections import panel_frames
+from planning.frames import Vec3
 from planning.site import Facade, SiteModel
 from planning.site_import.polygons import quad_areas
 
@@ -204,6 +205,46 @@ class NoFlyPage(ItemPage):
                 floor_m=self._floor.value(),
                 ceiling_m=self._ceiling.value(),
             )
+            self.edited.emit(self.tr("Change {0}").format(self._item.id), edit, self._item)
+
+
+class RallyPage(ItemPage):
+    """A rally point: where the aircraft may land instead of home."""
+
+    def __init__(self, units: UnitSystem, parent: QWidget | None = None) -> None:
+        super().__init__(self.tr("Rally point"), units, parent)
+        self._point = PointBox(units)
+        ground = QPushButton(self.tr("Put it on the ground"))
+        self.add(self._point, title=self.tr("Place"))
+        self.add(ground, muted(self.tr("An aircraft that returns lands at the nearest of home and the rally points.")))
+        self.add_end()
+        self._point.valueChanged.connect(self._move)
+        ground.clicked.connect(self._put_down)
+
+    def show_item(self, model: SiteModel, item: Item) -> None:
+        """Show a rally point."""
+        super().show_item(model, item)
+        found = next(point for point in model.site.rally_points if point.id == item.id)
+        self._point.setValue(found.position_enu_m)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        super().set_units(units)
+        self._point.set_units(units)
+
+    def point_box(self) -> PointBox:
+        """Editor of the place."""
+        return self._point
+
+    def _move(self, place: Vec3) -> None:
+        self._set(place, on_ground=False)
+
+    def _put_down(self) -> None:
+        self._set(self._point.value(), on_ground=True)
+
+    def _set(self, place: Vec3, *, on_ground: bool) -> None:
+        if self._item is not None:
+            edit = partial(move_rally_point, point_id=self._item.id, position_enu_m=place, on_ground=on_ground)
             self.edited.emit(self.tr("Change {0}").format(self._item.id), edit, self._item)
 
 

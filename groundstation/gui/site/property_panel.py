@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from groundstation.gui.site.item_pages import FacadePage, ItemPage, NoFlyPage, ObstaclePage, PanelPage
+from groundstation.gui.site.item_pages import FacadePage, ItemPage, NoFlyPage, ObstaclePage, PanelPage, RallyPage
 from groundstation.gui.site.pages import SITE, AirspacePage, Edit, HomePage, Page, SitePage
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.workspace import Workspace
@@ -21,6 +21,7 @@ PAGES: dict[ItemKind, Callable[[UnitSystem], Page]] = {
     ItemKind.NO_FLY: NoFlyPage,
     ItemKind.AIRSPACE: AirspacePage,
     ItemKind.HOME: HomePage,
+    ItemKind.RALLY: RallyPage,
 }
 
 

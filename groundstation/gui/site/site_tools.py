@@ -15,7 +15,14 @@ from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.stage import Stage, StagePage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Item, ItemKind
-from groundstation.services.site_edits import add_box, add_mesh_obstacle, add_zone, move_home, set_airspace
+from groundstation.services.site_edits import (
+    add_box,
+    add_mesh_obstacle,
+    add_rally_point,
+    add_zone,
+    move_home,
+    set_airspace,
+)
 from planning.findings import Severity
 from planning.mesh import MESH_SUFFIXES, TriangleMesh, read_mesh
 from planning.site import SiteModel
@@ -33,6 +40,7 @@ class SiteTool(Enum):
     BOX = auto()
     HOME = auto()
     AIRSPACE = auto()
+    RALLY = auto()
     GRID = auto()
 
 
@@ -70,13 +78,18 @@ class SiteTools(QWidget):
         mesh = QPushButton(self.tr("Obstacle mesh..."))
         mesh.setToolTip(self.tr("Add an obstacle from a mesh file in the site's coordinates (a crane, a tree)"))
         mesh.clicked.connect(self._choose_mesh)
-        layout.addWidget(mesh, 2, 1)
+        layout.addWidget(mesh, len(self._buttons) // 2, len(self._buttons) % 2)
         stage.with_scene(self._connect)
 
     def _texts(self) -> tuple[tuple[SiteTool, str, str], ...]:
         return (
             (SiteTool.GRID, self.tr("Panel grid"), self.tr("Equal panels in a rectangle on a wall")),
             (SiteTool.HOME, self.tr("Home"), self.tr("Click where the aircraft takes off and lands")),
+            (
+                SiteTool.RALLY,
+                self.tr("Rally point"),
+                self.tr("Click where the aircraft may land instead of home when it returns"),
+            ),
             (SiteTool.NO_FLY, self.tr("No-fly zone"), self.tr("Draw a zone that must not be entered on the ground")),
             (SiteTool.BOX, self.tr("Obstacle box"), self.tr("Draw a box: two corners on the ground, then the height")),
             (SiteTool.AIRSPACE, self.tr("Airspace"), self.tr("Draw the box in which the aircraft must stay")),
@@ -137,7 +150,7 @@ class SiteTools(QWidget):
 
     def _made(self, tool: SiteTool, n_rows: int, n_columns: int) -> Tool:
         from groundstation.gui.view3d.drawing_tools import BoxTool, PolygonTool, RectangleTool
-        from groundstation.gui.view3d.tools import HomeTool
+        from groundstation.gui.view3d.tools import HomeTool, RallyTool
 
         match tool:
             case SiteTool.NO_FLY:
@@ -146,6 +159,8 @@ class SiteTools(QWidget):
                 return BoxTool()
             case SiteTool.HOME:
                 return HomeTool()
+            case SiteTool.RALLY:
+                return RallyTool()
             case SiteTool.GRID:
                 self._grid_tool = RectangleTool(n_rows, n_columns)
                 return self._grid_tool
@@ -172,6 +187,7 @@ class SiteTools(QWidget):
             SiteTool.BOX: self._add_box,
             SiteTool.AIRSPACE: self._set_airspace,
             SiteTool.HOME: self._move_home,
+            SiteTool.RALLY: self._add_rally_point,
             SiteTool.GRID: self._take_rectangle,
         }[tool]
         take(result)
@@ -193,6 +209,9 @@ class SiteTools(QWidget):
 
     def _move_home(self, picked: PickedHome) -> None:
         self._apply(self.tr("Move home"), lambda model: move_home(model, picked.point_enu_m), Item(ItemKind.HOME))
+
+    def _add_rally_point(self, picked: PickedHome) -> None:
+        self._add(self.tr("Mark rally point"), lambda model: add_rally_point(model, picked.point_enu_m), ItemKind.RALLY)
 
     def _take_rectangle(self, picked: PickedRectangle) -> None:
         self.gridPicked.emit((picked.lower_left_enu_m, picked.lower_right_enu_m, picked.upper_left_enu_m))

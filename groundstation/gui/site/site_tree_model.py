@@ -30,7 +30,7 @@ class _Node:
 
 
 class SiteTreeModel(QAbstractItemModel):
-    """Site, facades with their panels, obstacles, no-fly zones, airspace and home.
+    """Site, facades with their panels, obstacles, no-fly zones, rally points, airspace and home.
 
     The first row is the site itself; it stands for `ItemKind.BUILDING`. Rows of groups stand for nothing.
     """
@@ -132,8 +132,12 @@ class SiteTreeModel(QAbstractItemModel):
         for zone in site.airspace.no_fly:
             size = [*np.ptp(np.array(zone.polygon_enu_m), axis=0).tolist(), zone.ceiling_m - zone.floor_m]
             add(Item(ItemKind.NO_FLY, zone.id), zone.id, size_text(size, units), group)
+        height = length_unit(units)
+        group = add(None, self.tr("Rally points"), str(len(site.rally_points)))
+        for point in site.rally_points:
+            add(Item(ItemKind.RALLY, point.id), point.id, height.text(point.position_enu_m[2]), group)
         add(Item(ItemKind.AIRSPACE), self.tr("Airspace"), size_text(_airspace_size(site), units))
-        add(Item(ItemKind.HOME), self.tr("Home"), length_unit(units).text(site.home_enu_m[2]))
+        add(Item(ItemKind.HOME), self.tr("Home"), height.text(site.home_enu_m[2]))
 
 
 def _airspace_size(site: Site) -> list[float]:

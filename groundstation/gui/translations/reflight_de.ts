@@ -750,6 +750,10 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>Adresse</translation>
     </message>
     <message>
+        <source>Link</source>
+        <translation>Verbindung</translation>
+    </message>
+    <message>
         <source>Disconnect</source>
         <translation>Trennen</translation>
     </message>
@@ -1222,6 +1226,10 @@ Blickrichtung: {2}</translation>
 </context>
 <context>
     <name>FlightWords</name>
+    <message>
+        <source>{0}, signed</source>
+        <translation>{0}, signiert</translation>
+    </message>
     <message>
         <source>Simulation, {0:g} times as fast</source>
         <translation>Simulation, {0:g}-mal so schnell</translation>
@@ -2407,6 +2415,33 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>PassphraseDialog</name>
+    <message>
+        <source>Set the signing passphrase</source>
+        <translation>Passphrase für die Signatur setzen</translation>
+    </message>
+    <message>
+        <source>The key is made of the passphrase, as other ground stations make it: the same passphrase is the same key there. It is kept for you alone on this computer, never in a project, and replaces the one before.</source>
+        <translation>Der Schlüssel wird aus der Passphrase gemacht, wie andere Bodenstationen es tun: Dieselbe Passphrase ist dort derselbe Schlüssel. Er liegt nur für Sie auf diesem Rechner, nie in einem Projekt, und ersetzt den bisherigen.</translation>
+    </message>
+    <message>
+        <source>Passphrase</source>
+        <translation>Passphrase</translation>
+    </message>
+    <message>
+        <source>Once more</source>
+        <translation>Noch einmal</translation>
+    </message>
+    <message>
+        <source>It needs {0} characters or more: short ones are guessed.</source>
+        <translation>Sie braucht mindestens {0} Zeichen: kurze werden erraten.</translation>
+    </message>
+    <message>
+        <source>The two are not the same yet.</source>
+        <translation>Beide stimmen noch nicht überein.</translation>
+    </message>
+</context>
+<context>
     <name>PhotoOverlay</name>
     <message>
         <source>horizon</source>
@@ -2979,6 +3014,22 @@ Blickrichtung: {3}</translation>
         <source>Geofence on board</source>
         <translation>Geofence an Bord</translation>
     </message>
+    <message>
+        <source>Rally points on board</source>
+        <translation>Rally-Punkte an Bord</translation>
+    </message>
+    <message>
+        <source>Link lost</source>
+        <translation>Verbindung verloren</translation>
+    </message>
+    <message>
+        <source>Return</source>
+        <translation>Heimkehr</translation>
+    </message>
+    <message>
+        <source>At the geofence</source>
+        <translation>Am Geofence</translation>
+    </message>
 </context>
 <context>
     <name>ProfileChart</name>
@@ -3113,6 +3164,29 @@ Take it over?</source>
     <message>
         <source>Unsaved work</source>
         <translation>Ungesicherte Arbeit</translation>
+    </message>
+</context>
+<context>
+    <name>RallyPage</name>
+    <message>
+        <source>Rally point</source>
+        <translation>Rally-Punkt</translation>
+    </message>
+    <message>
+        <source>Put it on the ground</source>
+        <translation>Auf den Boden setzen</translation>
+    </message>
+    <message>
+        <source>Place</source>
+        <translation>Ort</translation>
+    </message>
+    <message>
+        <source>An aircraft that returns lands at the nearest of home and the rally points.</source>
+        <translation>Ein Fluggerät, das zurückkehrt, landet am nächsten von Startplatz und Rally-Punkten.</translation>
+    </message>
+    <message>
+        <source>Change {0}</source>
+        <translation>{0} ändern</translation>
     </message>
 </context>
 <context>
@@ -3898,8 +3972,8 @@ Take it over?</source>
         <translation>der Plan wurde für {0} {1} gemacht, der Standort sagt aber {2}; neu planen</translation>
     </message>
     <message>
-        <source>the plan has no sorties, so there is nothing to export; plan the route first</source>
-        <translation>der Plan hat keine Einsätze, also gibt es nichts zu exportieren; zuerst die Route planen</translation>
+        <source>the plan has no sorties: nothing says which way to fly; plan again, locked views are kept</source>
+        <translation>Der Plan hat keine Einsätze: Nichts sagt, auf welchem Weg geflogen wird; neu planen, gesperrte Ansichten bleiben</translation>
     </message>
     <message>
         <source>viewpoint &apos;{0}&apos; is in sortie {1} and again in sortie {2}; expected each viewpoint once</source>
@@ -4348,6 +4422,10 @@ Take it over?</source>
     <message>
         <source>the return height is below the highest point of the site: a returning aircraft may hit it; expected {0} m or more above take-off, got {1} m, and {2} m keep {3} m from everything</source>
         <translation>die Rückkehrhöhe liegt unter dem höchsten Punkt des Standorts: Ein heimkehrendes Fluggerät kann dagegen fliegen; erwartet wurden mindestens {0} m über Start, gefunden: {1} m, und {2} m halten zu allem {3} m Abstand</translation>
+    </message>
+    <message>
+        <source>the file has {0} rally points, which belong to a site and not to a plan; mark them there</source>
+        <translation>Die Datei hat {0} Rally-Punkte, die zu einem Standort gehören und nicht zu einem Plan; dort setzen</translation>
     </message>
     <message>
         <source>starts</source>
@@ -5610,6 +5688,10 @@ Take it over?</source>
         <translation>nicht zu schreiben: Die Datei ist schreibgeschützt; eine andere nennen</translation>
     </message>
     <message>
+        <source>cannot be written: the folder &apos;{0}&apos; is write-protected; name a file in another one</source>
+        <translation>nicht schreibbar: Der Ordner &apos;{0}&apos; ist schreibgeschützt; eine Datei in einem anderen angeben</translation>
+    </message>
+    <message>
         <source>would replace {0}, which it is made from; name another file</source>
         <translation>würde {0} ersetzen, woraus es gemacht wird; eine andere Datei nennen</translation>
     </message>
@@ -5748,6 +5830,38 @@ Take it over?</source>
     <message>
         <source>expected unique panel ids, &apos;{0}&apos; occurs twice</source>
         <translation>erwartet wurden eindeutige Kennungen der Scheiben, &apos;{0}&apos; kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>rally point</source>
+        <translation>Rally-Punkt</translation>
+    </message>
+    <message>
+        <source>aircraft can land at the rally points ({0})</source>
+        <translation>Fluggeräte können an den Rally-Punkten landen ({0})</translation>
+    </message>
+    <message>
+        <source>rally point &apos;{0}&apos; {1}</source>
+        <translation>Rally-Punkt &apos;{0}&apos; {1}</translation>
+    </message>
+    <message>
+        <source>is not below or inside the airspace; move it, or widen the airspace</source>
+        <translation>liegt weder unter noch in dem Luftraum; versetzen oder den Luftraum erweitern</translation>
+    </message>
+    <message>
+        <source>lies inside a building or obstacle; move it outside</source>
+        <translation>liegt in einem Gebäude oder Hindernis; nach draußen versetzen</translation>
+    </message>
+    <message>
+        <source>lies in a no-fly volume, or below one; move it outside</source>
+        <translation>liegt in einem Flugverbotsraum oder darunter; nach draußen versetzen</translation>
+    </message>
+    <message>
+        <source>has a landing column that comes within {0} m of the building or an obstacle, {1} m are required; move it away</source>
+        <translation>hat eine Landesäule, die dem Gebäude oder einem Hindernis auf {0} m nahekommt, {1} m sind nötig; wegrücken</translation>
+    </message>
+    <message>
+        <source>rally point &apos;{0}&apos; lies at {1} m, below the ground at {2} m; put it on the ground</source>
+        <translation>Rally-Punkt &apos;{0}&apos; liegt auf {1} m, unter dem Boden auf {2} m; auf den Boden setzen</translation>
     </message>
     <message>
         <source>expected 0 or more, got {0}</source>
@@ -6842,6 +6956,162 @@ Take it over?</source>
         <translation>Flug (&apos;{0}&apos;), Plan (&apos;{1}&apos;) und Standort (&apos;{2}&apos;) haben nicht denselben Namen und Ursprung; den Plan und die Standortdatei nennen, mit denen geflogen wurde</translation>
     </message>
     <message>
+        <source>the vehicle signs what it sends, and may not obey a link that is not signed; disconnect, and connect signed with its key</source>
+        <translation>Das Fluggerät signiert, was es sendet, und gehorcht einer unsignierten Verbindung womöglich nicht; trennen und mit seinem Schlüssel signiert verbinden</translation>
+    </message>
+    <message>
+        <source>the vehicle was given the key and does not sign with it; it may not know signing</source>
+        <translation>Das Fluggerät hat den Schlüssel erhalten und signiert nicht damit; womöglich kennt es keine Signatur</translation>
+    </message>
+    <message>
+        <source>no autopilot is heard within {0} s; is it switched on, and does it use this key?</source>
+        <translation>Kein Autopilot ist innerhalb von {0} s zu hören; ist er eingeschaltet, und benutzt er diesen Schlüssel?</translation>
+    </message>
+    <message>
+        <source>expected a passphrase of {0} characters or more, got {1}</source>
+        <translation>erwartet wurde eine Passphrase von mindestens {0} Zeichen, es sind {1}</translation>
+    </message>
+    <message>
+        <source>there is no signing key on this computer; set one (&apos;signing set&apos;, or Key in the Fly tab)</source>
+        <translation>auf diesem Rechner ist kein Schlüssel für die Signatur; einen setzen (&apos;signing set&apos; oder Schlüssel im Reiter Fliegen)</translation>
+    </message>
+    <message>
+        <source>the vehicle signs with another key than this computer&apos;s; set the passphrase that it was given, or give it this computer&apos;s key over a cable</source>
+        <translation>Das Fluggerät signiert mit einem anderen Schlüssel als dem dieses Rechners; die Passphrase setzen, die es erhalten hat, oder ihm den Schlüssel dieses Rechners über ein Kabel geben</translation>
+    </message>
+    <message>
+        <source>the vehicle does not sign what it sends; give it this computer&apos;s key over a cable, or connect without signing</source>
+        <translation>Das Fluggerät signiert nicht, was es sendet; ihm den Schlüssel dieses Rechners über ein Kabel geben oder unsigniert verbinden</translation>
+    </message>
+    <message>
+        <source>{0} does not hold a time stamp for signing ({1}); delete it</source>
+        <translation>{0} enthält keinen Zeitstempel für die Signatur ({1}); löschen</translation>
+    </message>
+    <message>
+        <source>others may read the signing key {0} (mode {1}, expected {2}); give the vehicle a new key, or run: chmod 600 &apos;{3}&apos;</source>
+        <translation>andere dürfen den Schlüssel für die Signatur {0} lesen (Rechte {1}, erwartet {2}); dem Fluggerät einen neuen geben, oder ausführen: chmod 600 &apos;{3}&apos;</translation>
+    </message>
+    <message>
+        <source>the signing key {0} cannot be read: {1}</source>
+        <translation>der Schlüssel für die Signatur {0} ist nicht lesbar: {1}</translation>
+    </message>
+    <message>
+        <source>{0} cannot be written: {1}</source>
+        <translation>{0} ist nicht schreibbar: {1}</translation>
+    </message>
+    <message>
+        <source>{0} does not hold a signing key of {1} hex digits; set it anew</source>
+        <translation>{0} enthält keinen Schlüssel von {1} Hexadezimalziffern; neu setzen</translation>
+    </message>
+    <message>
+        <source>the passphrase for signing is empty; expected the one that the vehicle was given</source>
+        <translation>die Passphrase für die Signatur ist leer; erwartet wurde die, die das Fluggerät erhalten hat</translation>
+    </message>
+    <message>
+        <source>without the link it flies the mission on, and lands at home</source>
+        <translation>Ohne Verbindung fliegt es die Mission weiter und landet am Startplatz</translation>
+    </message>
+    <message>
+        <source>{0} s without the link, and it breaks the mission off and returns ({1})</source>
+        <translation>Nach {0} s ohne Verbindung bricht es die Mission ab und kehrt zurück ({1})</translation>
+    </message>
+    <message>
+        <source>{0} s without the link, and it lands, whatever is below it ({1})</source>
+        <translation>Nach {0} s ohne Verbindung landet es, was immer darunter ist ({1})</translation>
+    </message>
+    <message>
+        <source>{0} s without the link, and it hovers until its battery is low ({1})</source>
+        <translation>Nach {0} s ohne Verbindung schwebt es, bis sein Akku schwach ist ({1})</translation>
+    </message>
+    <message>
+        <source>{0} s without the link, and it stops its motors and falls ({1}): set it otherwise</source>
+        <translation>Nach {0} s ohne Verbindung hält es die Motoren an und stürzt ab ({1}): anders einstellen</translation>
+    </message>
+    <message>
+        <source>what the vehicle does when the link is lost is not known ({0})</source>
+        <translation>was das Fluggerät bei verlorener Verbindung tut, ist nicht bekannt ({0})</translation>
+    </message>
+    <message>
+        <source>what the vehicle does when the link is lost is not known: it has no {0}</source>
+        <translation>was das Fluggerät bei verlorener Verbindung tut, ist nicht bekannt: es hat kein {0}</translation>
+    </message>
+    <message>
+        <source>how high the vehicle returns is not known; look before it is told to return</source>
+        <translation>wie hoch das Fluggerät zurückkehrt, ist nicht bekannt; hinsehen, bevor es zurückgerufen wird</translation>
+    </message>
+    <message>
+        <source>{0} m above take-off, to the nearest of home and the rally points ({1})</source>
+        <translation>{0} m über dem Start zum nächsten von Startplatz und Rally-Punkten ({1})</translation>
+    </message>
+    <message>
+        <source>{0} m above take-off, to home</source>
+        <translation>{0} m über dem Start zum Startplatz</translation>
+    </message>
+    <message>
+        <source>set {0} so that it returns {1} m above take-off</source>
+        <translation>{0} so setzen, dass es {1} m über dem Start zurückkehrt</translation>
+    </message>
+    <message>
+        <source>it returns straight through the building or an obstacle ({0}): {1}</source>
+        <translation>es kehrt geradewegs durch das Gebäude oder ein Hindernis zurück ({0}): {1}</translation>
+    </message>
+    <message>
+        <source>it returns {0} m from the building or an obstacle ({1}): {2}</source>
+        <translation>es kehrt {0} m neben dem Gebäude oder einem Hindernis zurück ({1}): {2}</translation>
+    </message>
+    <message>
+        <source>it returns across a no-fly zone ({0}); fly it back by hand</source>
+        <translation>es kehrt durch einen Flugverbotsraum zurück ({0}); von Hand zurückfliegen</translation>
+    </message>
+    <message>
+        <source>it returns {0}</source>
+        <translation>es kehrt zurück: {0}</translation>
+    </message>
+    <message>
+        <source>the geofence is on board, but nothing keeps the aircraft from leaving it ({0})</source>
+        <translation>der Geofence ist an Bord, aber nichts hindert das Fluggerät, ihn zu verletzen ({0})</translation>
+    </message>
+    <message>
+        <source>at the geofence it returns ({0})</source>
+        <translation>am Geofence kehrt es zurück ({0})</translation>
+    </message>
+    <message>
+        <source>at the geofence it lands ({0})</source>
+        <translation>am Geofence landet es ({0})</translation>
+    </message>
+    <message>
+        <source>at the geofence it hovers ({0})</source>
+        <translation>am Geofence schwebt es ({0})</translation>
+    </message>
+    <message>
+        <source>at the geofence it stops its motors and falls ({0}): set it otherwise</source>
+        <translation>am Geofence hält es die Motoren an und stürzt ab ({0}): anders einstellen</translation>
+    </message>
+    <message>
+        <source>what the vehicle does at the geofence is not known: see {0}</source>
+        <translation>was das Fluggerät am Geofence tut, ist nicht bekannt: siehe {0}</translation>
+    </message>
+    <message>
+        <source>the rally points ({0}) were not uploaded yet</source>
+        <translation>die Rally-Punkte ({0}) wurden noch nicht hochgeladen</translation>
+    </message>
+    <message>
+        <source>the rally points ({0}) are on board, read back and equal</source>
+        <translation>die Rally-Punkte ({0}) sind an Bord, zurückgelesen und gleich</translation>
+    </message>
+    <message>
+        <source>the vehicle does not say whether it has rally points; look before it returns by itself</source>
+        <translation>das Fluggerät sagt nicht, ob es Rally-Punkte hat; hinsehen, bevor es von selbst zurückkehrt</translation>
+    </message>
+    <message>
+        <source>list of rally points</source>
+        <translation>Liste der Rally-Punkte</translation>
+    </message>
+    <message>
+        <source>the vehicle had {0} rally points of another flight; they are cleared</source>
+        <translation>das Fluggerät hatte {0} Rally-Punkte eines anderen Flugs; sie sind gelöscht</translation>
+    </message>
+    <message>
         <source>{0}; {1} are needed</source>
         <translation>{0}; {1} sind nötig</translation>
     </message>
@@ -7198,22 +7468,6 @@ Take it over?</source>
         <translation>die Aufzeichnung sagt nicht, wo das Fluggerät war</translation>
     </message>
     <message>
-        <source>the flight was at site &apos;{0}&apos;, this is &apos;{1}&apos;; take its own site file</source>
-        <translation>der Flug war am Standort &apos;{0}&apos;, dies ist &apos;{1}&apos;; seine eigene Standortdatei nehmen</translation>
-    </message>
-    <message>
-        <source>the site file has changed since the flight; distances and coverage are those of the site as it is now</source>
-        <translation>die Standortdatei hat sich seit dem Flug geändert; Abstände und Abdeckung gelten für den Standort, wie er jetzt ist</translation>
-    </message>
-    <message>
-        <source>the flight was flown with another plan, or this one has changed since; views match as far as they fit</source>
-        <translation>geflogen wurde ein anderer Plan, oder dieser hat sich seither geändert; Aufnahmen sind zugeordnet, soweit sie passen</translation>
-    </message>
-    <message>
-        <source>the flight belongs to this site and plan</source>
-        <translation>der Flug gehört zu diesem Standort und Plan</translation>
-    </message>
-    <message>
         <source>there is no record of any flight</source>
         <translation>es gibt keine Aufzeichnung eines Fluges</translation>
     </message>
@@ -7355,6 +7609,111 @@ Take it over?</source>
     <message>
         <source>Camera, gimbal and speeds of a real vehicle are set as the plan needs them. Each upload names the parameters and asks first. Without it they are only compared. Those of a simulation are always set.</source>
         <translation>Kamera, Gimbal und Geschwindigkeiten eines echten Fluggeräts werden gesetzt, wie der Plan sie braucht. Jedes Hochladen nennt die Parameter und fragt vorher. Sonst werden sie nur verglichen. Die einer Simulation werden immer gesetzt.</translation>
+    </message>
+</context>
+<context>
+    <name>SigningBox</name>
+    <message>
+        <source>Signed</source>
+        <translation>Signiert</translation>
+    </message>
+    <message>
+        <source>Key</source>
+        <translation>Schlüssel</translation>
+    </message>
+    <message>
+        <source>Sign what is sent, and hear nobody who does not sign with the same key</source>
+        <translation>Signieren, was gesendet wird, und niemanden hören, der nicht mit demselben Schlüssel signiert</translation>
+    </message>
+    <message>
+        <source>Set passphrase...</source>
+        <translation>Passphrase setzen...</translation>
+    </message>
+    <message>
+        <source>Give it to the vehicle...</source>
+        <translation>Dem Fluggerät geben...</translation>
+    </message>
+    <message>
+        <source>Withdraw it from the vehicle...</source>
+        <translation>Dem Fluggerät entziehen...</translation>
+    </message>
+    <message>
+        <source>Forget it on this computer...</source>
+        <translation>Auf diesem Rechner vergessen...</translation>
+    </message>
+    <message>
+        <source>This computer keeps a key.</source>
+        <translation>Dieser Rechner hat einen Schlüssel.</translation>
+    </message>
+    <message>
+        <source>This computer keeps no key yet.</source>
+        <translation>Dieser Rechner hat noch keinen Schlüssel.</translation>
+    </message>
+</context>
+<context>
+    <name>SigningDesk</name>
+    <message>
+        <source>Look for the signing key</source>
+        <translation>Schlüssel für die Signatur suchen</translation>
+    </message>
+    <message>
+        <source>Set the signing key</source>
+        <translation>Schlüssel für die Signatur setzen</translation>
+    </message>
+    <message>
+        <source>Forget the signing key</source>
+        <translation>Schlüssel für die Signatur vergessen</translation>
+    </message>
+    <message>
+        <source>Give the vehicle the key</source>
+        <translation>Dem Fluggerät den Schlüssel geben</translation>
+    </message>
+    <message>
+        <source>Withdraw the key</source>
+        <translation>Schlüssel entziehen</translation>
+    </message>
+    <message>
+        <source>Key kept. Give it to the vehicle over a cable.</source>
+        <translation>Schlüssel gesetzt. Dem Fluggerät über ein Kabel geben.</translation>
+    </message>
+    <message>
+        <source>There is no key on this computer any more.</source>
+        <translation>Auf diesem Rechner ist kein Schlüssel mehr.</translation>
+    </message>
+    <message>
+        <source>The vehicle at {0} has the key, and signs with it.</source>
+        <translation>Das Fluggerät an {0} hat den Schlüssel und signiert damit.</translation>
+    </message>
+    <message>
+        <source>The vehicle at {0} was told to sign no more.</source>
+        <translation>Dem Fluggerät an {0} wurde gesagt, nicht mehr zu signieren.</translation>
+    </message>
+</context>
+<context>
+    <name>SigningQuestions</name>
+    <message>
+        <source>Give the vehicle the key</source>
+        <translation>Dem Fluggerät den Schlüssel geben</translation>
+    </message>
+    <message>
+        <source>The key goes to the vehicle at {0} as it is: whoever listens to that link learns it. Use a cable. From then on the vehicle obeys signed links only. Give it the key?</source>
+        <translation>Der Schlüssel geht unverschlüsselt zum Fluggerät an {0}: Wer diese Verbindung abhört, kennt ihn. Ein Kabel benutzen. Von da an gehorcht das Fluggerät nur signierten Verbindungen. Den Schlüssel geben?</translation>
+    </message>
+    <message>
+        <source>Withdraw the key from the vehicle</source>
+        <translation>Dem Fluggerät den Schlüssel entziehen</translation>
+    </message>
+    <message>
+        <source>The vehicle at {0} forgets the key, and obeys everybody who reaches it from then on. Withdraw the key?</source>
+        <translation>Das Fluggerät an {0} vergisst den Schlüssel und gehorcht von da an jedem, der es erreicht. Den Schlüssel entziehen?</translation>
+    </message>
+    <message>
+        <source>Forget the key</source>
+        <translation>Schlüssel vergessen</translation>
+    </message>
+    <message>
+        <source>Vehicles that know the key keep it, and obey this computer again only when the same passphrase is set once more. Forget the key on this computer?</source>
+        <translation>Fluggeräte, die den Schlüssel kennen, behalten ihn und gehorchen diesem Rechner erst wieder, wenn dieselbe Passphrase noch einmal gesetzt wird. Den Schlüssel auf diesem Rechner vergessen?</translation>
     </message>
 </context>
 <context>
@@ -7558,6 +7917,14 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Klicken, wo das Fluggerät startet und landet</translation>
     </message>
     <message>
+        <source>Rally point</source>
+        <translation>Rally-Punkt</translation>
+    </message>
+    <message>
+        <source>Click where the aircraft may land instead of home when it returns</source>
+        <translation>Anklicken, wo das Fluggerät bei der Rückkehr statt am Startplatz landen darf</translation>
+    </message>
+    <message>
         <source>No-fly zone</source>
         <translation>Flugverbotszone</translation>
     </message>
@@ -7604,6 +7971,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Move home</source>
         <translation>Startplatz versetzen</translation>
+    </message>
+    <message>
+        <source>Mark rally point</source>
+        <translation>Rally-Punkt setzen</translation>
     </message>
     <message>
         <source>Obstacle mesh</source>
@@ -7666,6 +8037,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Home</source>
         <translation>Startplatz</translation>
+    </message>
+    <message>
+        <source>Rally points</source>
+        <translation>Rally-Punkte</translation>
     </message>
 </context>
 <context>
@@ -7893,6 +8268,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Click where the aircraft takes off and lands. Esc cancels.</source>
         <translation>Klicken, wo das Fluggerät startet und landet. Esc bricht ab.</translation>
+    </message>
+    <message>
+        <source>Click where the aircraft may land when it returns. Esc cancels.</source>
+        <translation>Anklicken, wo das Fluggerät bei der Rückkehr landen darf. Esc bricht ab.</translation>
     </message>
     <message>
         <source>Drag the viewpoint; Shift moves it along its line of sight. Arrow and Page keys move it by 1 m, with Shift by 0.1 m. Esc ends.</source>

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from groundstation.gui.view3d.pinhole import Pinhole, photo_pinhole
 from groundstation.gui.view3d.plan_scene import FRUSTUM_M, PlanScene
 from groundstation.gui.view3d.shapes import Shape, box_edges, frusta, joined, outlines, polyline, shown_panels
-from groundstation.gui.view3d.site_scene import SiteScene, home_pad
+from groundstation.gui.view3d.site_scene import SiteScene, landing_pad
 from groundstation.services.document import Item, ItemKind
 from planning.coverage.sections import PanelFrames
 from planning.frames import camera_axes
@@ -72,7 +72,10 @@ def item_shape(item: Item, site: SiteScene | None, plan: PlanScene | None) -> It
         case ItemKind.AIRSPACE:
             return _boxed(np.array([model.site.airspace.min_enu_m, model.site.airspace.max_enu_m]))
         case ItemKind.HOME:
-            return _boxed(home_pad(model).vertices_enu_m)
+            return _boxed(landing_pad(model.site.home_enu_m).vertices_enu_m)
+        case ItemKind.RALLY:
+            point = next((point for point in model.site.rally_points if point.id == item.id), None)
+            return None if point is None else _boxed(landing_pad(point.position_enu_m).vertices_enu_m)
         case _:
             return None
 

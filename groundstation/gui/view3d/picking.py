@@ -11,7 +11,7 @@ from groundstation.gui.view3d.layers import Layer
 from groundstation.gui.view3d.pinhole import Pinhole
 from groundstation.gui.view3d.plan_scene import PlanScene
 from groundstation.gui.view3d.shapes import shown_panels
-from groundstation.gui.view3d.site_scene import SiteScene, home_pad
+from groundstation.gui.view3d.site_scene import SiteScene, landing_pad
 from groundstation.services.document import Item, ItemKind
 from planning.geometry.bvh import Bvh, build_bvh, segment_hits
 from planning.geometry.distance import segment_hits_triangle
@@ -33,6 +33,7 @@ _LAYERS = {
     ItemKind.OBSTACLE: Layer.OBSTACLES,
     ItemKind.NO_FLY: Layer.NO_FLY,
     ItemKind.HOME: Layer.HOME,
+    ItemKind.RALLY: Layer.HOME,
     ItemKind.VIEWPOINT: Layer.VIEWPOINTS,
     ItemKind.LEG: Layer.ROUTES,
 }
@@ -69,7 +70,9 @@ class PickIndex:
             parts.append((Item(ItemKind.OBSTACLE, obstacle.id), mesh.corners_enu_m))
         for zone in site.airspace.no_fly:
             parts.append((Item(ItemKind.NO_FLY, zone.id), zone.prism().corners_enu_m))
-        parts.append((Item(ItemKind.HOME), home_pad(model).corners_enu_m))
+        parts.append((Item(ItemKind.HOME), landing_pad(site.home_enu_m).corners_enu_m))
+        for point in site.rally_points:
+            parts.append((Item(ItemKind.RALLY, point.id), landing_pad(point.position_enu_m).corners_enu_m))
         self._panels = tuple(Item(ItemKind.PANEL, panel.id) for panel in site.panels)
         self._items = [item for item, _ in parts]
         self._starts = np.cumsum([0, *(len(corners) for _, corners in parts)])

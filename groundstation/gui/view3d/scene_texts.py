@@ -7,11 +7,11 @@ from PySide6.QtCore import QObject
 from groundstation.gui.theme import SORTIES, colours
 from groundstation.gui.view3d.layers import Label, Layer
 from groundstation.gui.view3d.plan_scene import PlanScene, ends_of_sorties
-from groundstation.gui.view3d.site_scene import HOME, SiteScene
+from groundstation.gui.view3d.site_scene import HOME, LANDING_LABEL_M, SiteScene
 from groundstation.services.document import Item, ItemKind
 
-HOME_LABEL_M, SORTIE_LABEL_M = 1.5, 3.0
-"""Height of labels above home and above the ends of sorties, which are at the same place."""
+SORTIE_LABEL_M = 3.0
+"""Height of labels above the ends of sorties, which are where home is labelled, too."""
 
 
 class SceneTexts(QObject):
@@ -24,7 +24,7 @@ class SceneTexts(QObject):
         labels: list[Label] = []
         if site is not None:
             x, y, z = site.model.site.home_enu_m
-            labels.append(Label(self.tr("Home"), (x, y, z + HOME_LABEL_M), Layer.HOME, HOME))
+            labels.append(Label(self.tr("Home"), (x, y, z + LANDING_LABEL_M), Layer.HOME, HOME))
             labels.extend(site.labels)
         if plan is not None:
             labels.extend(self._sortie_labels(plan))

@@ -17,16 +17,21 @@ from groundstation.gui.view3d.shapes import (
     triangle_normals,
 )
 from planning.coverage.sections import PanelFrames, panel_frames
+from planning.frames import Vec3
 from planning.mesh import TriangleMesh, box_mesh
 from planning.site import SiteModel, panel_corners
 
 Array = NDArray[np.float64]
 
-BUILDING, OBSTACLE, NO_FLY, HOME = "#aeb6bf", "#c98f5a", "#d64545", "#1d7a3c"
-"""Paler than panels; brown for what stands in the way, red for what is forbidden, green for home."""
+BUILDING, OBSTACLE, NO_FLY, HOME, RALLY = "#aeb6bf", "#c98f5a", "#d64545", "#1d7a3c", "#7a4fa3"
+"""Paler than panels; brown for what stands in the way, red for what is forbidden, green for home, violet for rally
+points."""
 
 GROUND_LIGHT, GROUND_DARK = "#dfe6d8", "#2e3630"
 PANEL_EDGE = "#23415a"
+
+LANDING_LABEL_M = 1.5
+"""Height of the label above home and rally points."""
 
 HOME_PAD_M = (1.2, 1.2, 0.25)
 """Half the width and the height of the pad that marks home: room for the aircraft with its propellers."""
@@ -55,7 +60,8 @@ class SiteScene:
 
     def extent(self) -> Array:
         """Points between which everything worth looking at lies, shape (n, 3): panels, building, obstacles, home."""
-        parts = [self.frames.corners.reshape(-1, 3), np.array([self.model.site.home_enu_m])]
+        places = [self.model.site.home_enu_m, *(point.position_enu_m for point in self.model.site.rally_points)]
+        parts = [self.frames.corners.reshape(-1, 3), np.array(places)]
         for mesh in (self.model.building, *self.model.obstacles):
             if len(mesh.triangles):
                 parts.append(mesh.vertices_enu_m[np.unique(mesh.triangles)])
@@ -118,24 +124,30 @@ def _airspace(model: SiteModel, look: Colours) -> Drawable:
     return Drawable(points, cells, flat(look.muted, len(cells)))
 
 
-def home_pad(model: SiteModel) -> TriangleMesh:
-    """The pad that marks home."""
-    x, y, z = model.site.home_enu_m
+def landing_pad(place_enu_m: Vec3) -> TriangleMesh:
+    """The pad that marks home or a rally point."""
+    x, y, z = place_enu_m
     width, depth, height = HOME_PAD_M
     return box_mesh(np.array([x - width, y - depth, z]), np.array([x + width, y + depth, z + height]))
 
 
 def _home(model: SiteModel) -> tuple[Drawable, ...]:
-    """A pad on the ground, and the column in which the aircraft climbs to the airspace."""
-    home, pad = np.array(model.site.home_enu_m), home_pad(model)
-    top = np.array([home[0], home[1], max(model.site.airspace.min_enu_m[2], home[2] + 2.0)])
-    mark = Drawable(pad.vertices_enu_m, pad.triangles, shaded(flat(HOME, len(pad.triangles)), triangle_normals(pad)))
-    column = Drawable(np.stack([home, top]), np.array([[0, 1]]), flat(HOME, 1), width_px=3.0)
-    return mark, column
+    """Home and the rally points."""
+    points = model.site.rally_points
+    rally = (part for point in points for part in _landing(model, point.position_enu_m, RALLY))
+    return (*_landing(model, model.site.home_enu_m, HOME), *rally)
+
+
+def _landing(model: SiteModel, place_enu_m: Vec3, colour: str) -> tuple[Drawable, ...]:
+    """A pad on the ground, and the column in which the aircraft climbs to the airspace or comes down from it."""
+    x, y, z = place_enu_m
+    pad, ends = landing_pad(place_enu_m), np.array([[x, y, z], [x, y, max(model.site.airspace.min_enu_m[2], z + 2.0)]])
+    mark = Drawable(pad.vertices_enu_m, pad.triangles, shaded(flat(colour, len(pad.triangles)), triangle_normals(pad)))
+    return mark, Drawable(ends, np.array([[0, 1]]), flat(colour, 1), width_px=3.0)
 
 
 def _labels(model: SiteModel) -> tuple[Label, ...]:
-    """Names of obstacles and zones; home is labelled by the view, in the user's language."""
+    """Names of obstacles, zones and rally points; home is labelled by the view, in the user's language."""
     site, labels = model.site, []
     for obstacle, mesh in zip(site.obstacles, model.obstacles, strict=True):
         if len(mesh.triangles):
@@ -143,6 +155,9 @@ def _labels(model: SiteModel) -> tuple[Label, ...]:
     for zone in site.airspace.no_fly:
         x, y = np.mean(zone.polygon_enu_m, axis=0)
         labels.append(Label(zone.id, (float(x), float(y), zone.ceiling_m), Layer.NO_FLY, NO_FLY))
+    for point in site.rally_points:
+        x, y, z = point.position_enu_m
+        labels.append(Label(point.id, (x, y, z + LANDING_LABEL_M), Layer.HOME, RALLY))
     return tuple(labels)
 
 

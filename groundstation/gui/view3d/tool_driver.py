@@ -185,6 +185,7 @@ class ToolDriver(QObject):
             Hint.CLICK_OPPOSITE_CORNER: self.tr("Click the opposite corner. Backspace goes back."),
             Hint.CLICK_HEIGHT: self.tr("Move up to the height and click. Backspace goes back."),
             Hint.CLICK_HOME: self.tr("Click where the aircraft takes off and lands. Esc cancels."),
+            Hint.CLICK_RALLY: self.tr("Click where the aircraft may land when it returns. Esc cancels."),
             Hint.DRAG_VIEWPOINT: self.tr(
                 "Drag the viewpoint; Shift moves it along its line of sight. Arrow and Page keys move it by 1 m, "
                 "with Shift by 0.1 m. Esc ends."

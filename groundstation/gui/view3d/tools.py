@@ -73,6 +73,7 @@ class Hint(Enum):
     CLICK_OPPOSITE_CORNER = auto()
     CLICK_HEIGHT = auto()
     CLICK_HOME = auto()
+    CLICK_RALLY = auto()
     DRAG_VIEWPOINT = auto()
     NOTHING_THERE = auto()
 
@@ -213,6 +214,15 @@ class HomeTool(PointTool):
         """The place under the pointer."""
         point = super().click(pointer)
         return None if point is None else PickedHome(point.point_enu_m)
+
+
+class RallyTool(HomeTool):
+    """Pick a rally point, as home is picked."""
+
+    @property
+    def hint(self) -> Hint:
+        """Asks for the click."""
+        return Hint.NOTHING_THERE if self._is_missed else Hint.CLICK_RALLY
 
 
 STANDING_NORMAL_Z = 0.9

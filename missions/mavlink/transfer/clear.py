@@ -5,7 +5,7 @@
 | READY | start | CLEAR_ALL | ASKED |
 | ASKED | silence | CLEAR_ALL again | ASKED |
 | ASKED | ACK ACCEPTED | | ENDED: done |
-| ASKED | ACK DENIED, ERROR | CLEAR_ALL after a pause, for some time: it is busy with an upload | ASKED |
+| ASKED | ACK DENIED, ERROR, UNSUPPORTED | CLEAR_ALL after a pause, for some time: busy, or starting | ASKED |
 | ASKED | ACK INVALID_SEQUENCE, OPERATION_CANCELLED | nothing: it belongs to an upload before | ASKED |
 | ASKED | any other ACK | | ENDED: refused |
 | ASKED | long silence | | ENDED: silent |
@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 
 from missions.mavlink.messages import Message, MissionAck, MissionClearAll, Received
-from missions.mavlink.transfer.exchange import DEFAULT_TIMING, Ending, Patience, Result, Route, Timing
+from missions.mavlink.transfer.exchange import DEFAULT_TIMING, NOT_YET, Ending, Patience, Result, Route, Timing
 
 
 class ClearState(Enum):
@@ -83,7 +83,7 @@ class Clear:
                 self._end(Ending.DONE, message.type)
             elif message.type in (Result.INVALID_SEQUENCE, Result.OPERATION_CANCELLED):
                 self._patience.hear(received.time_s)
-            elif message.type not in (Result.DENIED, Result.ERROR) or not self._patience.asks_again(received.time_s):
+            elif message.type not in {Result.DENIED, *NOT_YET} or not self._patience.asks_again(received.time_s):
                 self._end(Ending.REFUSED, message.type)
         return []
 

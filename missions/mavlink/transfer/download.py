@@ -5,7 +5,7 @@
 | READY | start | REQUEST_LIST | LISTING |
 | LISTING | COUNT n | REQUEST_INT 0; ACK where n is 0 | FETCHING; ENDED: done where n is 0 |
 | LISTING | silence | REQUEST_LIST again | LISTING |
-| LISTING | ACK DENIED, ERROR | REQUEST_LIST after a pause, for some time: it is busy with an upload | LISTING |
+| LISTING | ACK DENIED, ERROR, UNSUPPORTED | REQUEST_LIST after a pause, for some time: busy, or starting | LISTING |
 | LISTING | ACK INVALID_SEQUENCE, OPERATION_CANCELLED | nothing: it belongs to an upload before | LISTING |
 | FETCHING | item i, the one asked for | REQUEST_INT i + 1; ACK after the last | FETCHING; ENDED: done |
 | FETCHING | any other item | nothing: it is a copy, or belongs elsewhere | FETCHING |
@@ -33,7 +33,7 @@ from missions.mavlink.messages import (
     MissionRequestList,
     Received,
 )
-from missions.mavlink.transfer.exchange import DEFAULT_TIMING, Ending, Patience, Result, Route, Timing
+from missions.mavlink.transfer.exchange import DEFAULT_TIMING, NOT_YET, Ending, Patience, Result, Route, Timing
 
 
 class DownloadState(Enum):
@@ -154,7 +154,8 @@ class Download:
         is_fetching = self.state is DownloadState.FETCHING
         if is_fetching and result in (Result.INVALID_SEQUENCE, Result.ERROR, Result.OPERATION_CANCELLED):
             return self._anew(now_s, Ending.REFUSED, result)
-        if result in (Result.DENIED, Result.ERROR) and self._patience.asks_again(now_s):
+        may_come = result in (Result.DENIED, Result.ERROR) or (not is_fetching and result in NOT_YET)
+        if may_come and self._patience.asks_again(now_s):
             return []
         if result in (Result.INVALID_SEQUENCE, Result.OPERATION_CANCELLED):
             # Of an upload before this.

@@ -49,6 +49,11 @@ class Result(IntEnum):
     OPERATION_CANCELLED = 15
 
 
+NOT_YET = frozenset((Result.ERROR, Result.UNSUPPORTED))
+"""What a vehicle that cannot do it yet says to the first question: UNSUPPORTED is ArduPilot's answer for some seconds
+after power-up (4.7.0-dev), as long as its lists are not set up."""
+
+
 class Ending(Enum):
     """How a transfer ended."""
 
@@ -122,7 +127,8 @@ class Timing:
     acknowledgement_repeats
         The last item is sent again so often where no acknowledgement comes; then only reading back can tell.
     busy_s
-        A vehicle that says it is busy, or in error, is asked again for so long: either may belong to a transfer before.
+        A vehicle that says it is busy, in error, or not able to is asked again for so long: either of the first two may
+        belong to a transfer before, and the last is said while it starts.
     restarts
         A transfer is begun anew at most so often.
     """

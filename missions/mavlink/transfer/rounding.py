@@ -38,6 +38,7 @@ class Keeps(StrEnum):
     WHOLE = "whole"
     STEP = "step"
     DEGREES = "degrees"
+    SIGN = "sign"
     FRAME = "frame"
 
 
@@ -78,6 +79,8 @@ class Rule:
                 return abs(sent - back) <= self.step + slack
             case Keeps.DEGREES:
                 return math.isfinite(sent - back) and abs(wrap_heading_deg(sent - back)) <= self.step
+            case Keeps.SIGN:
+                return back == (-1.0 if sent < 0.0 else 1.0)
             case Keeps.FRAME:
                 return any(sent in same and back in same for same in self.frames)
 

@@ -9,7 +9,7 @@
 | SENDING | silence | item i again; from the second time on item i + 1 too | SENDING, CLOSING |
 | SENDING | ACK INVALID_SEQUENCE | item i + 1, once for each repeat | SENDING, CLOSING |
 | SENDING | ACK ERROR, OPERATION_CANCELLED | COUNT: the vehicle has given up | ANNOUNCED |
-| ANNOUNCED | ACK ERROR, OPERATION_CANCELLED | COUNT after a pause, for some time: it is busy | ANNOUNCED |
+| ANNOUNCED | ACK ERROR, UNSUPPORTED, OPERATION_CANCELLED | COUNT after a pause, for some time: busy, starting | same |
 | SENDING, ANNOUNCED | ACK ACCEPTED | nothing: it belongs to an earlier transfer | same |
 | CLOSING | ACK ACCEPTED | | ENDED: done |
 | CLOSING | silence | as in SENDING | CLOSING, after some times ENDED: unconfirmed |
@@ -38,7 +38,7 @@ from missions.mavlink.messages import (
     MissionRequestInt,
     Received,
 )
-from missions.mavlink.transfer.exchange import DEFAULT_TIMING, Ending, Patience, Result, Route, Timing
+from missions.mavlink.transfer.exchange import DEFAULT_TIMING, NOT_YET, Ending, Patience, Result, Route, Timing
 
 STRAYS = 5
 """Requests beyond the end that are ignored: some may be left over from a longer list."""
@@ -182,7 +182,8 @@ class Upload:
                 self._may_guess = False
                 return self._send(self._seq + 1, 1, now_s)
             return []
-        if result in (Result.ERROR, Result.OPERATION_CANCELLED):
+        is_starting = self.state is UploadState.ANNOUNCED and result in NOT_YET
+        if is_starting or result in (Result.ERROR, Result.OPERATION_CANCELLED):
             return self._given_up(result, now_s)
         return self._end(Ending.REFUSED, result)
 

@@ -6,7 +6,8 @@ n+1 completes, what is left of them is dropped. Starting a waypoint turns the no
 it elsewhere. Holds are whole seconds. The aircraft is at full speed at once, the worst case for all that must be
 finished in time.
 
-PX4: items run one after another; a waypoint is reached once position and yaw are, and is then held.
+PX4: items run one after another; a waypoint is held from when its position is reached, and left when the hold is over
+and the nose stands within MIS_YAW_ERR. The nose gains and loses speed with MPC_YAWRAUTO_ACC.
 """
 
 from __future__ import annotations
@@ -157,12 +158,15 @@ class ArduPilotTwin:
 
 @dataclass
 class Px4Twin:
-    """Runs items of PX4; its gimbal turns while the aircraft flies, its yaw is waited for."""
+    """Runs items of PX4; its gimbal turns while the aircraft flies, and only the last degrees of its yaw are not waited
+    for. The acceleration of a turn is taken as time lost before it."""
 
     origin: Origin
     home: tuple[float, float, float]
     gimbal_rate: float = 60.0
     yaw_rate: float = 45.0
+    yaw_acceleration: float = 20.0
+    yaw_error: float = 12.0
 
     def run(self, items: Sequence[MissionItem]) -> list[Shot]:
         t, speed = 0.0, 5.0
@@ -184,15 +188,20 @@ class Px4Twin:
             elif item.command in (TAKEOFF, WAYPOINT, LAND):
                 lat, lon, above = item.params[4:]
                 end = enu_from_geodetic(self.origin, lat, lon, above + self.home[2])[0]
-                for shot in shots:
-                    shot.steady_for_s = min(shot.steady_for_s, t - shot.t_s)
                 t_leg = float(np.linalg.norm(end - position)) / speed
-                if item.command == WAYPOINT and math.isfinite(item.params[3]):
+                is_turning = item.command == WAYPOINT and abs(yaw.difference(item.params[3])) > 1e-9
+                if t_leg > 1e-6 or is_turning:
+                    for shot in shots:
+                        shot.steady_for_s = min(shot.steady_for_s, t - shot.t_s)
+                if is_turning:
+                    turn = abs(yaw.difference(item.params[3]))
+                    gaining = self.yaw_rate / self.yaw_acceleration
+                    fast = turn / self.yaw_rate
                     yaw.turn_to(item.params[3], t)
-                t = max(t + t_leg, yaw.done_at()) + (item.params[0] if item.command == WAYPOINT else 0.0)
+                    yaw.t_s += gaining if fast >= gaining else 2.0 * math.sqrt(fast * gaining) - fast
+                hold = item.params[0] if item.command == WAYPOINT else 0.0
+                t = max(t + t_leg + hold, yaw.done_at() - self.yaw_error / self.yaw_rate)
                 position = end
-            elif item.command == DELAY:
-                t += item.params[0]
             elif item.command == CAPTURE and item.params[2] == 1.0:
                 shots.append(Shot(t, position, False, yaw.at(t), tilt.at(t)))
         return shots

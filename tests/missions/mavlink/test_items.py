@@ -126,11 +126,30 @@ def of_command(items: tuple[MissionItem, ...], command: int) -> list[MissionItem
     return [item for item in items if item.command == command]
 
 
+def places(items: tuple[MissionItem, ...]) -> list[MissionItem]:
+    """Waypoints, without those that only keep the aircraft where it is."""
+    waypoints = of_command(items, 16)
+    return [b for a, b in zip([None, *waypoints], waypoints, strict=False) if a is None or a.params[4:] != b.params[4:]]
+
+
 def test_order_of_the_items_of_one_view() -> None:
     (mission,) = missions_from_plan(make_plan([(ring(1), {})]))
     ardupilot = [item.command for item in mission_items(mission, ARDUPILOT, ABOVE)]
     assert ardupilot == [22, 178, 16, 205, 115, 16, 203, 93, 16, 21]
-    assert [i.command for i in mission_items(mission, PX4, ABOVE)] == [22, 178, 1001, 16, 1000, 16, 2000, 93, 16, 21]
+    assert [i.command for i in mission_items(mission, PX4, ABOVE)] == [22, 178, 1001, 16, 1000, 16, 2000, 16, 16, 21]
+
+
+def test_px4_stays_at_each_view_without_a_delay_which_has_no_height() -> None:
+    """With an item at hand that has no height, PX4 of 2025 flew towards sea level when it corrected its home."""
+    for mission in missions_from_plan(example_plan()):
+        items = mission_items(mission, PX4, ABOVE)
+        assert not of_command(items, 93)
+        triggers = [number for number, item in enumerate(items) if item.command == 2000]
+        assert len(triggers) == mission.n_photos
+        for number in triggers:
+            view, stay = items[number - 1], items[number + 1]
+            assert stay == replace(view, params=(stay.params[0], *view.params[1:]))
+            assert stay.params[0] >= 1.0
 
 
 def test_holds_are_whole_seconds_on_ardupilot_and_waypoints_without_photo_stop_too() -> None:
@@ -147,14 +166,14 @@ def test_settling_time_of_the_plan_is_kept() -> None:
     with_photo = [i for i, w in enumerate(mission.waypoints) if w.photos]
     ardupilot = of_command(mission_items(mission, ARDUPILOT, ABOVE), 16)
     assert all(ardupilot[i].params[0] >= 4.0 for i in with_photo)
-    px4 = of_command(mission_items(mission, PX4, ABOVE), 16)
-    assert all(px4[i].params[0] >= 3.2 for i in with_photo)
+    px4 = mission_items(mission, PX4, ABOVE)
+    assert all(px4[i - 1].params[0] >= 3.2 for i, item in enumerate(px4) if item.command == 2000)
 
 
 @pytest.mark.parametrize("autopilot", list(Autopilot))
 def test_heights_are_above_takeoff_or_above_sea_level_as_asked(autopilot: Autopilot) -> None:
     mission = missions_from_plan(example_plan())[0]
-    relative, absolute = (of_command(mission_items(mission, autopilot, r), 16) for r in (ABOVE, HeightReference.AMSL))
+    relative, absolute = (places(mission_items(mission, autopilot, r)) for r in (ABOVE, HeightReference.AMSL))
     for above, amsl, waypoint in zip(relative, absolute, mission.waypoints, strict=True):
         point = waypoint.position
         assert (above.frame, amsl.frame) == (3, 0)

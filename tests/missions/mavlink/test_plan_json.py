@@ -1,9 +1,11 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from missions.encode import ExportOptions, encode
@@ -13,7 +15,12 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.plan_json import read_plan_json
 from missions.model import FileFormat, GeoPoint
 from planning.errors import InputError, MissionError
+from planning.geodesy.enu import enu_from_geodetic
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.site import RallyPoint
 from tests.missions.plans import example_plan
+from tests.planning.plan_cases import kiosk
 
 
 def plan_file(tmp_path: Path, content: Any) -> Path:
@@ -153,3 +160,27 @@ def test_plan_that_is_no_json_is_refused(tmp_path: Path) -> None:
     path.write_text('{"fileType": "Plan",')
     with pytest.raises(InputError, match="not valid JSON, line 1"):
         read_missions(path)
+
+
+def test_rally_points_of_the_site_go_into_the_plan_and_come_back(tmp_path: Path) -> None:
+    """They count from home, as QGroundControl has them; a plan has none, so that reading them is told of."""
+    model = kiosk()
+    points = (RallyPoint("car park", (20.0, -28.0, 2.0)), RallyPoint("meadow", (-10.0, -30.0, 0.0)))
+    model = replace(model, site=replace(model.site, rally_points=points))
+    plan = plan_flight(model, PlanRequest(n_views=3, method="orbit")).plan
+    options = ExportOptions(site=model)
+    (content,) = encode(plan, model.site.origin, model.site.home_enu_m, FileFormat.MAVLINK_PLAN, options).contents
+    path = tmp_path / "m.plan"
+    path.write_bytes(content)
+    read = read_plan_json(path).rally
+    back = enu_from_geodetic(model.site.origin, *np.array([(lat, lon, 62.0 + up) for lat, lon, up in read]).T)
+    np.testing.assert_allclose(back[:, :2], [point.position_enu_m[:2] for point in points], atol=1e-3)
+    assert [up for _, _, up in read] == pytest.approx([2.0, 0.0], abs=1e-3)
+    (mission,) = read_missions(path)
+    assert [finding.value for finding in mission.findings if finding.code == "rally-points"] == [2.0]
+
+
+@pytest.mark.parametrize("points", [None, 5, [None], [[1.0, 2.0]], [[100.0, 0.0, 0.0]], [["a", 0.0, 0.0]]])
+def test_rally_points_that_are_none_are_left_out(tmp_path: Path, points: Any) -> None:
+    content = plan_of(item(16, 0, 0, 0, 0, 52.0, 5.0, 10.0)) | {"rallyPoints": {"points": points, "version": 2}}
+    assert read_plan_json(plan_file(tmp_path, content)).rally == ()

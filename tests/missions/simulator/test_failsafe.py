@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from missions.mavlink.messages import Heartbeat
+from missions.mavlink.link import GROUND_STATION
+from missions.mavlink.messages import Address, Heartbeat, Received
 from missions.simulator.failsafe import FenceZone
 from tests.missions.simulator.ground import ARDUPILOT, PX4, Ground, at, item
 
@@ -126,3 +127,138 @@ def test_fence_can_be_changed_in_flight() -> None:
     on_the_way(ground)
     assert ground.upload(square(5002, 60), 1) == 0
     ground.until(lambda: ground.vehicle.modes.mode == "AUTO.LOITER", 20.0)
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "parameters", "mode"),
+    [
+        (ARDUPILOT, {}, "AUTO"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 1}, "RTL"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 5}, "LAND"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 7}, "BRAKE"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 1, "FS_OPTIONS": 2}, "AUTO"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 1, "FS_GCS_TIMEOUT": 100.0}, "AUTO"),
+        (PX4, {}, "AUTO.MISSION"),
+        (PX4, {"NAV_DLL_ACT": 1}, "AUTO.LOITER"),
+        (PX4, {"NAV_DLL_ACT": 2}, "AUTO.RTL"),
+        (PX4, {"NAV_DLL_ACT": 3}, "AUTO.LAND"),
+        (PX4, {"NAV_DLL_ACT": 2, "COM_DLL_EXCEPT": 1}, "AUTO.MISSION"),
+        (PX4, {"NAV_DLL_ACT": 2, "COM_DL_LOSS_T": 100}, "AUTO.MISSION"),
+    ],
+)
+def test_a_silent_ground_station_is_acted_upon_as_parameters_say(autopilot, parameters, mode: str) -> None:
+    ground = on_the_way(talking(Ground(autopilot, parameters)), 10.0)
+    assert ground.vehicle.modes.is_mission_active
+    ground.talks = False
+    ground.until(lambda: ground.frame.position[0] > 120 or not ground.vehicle.modes.is_mission_active, 120.0)
+    assert ground.vehicle.modes.mode == mode
+
+
+def talking(ground: Ground) -> Ground:
+    """A ground station whose heartbeats come each second for as long as it talks."""
+    ground.talks, step, last_s = True, ground.vehicle.step, -1.0
+    heartbeat = Heartbeat(6, 8, 0, 0, 4)
+
+    def stepped(duration_s):
+        nonlocal last_s
+        if ground.talks and ground.vehicle.now_s >= last_s + 1.0:
+            last_s = ground.vehicle.now_s
+            ground.vehicle.receive(Received(heartbeat, GROUND_STATION, last_s))
+        return step(duration_s)
+
+    ground.vehicle.step = stepped
+    return ground
+
+
+def test_ardupilot_waits_for_no_ground_station_that_it_never_heard_and_hears_only_its_own() -> None:
+    ground = Ground(ARDUPILOT, {"FS_GCS_ENABLE": 1})
+    ground.vehicle.receive(Received(Heartbeat(6, 8, 0, 0, 4), Address(200, 190), 0.0))
+    on_the_way(ground, 60.0)
+    assert ground.vehicle.modes.mode == "AUTO"
+
+
+def test_when_the_ground_station_is_heard_again_the_mode_stays() -> None:
+    ground = on_the_way(talking(Ground(ARDUPILOT, {"FS_GCS_ENABLE": 1})), 10.0)
+    ground.talks = False
+    ground.until(lambda: ground.vehicle.modes.mode == "RTL", 60.0)
+    ground.talks = True
+    ground.until(lambda: "GCS Failsafe Cleared" in ground.said, 10.0)
+    assert ground.vehicle.modes.mode == "RTL"
+
+
+@pytest.mark.parametrize(
+    ("action", "mode"), [(0, "AUTO"), (1, "RTL"), (2, "LAND"), (3, "RTL"), (4, "BRAKE"), (5, "LAND")]
+)
+def test_every_fence_action_of_ardupilot_is_known(action: int, mode: str) -> None:
+    ground = on_the_way(Ground(ARDUPILOT, {"FENCE_ENABLE": 1, "FENCE_RADIUS": 40.0, "FENCE_ACTION": action}))
+    ground.until(lambda: ground.frame.position[0] > 60 or not ground.vehicle.modes.is_mission_active, 60.0)
+    assert ground.vehicle.modes.mode == mode
+
+
+def test_farther_out_ardupilot_acts_again_and_in_the_end_lands_whatever_it_was_told() -> None:
+    ground = on_the_way(Ground(ARDUPILOT, {"FENCE_ENABLE": 1, "FENCE_RADIUS": 35.0, "FENCE_ACTION": 4}))
+    modes = ground.vehicle.modes
+    ground.until(lambda: modes.mode == "BRAKE", 60.0)
+    breached_m = ground.frame.position[0]
+    modes.set_mode("AUTO")
+    ground.until(lambda: modes.mode == "BRAKE", 60.0)
+    assert ground.frame.position[0] > breached_m + 18.0
+    while modes.mode != "LAND":
+        modes.set_mode("AUTO")
+        ground.until(lambda: modes.mode != "AUTO", 60.0)
+    assert ground.frame.position[0] > 135.0
+
+
+RALLY = {"east": (60.0, 5.0, 0.0), "far": (60.0, 400.0, 0.0)}
+
+
+def landed_at(autopilot, parameters, *points, east: float = 50.0):
+    """Where a return that is ordered on the way ends."""
+    ground = Ground(autopilot, parameters)
+    assert ground.upload([at(5100, *RALLY[point]) for point in points], 2) == 0
+    on_the_way(ground, east)
+    ground.vehicle.modes.set_mode("RTL" if autopilot is ARDUPILOT else "AUTO.RTL")
+    ground.until(lambda: not ground.vehicle.modes.is_armed, 300.0)
+    return ground.frame.position
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "parameters", "points", "place"),
+    [
+        (ARDUPILOT, {}, ["east"], "east"),
+        (ARDUPILOT, {}, [], "home"),
+        (ARDUPILOT, {"RALLY_LIMIT_KM": 0.005}, ["east"], "home"),
+        (ARDUPILOT, {}, ["far"], "home"),
+        (ARDUPILOT, {"RALLY_INCL_HOME": 0, "RALLY_LIMIT_KM": 1.0}, ["far"], "far"),
+        (PX4, {"RTL_DESCEND_ALT": 10.0}, ["east"], "east"),
+        (PX4, {"RTL_DESCEND_ALT": 10.0, "RTL_TYPE": 2}, ["east"], "home"),
+        (PX4, {"RTL_DESCEND_ALT": 10.0, "RTL_TYPE": 1}, ["far"], "far"),
+        (PX4, {"RTL_DESCEND_ALT": 10.0, "RTL_TYPE": 1}, [], "home"),
+    ],
+)
+def test_the_vehicle_returns_to_the_rally_point_or_home_that_its_parameters_say(
+    autopilot, parameters, points, place
+) -> None:
+    expected = (0.0, 0.0, 0.0) if place == "home" else RALLY[place]
+    assert math.dist(landed_at(autopilot, parameters, *points), expected) < 1.5
+
+
+def test_ardupilot_does_not_return_to_a_rally_point_that_its_fence_forbids() -> None:
+    ground = Ground(ARDUPILOT, {"FENCE_ENABLE": 1, "FENCE_RADIUS": 59.0})
+    assert ground.upload([at(5100, *RALLY["east"])], 2) == 0
+    on_the_way(ground, 50.0)
+    ground.vehicle.modes.set_mode("RTL")
+    ground.until(lambda: not ground.vehicle.modes.is_armed, 300.0)
+    assert math.dist(ground.frame.position, (0.0, 0.0, 0.0)) < 1.5
+
+
+def test_close_to_its_destination_ardupilot_climbs_no_higher_than_the_cone() -> None:
+    highest = {}
+    for slope in (0.0, 1.0):
+        ground = on_the_way(Ground(ARDUPILOT, {"RTL_ALT": 6000, "RTL_CONE_SLOPE": slope}), 30.0)
+        ground.vehicle.modes.set_mode("RTL")
+        tops = []
+        ground.until(lambda tops=tops, ground=ground: tops.append(ground.frame.position[2]) or max(tops) > tops[-1] + 5)
+        highest[slope] = max(tops)
+    assert highest[0.0] == pytest.approx(60.0, abs=1.0)
+    assert highest[1.0] == pytest.approx(30.0, abs=5.0)

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from missions.mavlink.messages import CameraImageCaptured, MissionItemReached
+from missions.mavlink.px4_motion import straight_s
 from tests.missions.simulator.ground import PX4, Ground, at, item
 
 TAKEOFF, LAND = at(22, 0, 0, 20, 0, 0, 0, math.nan), at(21, 0, 0, 0, 0, 0, 0, math.nan)
@@ -43,15 +44,27 @@ def test_recommended_pattern_takes_every_photo_in_place_and_turned() -> None:
         assert math.degrees(pose.gimbal_pitch_rad) == pytest.approx(-10.5, abs=0.01)
 
 
-def test_hold_counts_from_when_position_and_yaw_are_reached() -> None:
-    """A 180 deg turn at 45 deg/s ends when 12 deg are left, after 3.73 s; a 1 m leg is long over."""
+@pytest.mark.parametrize(("hold_s", "taken_s"), [(0.5, 168 / 45), (6.0, None)])
+def test_hold_runs_while_the_nose_still_turns(hold_s, taken_s) -> None:
+    """A 180 deg turn at 45 deg/s is waited for until 12 deg are left, after 3.73 s; the hold is no wait of its own."""
     ground = Ground(PX4)
-    assert ground.upload([TAKEOFF, waypoint(0, 1, 2.0, 180.0), SHOOT, do(93, 1), LAND]) == 0
+    assert ground.upload([TAKEOFF, waypoint(0, 1, hold_s, 180.0), SHOOT, do(93, 1), LAND]) == 0
     ground.take_off_with_mission()
     ground.until(lambda: ground.vehicle.scheduler.current == 1)
     start_s = ground.vehicle.now_s
     ground.until(lambda: bool(ground.vehicle.shots))
-    assert ground.vehicle.now_s - start_s == pytest.approx(168 / 45 + 2.0, abs=0.06)
+    leg_s = straight_s(1.0, 5.0, 3.0, 4.0, 0.5)
+    assert ground.vehicle.now_s - start_s == pytest.approx(taken_s or leg_s + hold_s, abs=0.06)
+
+
+def test_legs_take_as_long_as_on_px4_which_brakes_gently() -> None:
+    ground = Ground(PX4)
+    assert ground.upload([TAKEOFF, waypoint(0, 0, 1.0), waypoint(40, 0, 1.0, 0.0), LAND]) == 0
+    ground.take_off_with_mission()
+    ground.until(lambda: ground.vehicle.scheduler.current == 2)
+    start_s = ground.vehicle.now_s
+    ground.until(lambda: ground.vehicle.scheduler.current == 3)
+    assert ground.vehicle.now_s - start_s == pytest.approx(straight_s(40.0, 5.0, 3.0, 4.0, 0.5) + 1.0, abs=0.2)
 
 
 def test_holds_keep_fractions_of_a_second() -> None:
@@ -104,7 +117,8 @@ def test_photo_is_told_with_its_place_and_the_cameras_attitude() -> None:
     wanted = (math.cos(pitch) * math.cos(heading), math.cos(pitch) * math.sin(heading), -math.sin(pitch))
     assert forward == pytest.approx(wanted, abs=1e-6)
     assert (told.image_index, told.capture_result) == (0, 1)
-    assert told.relative_alt == pytest.approx(20_000, abs=20)
+    # Above home is what the positions say; this counts from the ground, which PX4 does not know.
+    assert told.relative_alt == -1000
 
 
 def test_new_mission_is_taken_up_in_flight() -> None:

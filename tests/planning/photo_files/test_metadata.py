@@ -4,15 +4,17 @@ import csv
 import math
 from datetime import UTC, datetime, timedelta
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.errors import InputError
 from planning.frames import camera_axes
+from planning.photo_files.angles import from_pix4d, upright
 from planning.photo_files.exif import Tag, read_exif
 from planning.photo_files.jpeg import read_header
-from planning.photo_files.metadata import exif_altitude_m, read_photo, upright
+from planning.photo_files.metadata import exif_altitude_m, read_photo
 from planning.photo_files.record import Dewarp
 from tests.planning.photo_files.photo_writer import exif_part, extended_segments, gps_tags, jpeg, packet, save
 
@@ -335,3 +337,47 @@ def test_missing_files_and_folders_are_refused(tmp_path):
         read_photo(tmp_path / "none.jpg")
     with pytest.raises(InputError, match="not a regular file"):
         read_photo(tmp_path)
+
+
+PARROT_TAGS = {"Camera:Yaw": "146.781036", "Camera:Pitch": "38.011101", "Camera:Roll": "-0.041258"}
+PARROT_NED = (146.848038, -51.988888, -0.052789)
+"""Of one photo in both conventions (developer.parrot.com, "Embedded Photo Metadata", examples)."""
+
+
+def pix4d(properties):
+    return packet(
+        {name.partition(":")[2]: value for name, value in properties.items()}, "http://pix4d.com/camera/1.0/", "Camera"
+    )
+
+
+def test_pix4ds_angles_are_those_that_parrot_gives_beside_them(photo):
+    found = photo(xmp=pix4d(PARROT_TAGS | {"Camera:GPSXYAccuracy": "845389/2097152", "Camera:GPSZAccuracy": "61/100"}))
+    angles = (found.gimbal_heading_deg, found.gimbal_pitch_deg, found.gimbal_roll_deg)
+    assert angles == pytest.approx(PARROT_NED, abs=2e-4)
+    assert found.accuracy_horizontal_m == pytest.approx(845389 / 2097152)
+    assert found.accuracy_vertical_m == 0.61
+    assert (found.accuracy_heading_deg, found.accuracy_tilt_deg) == (None, None)
+
+
+def test_pitches_below_zero_in_pix4ds_tags_are_autels_own(photo):
+    tags = {"Camera:Yaw": "30", "Camera:Pitch": "-20", "Camera:Roll": "0"}
+    autel = photo(exif_part({0x010F: "Autel Robotics"}), pix4d(tags))
+    assert (autel.gimbal_heading_deg, autel.gimbal_pitch_deg) == (30.0, -20.0)
+    other = photo(exif_part({0x010F: "Parrot"}), pix4d(tags))
+    assert (other.gimbal_heading_deg, other.gimbal_pitch_deg) == pytest.approx((30.0, -110.0))
+
+
+@given(st.floats(-180, 180), st.floats(-20, 120), st.floats(-30, 30))
+def test_pix4ds_angles_leave_the_camera_as_it_was(yaw, pitch, roll):
+    def turn(axis, degrees):
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        matrix = np.eye(3)
+        matrix[i, i] = matrix[j, j] = c
+        matrix[i, j], matrix[j, i] = -s, s
+        return matrix
+
+    theirs = turn(2, yaw) @ turn(1, pitch) @ turn(0, roll)  # columns: top of the picture, right, line of sight
+    heading, up, about = from_pix4d(yaw, pitch, roll)
+    ours = turn(2, heading) @ turn(1, up) @ turn(0, about)  # columns: line of sight, right, bottom
+    np.testing.assert_allclose(ours, np.stack([theirs[:, 2], theirs[:, 1], -theirs[:, 0]], axis=1), atol=1e-6)

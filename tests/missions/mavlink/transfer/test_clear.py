@@ -56,7 +56,17 @@ def test_vehicle_in_its_mission_does_not_clear() -> None:
 
 def test_refusal_of_another_kind_ends_at_once() -> None:
     clear = started()
+    clear.receive(acked(Result.INVALID, 0.1))
+    assert clear.outcome == ClearOutcome(Ending.REFUSED, Result.INVALID)
+
+
+def test_a_vehicle_that_is_starting_is_asked_again_and_one_that_never_can_refuses() -> None:
+    """ArduCopter 4.7.0-dev answers UNSUPPORTED for some seconds after power-up."""
+    clear = started()
     clear.receive(acked(Result.UNSUPPORTED, 0.1))
+    assert clear.outcome is None
+    for second in range(1, 12):
+        clear.receive(acked(Result.UNSUPPORTED, float(second)))
     assert clear.outcome == ClearOutcome(Ending.REFUSED, Result.UNSUPPORTED)
 
 

@@ -183,7 +183,7 @@ def test_busy_vehicle_is_asked_again_until_the_other_upload_is_over() -> None:
     assert (outcome.ending, outcome.count) == (Ending.DONE, 10)
 
 
-@pytest.mark.parametrize("result", [Result.DENIED, Result.ERROR])
+@pytest.mark.parametrize("result", [Result.DENIED, Result.ERROR, Result.UNSUPPORTED])
 def test_vehicle_that_stays_busy_ends_refused(result: Result) -> None:
     download = started()
     for second in range(12):
@@ -193,8 +193,8 @@ def test_vehicle_that_stays_busy_ends_refused(result: Result) -> None:
 
 def test_refusal_ends_at_once() -> None:
     download = started()
-    download.receive(acked(Result.UNSUPPORTED))
-    assert download.outcome == DownloadOutcome(Ending.REFUSED, (), None, Result.UNSUPPORTED)
+    download.receive(acked(Result.INVALID))
+    assert download.outcome == DownloadOutcome(Ending.REFUSED, (), None, Result.INVALID)
 
 
 def test_acknowledgements_left_over_from_an_upload_are_ignored() -> None:

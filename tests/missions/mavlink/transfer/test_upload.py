@@ -383,6 +383,27 @@ def test_error_left_over_from_before_does_not_end_a_new_upload() -> None:
     assert numbers(upload.receive(asked(0, 0.2))) == [0]
 
 
+def test_a_vehicle_that_is_starting_gets_its_items_once_it_can_take_them() -> None:
+    """ArduCopter 4.7.0-dev answers UNSUPPORTED to every count for some seconds after power-up."""
+
+    class Starting(TwinVehicle):
+        def on_count(self, message: MissionCount, source: Address, now_s: float) -> list[Message]:
+            if now_s < 4.0:
+                return [self.ack(Result.UNSUPPORTED, source, 0)]
+            return super().on_count(message, source, now_s)
+
+    air = Air(Starting(ARDUPILOT))
+    assert uploaded(air).ending is Ending.DONE
+    assert 3 <= len(air.sent(MissionCount)) <= 6
+
+
+def test_an_item_that_is_not_supported_still_ends_the_upload_at_once() -> None:
+    upload = started()
+    upload.receive(asked(0, 0.1))
+    upload.receive(acked(Result.UNSUPPORTED, 0.2))
+    assert upload.outcome == UploadOutcome(Ending.REFUSED, Result.UNSUPPORTED, 0)
+
+
 def test_vehicle_that_answers_every_count_with_an_error_ends_refused() -> None:
     class Busy(TwinVehicle):
         def on_count(self, message: MissionCount, source: Address, now_s: float) -> list[Message]:

@@ -1,0 +1,140 @@
+"""`score`: how good results are, against known truth."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundstation.cli.commands.segment import add_parameter_arguments
+
+if TYPE_CHECKING:
+    from groundstation.services.segmentation import ScoreRequest
+    from reconstruction.scores.metrics import SetScores, Spread
+
+SETS = ("made-planar", "made-curved", "cmp", "ecp", "offices", "folder")
+
+MIN_WIDTH_PX, MAX_WIDTH_PX = 160, 16_000
+
+EPILOG = """Sets: made-planar and made-curved are rendered facades with strong reflections, one for each seed.
+cmp, ecp and offices are photos of real facades with annotated windows, in the folder --data. folder is your own:
+photos in --images, and in --truth index images of the same names (PNG, 8 or 16 bit: 0 no panel, else its number).
+
+With --masks the masks that another method wrote are scored (EBLNet, GhostingNet, GlassSemNet ...): one picture for each
+photo, named like it; white is glass, or grey the probability of glass. The names of made photos are made-planar's
+planar-000, planar-001 and so on; --save-photos writes the photos of a set, for other methods to work on.
+
+examples:
+  score segmentation --set made-planar --seeds 50 -o scores --json
+  score segmentation --set made-curved --seeds 50 -o scores --save-photos photos
+  score segmentation --set made-curved --seeds 50 -o scores-ghosting --masks ghosting-masks
+  score segmentation --set folder --images photos --truth truth -o scores
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command and what can be scored."""
+    parser = subparsers.add_parser(
+        "score",
+        help="score results against known truth",
+        description="Score results against known truth.",
+    )
+    kinds = parser.add_subparsers(title="what to score", metavar="WHAT", required=True)
+    panels = kinds.add_parser(
+        "segmentation",
+        help="the search for glass panels in photos",
+        description="Score the search for glass panels: overall IoU, coverage of the panels and individual IoU as in\n"
+        "the paper's Table 1. Writes a table with a row for each photo, and pictures of the three worst.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    panels.set_defaults(run=run_segmentation)
+    add = panels.add_argument
+    add_set_arguments(panels)
+    add("--masks", type=Path, metavar="DIR", help="score these masks of another method instead")
+    add("--save-photos", type=Path, metavar="DIR", help="also write the photos of the set into a folder")
+    add("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
+    add_parameter_arguments(panels)
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def add_set_arguments(parser: Any) -> None:
+    """Photos with truth; shared with other commands that need them."""
+    add = parser.add_argument_group("photos with truth").add_argument
+    add("--set", dest="set_name", choices=SETS, default=SETS[0], help="default: %(default)s")
+    add("--seeds", type=int, default=10, metavar="N", help="photos of a made set (default %(default)s)")
+    add("--width", type=int, default=1600, metavar="PX", help="of photos of a made set (default %(default)s)")
+    add("--extent-unknown", action="store_true", help="do not tell where the walls of a made set end")
+    add("--data", type=Path, metavar="DIR", help="folder of cmp, ecp or offices")
+    add("--images", type=Path, metavar="DIR", help="your photos")
+    add("--truth", type=Path, metavar="DIR", help="your index images")
+    add("--rectified", action="store_true", help="your photos are fronto-parallel")
+
+
+def request_of(options: argparse.Namespace) -> ScoreRequest:
+    """The photos with truth, and how panels are looked for in them.
+
+    Raises
+    ------
+    InputError
+        A value is out of range, or a settings file cannot be read.
+    """
+    from groundstation.cli.segmentation_options import parameters_of
+    from groundstation.services.segmentation import ScoreRequest
+    from planning.errors import InputError
+
+    if options.seeds < 1:
+        raise InputError(f"--seeds: expected 1 or more, got {options.seeds}")
+    if not MIN_WIDTH_PX <= options.width <= MAX_WIDTH_PX:
+        raise InputError(f"--width: expected {MIN_WIDTH_PX} to {MAX_WIDTH_PX} pixels, got {options.width}")
+    return ScoreRequest(
+        options.set_name,
+        options.seeds,
+        options.width,
+        not options.extent_unknown,
+        options.data,
+        options.images,
+        options.truth,
+        options.rectified,
+        parameters=parameters_of(options),
+    )
+
+
+def run_segmentation(options: argparse.Namespace) -> int:
+    """Score and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.segmentation import save_photos, score_segmentation
+    from reconstruction.scores.report import summary
+
+    request = replace(request_of(options), masks=options.masks)
+    if options.save_photos is not None:
+        run_job("save photos", lambda context: save_photos(request, options.save_photos, context))
+    report = run_job("score segmentation", lambda context: score_segmentation(request, options.out, context))
+    if options.json:
+        files = {"table": str(report.table_path), "pictures": [str(path) for path in report.picture_paths]}
+        print_json({"set": request.set_name, **summary(report.scores), **files})
+        return 0
+    print("\n".join(score_lines(report.scores)))
+    for path in (report.table_path, *report.picture_paths):
+        print(path)
+    return 0
+
+
+def score_lines(scores: SetScores) -> list[str]:
+    """The scores of a set as text."""
+    lines = [f"{len(scores.photos)} photos, {scores.n_panels} panels", f"  {'':<28}{'mean':>8}{'worst':>8}"]
+    lines.append(_line("overall IoU of glass", scores.overall_iou))
+    lines.append(_line("overall mIoU", scores.overall_miou))
+    for percent, share in scores.coverage.items():
+        lines.append(f"  {f'coverage, {percent} % percentile':<28}{share:>8.4f}")
+    if scores.individual_miou is not None and scores.one_to_one_miou is not None:
+        lines.append(_line("individual mIoU", scores.individual_miou))
+        lines.append(_line("individual mIoU, one to one", scores.one_to_one_miou))
+        lines.append(f"  {scores.n_missed} panels missed, {scores.n_false} false ones found")
+        lines.append(f"  {scores.seconds.mean:.2f} s a photo, {scores.seconds.worst:.2f} s at most")
+    return lines
+
+
+def _line(name: str, spread: Spread) -> str:
+    return f"  {name:<28}{spread.mean:>8.4f}{spread.worst:>8.4f}  {spread.worst_photo}"

@@ -1,0 +1,69 @@
+"""`segment`: the glass panels in one photo."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+EPILOG = """Writes reflight-panels/1 (docs/file-formats.md): corners of every panel in pixels of the photo, by
+facade, row and column, and how sure each is.
+
+examples:
+  segment facade.jpg -o panels.json
+  segment facade.jpg -o panels.json --long-side 3000
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "segment",
+        help="find the glass panels in a photo",
+        description="Find the rows and columns of glass panels in one photo of one or several facades.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("image", type=Path, metavar="IMAGE", help="photo: JPEG, PNG, TIFF or BMP")
+    parser.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="panels file to write")
+    parser.add_argument("--rectified", action="store_true", help="the photo is fronto-parallel: search it as it is")
+    add_parameter_arguments(parser)
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def add_parameter_arguments(parser: Any) -> None:
+    """How panels are looked for; shared with other commands that look for them."""
+    how = parser.add_argument_group("how").add_argument
+    how("--parameters", type=Path, metavar="FILE", help="TOML file with settings of the search (docs/segmentation.md)")
+    how("--long-side", type=int, metavar="PX", help="shrink photos to this size before lines are looked for")
+    how("--samples", type=int, metavar="N", help="pixels of a row or column that are compared; 0 for all")
+    how("--detector", metavar="NAME", help="what finds lines: gradient, hough, lsd, edlines or fld")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Find, write, print; returns the exit status."""
+    from groundstation.cli.console import counted, print_json, run_job
+    from groundstation.cli.segmentation_options import parameters_of
+    from groundstation.services.segmentation import segment_file, segmented_summary
+
+    parameters = parameters_of(options)
+    done = run_job(
+        "segment",
+        lambda context: segment_file(
+            options.image, options.out, parameters, is_rectified=options.rectified, monitor=context
+        ),
+    )
+    if options.json:
+        print_json({"file": str(options.out), **segmented_summary(done)})
+        return 0
+    for facade in done.found.facades:
+        if facade.panels:
+            rows, columns = counted(len(facade.rows) - 1, "row"), counted(len(facade.columns) - 1, "column")
+            least = min(panel.confidence for panel in facade.panels)
+            panels = counted(len(facade.panels), "panel")
+            print(f"facade {facade.id}: {panels} in {rows} and {columns}, confidence {least:.2f} or more")
+    if not done.found.panels:
+        print("no panels found: is the facade seen from its front, and are its frames visible?")
+    print(f"{options.out} ({done.seconds:.1f} s)")
+    return 0

@@ -1,0 +1,169 @@
+"""Rally points: whether aircraft can land there, and the ways on which aircraft return to them or to home."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.findings import Finding, Severity
+from planning.frames import Vec3
+from planning.site import RallyPoint, SiteModel
+from planning.space import SAFETY_MARGIN_M, TAKEOFF_CLIMB_M, FreeSpace
+
+Array = NDArray[np.float64]
+
+BELOW_GROUND_M = 0.01
+"""Heights drawn by hand are rounded to 1 mm."""
+
+SAMPLE_M = 2.0
+"""Distance between the places of a path from which a return is looked at."""
+
+
+def rally_findings(model: SiteModel, space: FreeSpace) -> Iterator[Finding]:
+    """What keeps aircraft from landing at the rally points of a site; nothing where there are none.
+
+    Each is held to what holds for home: inside the airspace seen from above, outside solids and no-fly volumes, and a
+    column above it, up to the airspace, that keeps the minimum distance.
+    """
+    n_wrong = 0
+    for point in model.site.rally_points:
+        found = list(_findings(point, model, space))
+        n_wrong += bool(found)
+        yield from found
+    if model.site.rally_points and not n_wrong:
+        n_points = len(model.site.rally_points)
+        yield Finding(Severity.OK, "rally-point", f"aircraft can land at the rally points ({n_points})")
+
+
+def _findings(point: RallyPoint, model: SiteModel, space: FreeSpace) -> Iterator[Finding]:
+    place = f"rally/{point.id}"
+
+    def error(text: str, value: float | None = None, limit: float | None = None) -> Finding:
+        unit = "" if value is None else "m"
+        return Finding(Severity.ERROR, "rally-point", f"rally point '{point.id}' {text}", place, value, limit, unit)
+
+    foot = np.array(point.position_enu_m)
+    top = np.array([*foot[:2], max(foot[2] + TAKEOFF_CLIMB_M, space.low_enu_m[2] + SAFETY_MARGIN_M)])
+    inside = (foot[:2] > space.low_enu_m[:2]).all() and (foot[:2] < space.high_enu_m[:2]).all()
+    if not inside or top[2] >= space.high_enu_m[2]:
+        yield error("is not below or inside the airspace; move it, or widen the airspace")
+        return
+    # As with home: on the ground it lies on the bottom face of the building it is in.
+    places = foot + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]])
+    if (space.solids.clearance_m(places, 1.0) < 0).any():
+        yield error("lies inside a building or obstacle; move it outside")
+        return
+    if len(space.no_fly.part) and (
+        (space.no_fly.clearance_m(places, 1.0) < 0).any()
+        or space.no_fly.segment_distances_m(foot[None], top[None], 1.0)[0] <= 2.0 * SAFETY_MARGIN_M
+    ):
+        yield error("lies in a no-fly volume, or below one; move it outside")
+        return
+    limit_m = space.min_distance_m
+    gap_m = float(space.solids.segment_distances_m(foot[None], top[None], 10.0 * limit_m + 10.0)[0])
+    if gap_m < limit_m:
+        text = (
+            f"has a landing column that comes within {gap_m:.2f} m of the building or an obstacle, {limit_m:g} m are "
+            "required; move it away"
+        )
+        yield error(text, gap_m, limit_m)
+    ground_m = model.site.airspace.ground_z_m
+    if foot[2] < ground_m - BELOW_GROUND_M:
+        yield Finding(
+            Severity.WARNING,
+            "rally-point",
+            f"rally point '{point.id}' lies at {foot[2]:g} m, below the ground at {ground_m:g} m; put it on the ground",
+            place,
+            float(foot[2]),
+            ground_m,
+            "m",
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnWay:
+    """How near aircraft come to things when they return from anywhere on a path.
+
+    Parameters
+    ----------
+    gap_m
+        Smallest distance to panels, building and obstacles; 0 where a way meets one. Up to the distance asked for.
+    crosses_no_fly
+        Whether a way enters a no-fly volume.
+    n_elsewhere
+        Of the places looked at, those from which the aircraft returns to another destination than the first.
+    n_places
+        Places looked at.
+    """
+
+    gap_m: float
+    crosses_no_fly: bool
+    n_elsewhere: int
+    n_places: int
+
+
+def return_way(
+    space: FreeSpace,
+    path_enu_m: Array,
+    destinations_enu_m: tuple[Vec3, ...],
+    height_z_m: float,
+    cone_slope: float = 0.0,
+    upper_m: float = 100.0,
+) -> ReturnWay:
+    """Ways of return from anywhere on a path: straight up, level to the nearest destination, straight down.
+
+    Parameters
+    ----------
+    path_enu_m
+        Shape (k, 3).
+    destinations_enu_m
+        At least one; home first. The nearest seen from above counts.
+    height_z_m
+        Height to which the aircraft climbs first where it is lower.
+    cone_slope
+        Close to its destination it climbs no higher than so many times the way that is left; 0: always to the height.
+    upper_m
+        Distances beyond are not told apart.
+
+    Raises
+    ------
+    ValueError
+        There is no destination.
+    """
+    if not destinations_enu_m:
+        raise ValueError("destinations_enu_m: expected home at least, got none")
+    start, ends = _places(path_enu_m), np.array(destinations_enu_m, np.float64)
+    away_m = np.linalg.norm(start[:, None, :2] - ends[None, :, :2], axis=2)
+    nearest = away_m.argmin(axis=1)
+    end = ends[nearest]
+    wanted = np.full(len(start), height_z_m)
+    if cone_slope > 0.0:
+        wanted = np.minimum(wanted, end[:, 2] + cone_slope * away_m.min(axis=1))
+    level = np.maximum(start[:, 2], wanted)
+    above, over = np.c_[start[:, :2], level], np.c_[end[:, :2], level]
+    a, b = np.concatenate([start, above, over]), np.concatenate([above, over, end])
+    gap_m = float(space.solids.segment_distances_m(a, b, upper_m).min())
+    crosses = bool(len(space.no_fly.part)) and bool(space.no_fly.segment_distances_m(a, b, 1.0).min() <= 0.0)
+    return ReturnWay(gap_m, crosses, int(np.count_nonzero(nearest)), len(start))
+
+
+def _places(path_enu_m: Array) -> Array:
+    """Vertices of a path and places between them, at most `SAMPLE_M` apart."""
+    pieces = [path_enu_m[:1]]
+    for first, last in itertools.pairwise(path_enu_m):
+        n_steps = max(1, math.ceil(float(np.linalg.norm(last - first)) / SAMPLE_M))
+        pieces.append(first + np.linspace(0.0, 1.0, n_steps + 1)[1:, None] * (last - first))
+    return np.concatenate(pieces)
+
+
+def clear_height_z_m(model: SiteModel, distance_m: float) -> float:
+    """Height at which level flight keeps a distance from everything on a site, whatever stands in its way."""
+    meshes = (model.building, *model.obstacles)
+    tops = [float(mesh.vertices_enu_m[:, 2].max()) for mesh in meshes if len(mesh.vertices_enu_m)]
+    panels = [corner[2] for panel in model.site.panels for corner in panel.corners_enu_m]
+    return max([*tops, *panels]) + distance_m

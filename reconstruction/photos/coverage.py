@@ -1,0 +1,179 @@
+"""What photos really show: hemisphere sections of panels by the plan's own definition, seen by the real cameras.
+
+A section counts as in the plan (`planning.coverage.sections`), except that the picture is that of the real camera: with
+its roll, its principal point and its distortion. For a camera as planned both are the same.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.coverage.model import CoverageModel, exact_sections
+from planning.coverage.sections import NOT_SEEN, sections_of
+from planning.findings import Finding, Severity
+from planning.plan import Viewpoint, ViewpointArrays, viewpoint_arrays
+from planning.progress import QUIET, Monitor
+from reconstruction.cameras import PosedPhoto
+
+Array = NDArray[np.float64]
+
+CHUNK = 64
+"""Photos between two reports of progress."""
+
+LOCKED = 1e-6
+"""Horizontal part of a line of sight below which heading and roll turn the picture alike; roll is 0 then."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AchievedCoverage:
+    """Sections that photos show, against those that the plan promised.
+
+    Parameters
+    ----------
+    sections
+        Shape (n, m): the section of each of m panels that each of n photos shows, `NOT_SEEN` for none.
+    counts, planned_counts
+        Shape (m, n_sections): photos that show each section, and planned views that would; the latter is None without
+        a plan.
+    """
+
+    sections: NDArray[np.int64]
+    counts: NDArray[np.int64]
+    planned_counts: NDArray[np.int64] | None
+    findings: tuple[Finding, ...]
+
+    @property
+    def covered(self) -> int:
+        """Sections that at least one photo shows."""
+        return int(np.count_nonzero(self.counts))
+
+    @property
+    def missed(self) -> NDArray[np.bool_]:
+        """Whether the plan promised a section that no photo shows, shape (m, n_sections)."""
+        if self.planned_counts is None:
+            return np.zeros(self.counts.shape, np.bool_)
+        return np.asarray((self.planned_counts > 0) & (self.counts == 0))
+
+    @property
+    def unseen_panels(self) -> NDArray[np.int64]:
+        """Indices of panels that no photo shows from anywhere."""
+        return np.flatnonzero(self.counts.sum(axis=1) == 0)
+
+
+def achieved_coverage(
+    model: CoverageModel,
+    photos: Sequence[PosedPhoto],
+    planned: Sequence[Viewpoint] = (),
+    panel_ids: Sequence[str] = (),
+    monitor: Monitor = QUIET,
+) -> AchievedCoverage:
+    """Coverage of photos.
+
+    Parameters
+    ----------
+    model
+        That of the plan: occlusion, whole panels and largest distance count as they did there. Its camera is used for
+        the planned views only.
+    planned
+        The plan's views; none where there is no plan.
+    panel_ids
+        Names of the panels, for findings.
+    """
+    sections = photo_sections(model, photos, monitor)
+    counts = _counts(sections, model.grid.n_sections)
+    planned_counts = None
+    if planned:
+        planned_counts = _counts(exact_sections(model, viewpoint_arrays(tuple(planned))), model.grid.n_sections)
+    findings = _findings(counts, planned_counts, panel_ids)
+    return AchievedCoverage(sections, counts, planned_counts, findings)
+
+
+def photo_sections(model: CoverageModel, photos: Sequence[PosedPhoto], monitor: Monitor = QUIET) -> NDArray[np.int64]:
+    """Section of each panel that each photo shows, shape (n, m), `NOT_SEEN` for none."""
+    frames = model.frames
+    found = np.full((len(photos), len(frames)), NOT_SEEN, np.int64)
+    for index, photo in enumerate(photos):
+        if index % CHUNK == 0:
+            monitor.report("coverage of the photos", index, len(photos))
+        seen = photo.sees(frames.centroids)
+        if model.whole_panel:
+            seen &= photo.sees(frames.corners.reshape(-1, 3)).reshape(len(frames), -1).all(axis=1)
+        if model.max_distance_m is not None:
+            away_m = np.linalg.norm(frames.centroids - photo.pose.position_enu_m, axis=1)
+            seen &= away_m <= model.max_distance_m
+        section = sections_of(photo.pose.position_enu_m[None], frames, model.grid)[0]
+        found[index] = np.where(seen, section, NOT_SEEN)
+    if model.sight is not None:
+        photo_index, panel = np.nonzero(found != NOT_SEEN)
+        places = np.array([photo.pose.position_enu_m for photo in photos]).reshape(-1, 3)
+        free = model.sight(places[photo_index], model.targets_enu_m[panel])
+        found[photo_index[~free], panel[~free]] = NOT_SEEN
+    return found
+
+
+def distances_m(model: CoverageModel, photos: Sequence[PosedPhoto]) -> list[float | None]:
+    """Distance from each photo to the nearest panel in its picture; None where it shows none."""
+    found: list[float | None] = []
+    for photo in photos:
+        seen = photo.sees(model.frames.centroids)
+        away_m = np.linalg.norm(model.frames.centroids[seen] - photo.pose.position_enu_m, axis=1)
+        found.append(float(away_m.min()) if len(away_m) else None)
+    return found
+
+
+def viewpoints_of(photos: Sequence[PosedPhoto]) -> tuple[ViewpointArrays, Array]:
+    """Photos as viewpoints, and their rolls, shape (n,), rad, positive clockwise as seen from behind the camera.
+
+    The roll is within 90 degrees: a gimbal that swung through the vertical has a pitch below -90.
+    """
+    positions = np.array([photo.pose.position_enu_m for photo in photos]).reshape(-1, 3)
+    angles = np.array([_angles_rad(photo.pose.cam_from_enu) for photo in photos]).reshape(-1, 3)
+    return ViewpointArrays(positions, angles[:, 0], angles[:, 1]), angles[:, 2]
+
+
+def _angles_rad(cam_from_enu: Array) -> tuple[float, float, float]:
+    """Heading, pitch and roll of a camera, rad."""
+    right, down, forward = cam_from_enu
+    flat = math.hypot(forward[0], forward[1])
+    if flat < LOCKED:
+        return math.atan2(-right[1], right[0]), math.copysign(math.pi / 2.0, forward[2]), 0.0
+    heading, pitch = math.atan2(forward[0], forward[1]), math.atan2(forward[2], flat)
+    # The right vector against the level one, (cos h, -sin h, 0), in the plane of the picture.
+    roll = math.atan2(-right[2], -down[2])
+    if abs(roll) > math.pi / 2.0:
+        heading, roll = heading + math.pi, roll - math.copysign(math.pi, roll)
+        pitch = math.copysign(math.pi, pitch) - pitch
+    return math.remainder(heading, 2.0 * math.pi), pitch, roll
+
+
+def _counts(sections: NDArray[np.int64], n_sections: int) -> NDArray[np.int64]:
+    view, panel = np.nonzero(sections != NOT_SEEN)
+    elements = panel * n_sections + sections[view, panel]
+    m = sections.shape[1]
+    return np.bincount(elements, minlength=m * n_sections).reshape(m, n_sections)
+
+
+def _findings(
+    counts: NDArray[np.int64], planned: NDArray[np.int64] | None, panel_ids: Sequence[str]
+) -> tuple[Finding, ...]:
+    """What is missing, by panel, before the batteries are packed."""
+    findings = []
+    unseen = np.flatnonzero(counts.sum(axis=1) == 0)
+    promised = np.arange(len(counts)) if planned is None else np.flatnonzero(planned.sum(axis=1) > 0)
+    for panel in np.intersect1d(unseen, promised).tolist():
+        name = panel_ids[panel] if panel_ids else str(panel)
+        findings.append(
+            Finding(Severity.WARNING, "panel-not-photographed", f"no photo shows panel '{name}'", name, 0.0)
+        )
+    if planned is not None:
+        n_missed = int(((planned > 0) & (counts == 0)).sum())
+        n_planned = int((planned > 0).sum())
+        severity = Severity.WARNING if n_missed else Severity.OK
+        text = f"{n_missed} of the {n_planned} sections that the plan promised are on no photo"
+        findings.append(Finding(severity, "sections-missed", text, "", float(n_missed), 0.0, "sections"))
+    return tuple(findings)

@@ -1,0 +1,254 @@
+"""Which photos are no use: blurred, badly exposed, taken twice, or broken; each with its number and its limit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from planning.errors import InputError
+from planning.findings import Finding, Severity
+from planning.jit import n_threads
+from planning.photo_files.record import PhotoMetadata
+from planning.progress import QUIET, Monitor
+from reconstruction.cameras import PosedPhoto
+from reconstruction.photos.decode import LARGE_PIXELS, Scale, grey_picture
+from reconstruction.photos.likeness import fingerprint, like_pairs
+from reconstruction.photos.sharpness import MOTION_TO_SIGMA, Sharpness, sharpness
+
+REDUCED_SIGMA_PX = 0.4
+"""What sharp photos measure at most when they are decoded at 1/2 to 1/8; less blur than that cannot be told there."""
+
+DARK, BRIGHT = 3, 252
+"""Grey levels up to and from which a pixel says nothing any more."""
+
+WAITING_PER_THREAD = 4
+"""Photos handed out ahead; only those at work are in memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class QualityLimits:
+    """From where on a photo is found wanting.
+
+    Parameters
+    ----------
+    sigma_px
+        Of blur. Sharp photos measure 0 to 0.8; at 1.5 a line one pixel wide is smeared over three and a half.
+    clipped
+        Part of the picture that is black, or white. The sky takes that much in good photos now and then; panels are
+        small parts of a picture.
+    scale
+        At which photos are decoded. docs/photos.md has the verdicts that change with it.
+    """
+
+    sigma_px: float = 1.5
+    clipped: float = 0.25
+    scale: Scale = 1
+
+    def __post_init__(self) -> None:
+        if not self.sigma_px > 0.0 or not 0.0 < self.clipped <= 1.0 or self.scale not in (1, 2, 4, 8):
+            raise ValueError(f"expected sigma_px above 0, clipped up to 1 and scale 1, 2, 4 or 8, got {self}")
+
+
+DEFAULT_LIMITS = QualityLimits()
+
+
+@dataclass(frozen=True, slots=True)
+class PhotoQuality:
+    """What was measured on one photo, in pixels of the full picture.
+
+    Parameters
+    ----------
+    sigma_px
+        Blur as measured; None where there are too few edges.
+    motion_sigma_px
+        Blur as speed, exposure time and distance predict it; None where one of them is not known.
+    dark, bright
+        Parts of the picture that are black, and white.
+    fingerprint
+        See `likeness`; None where there is no contrast.
+    """
+
+    sigma_px: float | None
+    motion_sigma_px: float | None
+    n_edges: int
+    dark: float
+    bright: float
+    fingerprint: int | None
+
+    @property
+    def blur_px(self) -> float | None:
+        """The measured blur, or where there is nothing to measure, the predicted one."""
+        return self.motion_sigma_px if self.sigma_px is None else self.sigma_px
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class QualityReport:
+    """Quality of photos in their order; None for those that could not be decoded.
+
+    `alike` holds pairs of indices of photos that show the same.
+    """
+
+    photos: tuple[PhotoQuality | None, ...]
+    alike: tuple[tuple[int, int], ...]
+    findings: tuple[Finding, ...]
+
+
+def check_quality(
+    photos: Sequence[PhotoMetadata],
+    posed: Sequence[PosedPhoto] | None = None,
+    distances_m: Sequence[float | None] | None = None,
+    limits: QualityLimits = DEFAULT_LIMITS,
+    monitor: Monitor = QUIET,
+) -> QualityReport:
+    """Measure photos on all cores; what is wrong with one is a finding and never stops the others.
+
+    Parameters
+    ----------
+    posed
+        Of the same photos, where their poses are known.
+    distances_m
+        From each camera to what it shows; where absent, the range finder's.
+    """
+    n = len(photos)
+    if (posed is not None and len(posed) != n) or (distances_m is not None and len(distances_m) != n):
+        raise ValueError(f"expected poses and distances of all {n} photos")
+
+    def measure(index: int) -> PhotoQuality | Finding:
+        distance_m = None if distances_m is None else distances_m[index]
+        try:
+            camera = None if posed is None else posed[index]
+            return photo_quality(photos[index], camera, distance_m, limits.scale)
+        except InputError as error:
+            return Finding(Severity.WARNING, "photo-unreadable", str(error), _name(photos[index]))
+
+    found = _measured(photos, measure, monitor)
+    kept = [result if isinstance(result, PhotoQuality) else None for result in found]
+    findings = [result for result in found if isinstance(result, Finding)]
+    alike = like_pairs(
+        [None if result is None else result.fingerprint for result in kept],
+        None if posed is None else [photo.pose for photo in posed],
+    )
+    for photo, result in zip(photos, kept, strict=True):
+        if result is not None:
+            findings += _findings(_name(photo), result, limits)
+    for first, second in alike:
+        text = f"shows the same as {_name(photos[first])}: from the same place, in the same direction"
+        if posed is None:
+            text = f"looks like {_name(photos[first])}; nothing says where they were taken"
+        findings.append(Finding(Severity.NOTE, "photo-alike", text, _name(photos[second])))
+    return QualityReport(tuple(kept), tuple(alike), tuple(findings))
+
+
+def photo_quality(
+    photo: PhotoMetadata, posed: PosedPhoto | None = None, distance_m: float | None = None, scale: Scale = 1
+) -> PhotoQuality:
+    """Measure one photo.
+
+    Raises
+    ------
+    InputError
+        It cannot be decoded.
+    """
+    grey = grey_picture(photo, scale)
+    found = sharpness(grey)
+    levels = cv2.calcHist([grey], [0], None, [256], [0.0, 256.0]).ravel() / grey.size
+    distance_m = photo.range_m if distance_m is None else distance_m
+    return PhotoQuality(
+        sigma_px=_full_sigma_px(found, scale),
+        motion_sigma_px=None if posed is None else motion_sigma_px(photo, posed, distance_m),
+        n_edges=found.n_edges,
+        dark=float(levels[: DARK + 1].sum()),
+        bright=float(levels[BRIGHT:].sum()),
+        fingerprint=fingerprint(grey),
+    )
+
+
+def motion_sigma_px(photo: PhotoMetadata, posed: PosedPhoto, distance_m: float | None) -> float | None:
+    """Blur by the aircraft's movement across the line of sight while the shutter was open; None where not known.
+
+    Whether DJI's vertical speed counts up or down is not told: the larger of both results is taken.
+    """
+    speeds = photo.speed_north_m_s, photo.speed_east_m_s, photo.speed_vertical_m_s
+    if photo.exposure_s is None or not distance_m or any(speed is None for speed in speeds):
+        return None
+    north, east, vertical = (float(speed or 0.0) for speed in speeds)
+    forward = posed.pose.forward_enu
+    across = []
+    for up in (vertical, -vertical):
+        velocity = np.array([east, north, up])
+        across.append(float(np.linalg.norm(velocity - (velocity @ forward) * forward)))
+    return max(across) * photo.exposure_s / distance_m * posed.intrinsics.fx_px * MOTION_TO_SIGMA
+
+
+def _full_sigma_px(found: Sharpness, scale: Scale) -> float | None:
+    """Blur in pixels of the full picture."""
+    if found.sigma_px is None or scale == 1:
+        return found.sigma_px
+    return scale * math.sqrt(max(0.0, found.sigma_px**2 - REDUCED_SIGMA_PX**2))
+
+
+def _measured(
+    photos: Sequence[PhotoMetadata], measure: Callable[[int], PhotoQuality | Finding], monitor: Monitor
+) -> list[PhotoQuality | Finding]:
+    """Results in order. Large pictures come last and one at a time, so that memory stays bounded."""
+    results: dict[int, PhotoQuality | Finding] = {}
+    large = [i for i, photo in enumerate(photos) if photo.width_px * photo.height_px > LARGE_PIXELS]
+    is_large = set(large)
+    todo = iter([i for i in range(len(photos)) if i not in is_large])
+    threads = n_threads()
+    monitor.report("checking photos", 0, len(photos))
+    with ThreadPoolExecutor(threads) as pool:
+        running: dict[Future[PhotoQuality | Finding], int] = {}
+        try:
+            while True:
+                for index in todo:
+                    running[pool.submit(measure, index)] = index
+                    if len(running) >= threads * WAITING_PER_THREAD:
+                        break
+                if not running:
+                    break
+                for done in wait(running, return_when=FIRST_COMPLETED).done:
+                    results[running.pop(done)] = done.result()
+                monitor.report("checking photos", len(results), len(photos))
+        except BaseException:
+            for future in running:
+                future.cancel()
+            raise
+    for index in large:
+        results[index] = measure(index)
+        monitor.report("checking photos", len(results), len(photos))
+    return [results[index] for index in range(len(photos))]
+
+
+def _findings(name: str, quality: PhotoQuality, limits: QualityLimits) -> list[Finding]:
+    findings = []
+    blur = quality.blur_px
+    if blur is not None and blur > limits.sigma_px:
+        why = "measured on its edges"
+        if quality.sigma_px is None:
+            why = "by speed, exposure and distance; there are too few edges to measure it"
+        text = f"is blurred by {blur:.1f} px ({why}), more than {limits.sigma_px:g} px; take it again, slower"
+        findings.append(Finding(Severity.WARNING, "photo-blurred", text, name, blur, limits.sigma_px, "px"))
+    for what, part, code, advice in (
+        ("black", quality.dark, "photo-dark", "longer"),
+        ("white", quality.bright, "photo-bright", "shorter"),
+    ):
+        if part > limits.clipped:
+            text = (
+                f"{100.0 * part:.0f} % of the picture are {what}, more than {100.0 * limits.clipped:.0f} %; expose "
+                f"{advice}"
+            )
+            findings.append(Finding(Severity.WARNING, code, text, name, part, limits.clipped))
+    if quality.sigma_px is None and max(quality.dark, quality.bright) <= limits.clipped:
+        text = f"shows too few edges ({quality.n_edges}) to tell whether it is sharp"
+        findings.append(Finding(Severity.NOTE, "photo-without-edges", text, name, float(quality.n_edges)))
+    return findings
+
+
+def _name(photo: PhotoMetadata) -> str:
+    return str(photo.path)

@@ -1,0 +1,242 @@
+"""The signing of a link in the window: the choice beside the address, the key's menu, and what becomes of both."""
+
+import threading
+
+import pytest
+
+from groundstation.services import signing
+from groundstation.services.document import Document, PlanEntry
+from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice
+from groundstation.services.live_connection import VehicleAt
+from missions.mavlink.key_store import KeyStore
+from missions.mavlink.link import open_link
+from missions.mavlink.messages import Address, Heartbeat, SetupSigning
+from missions.mavlink.signing import Signer, key_from_passphrase
+from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.services.live_cases import planned
+
+PASSPHRASE = "correct horse battery staple"
+HEARTBEAT = Heartbeat(2, 3, 81, 0, 4)
+
+
+@pytest.fixture(autouse=True)
+def _own_folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
+    monkeypatch.setattr(signing, "key_store", lambda: KeyStore(tmp_path, may_use_system=False))
+
+
+class Autopilot:
+    """The other end of a link: heartbeats, signed with the key that it has."""
+
+    def __init__(self, key=None):
+        self.key, self.ended = key, threading.Event()
+        self.link = open_link("tcpin:127.0.0.1:0", Address(1, 1), None if key is None else Signer(key))
+        self.url = f"tcp:127.0.0.1:{self.link.channel.port}"
+        self.thread = threading.Thread(target=self._run)
+
+    def __enter__(self):
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.ended.set()
+        self.thread.join()
+        self.link.close()
+
+    def _run(self):
+        while not self.ended.is_set():
+            self.link.send(HEARTBEAT)
+            received = self.link.receive(0.1)
+            if received is not None and isinstance(received.message, SetupSigning):
+                key = bytes(received.message.secret_key)
+                self.key = key if any(key) else None
+                self.link.sign_with(None if self.key is None else Signer(self.key))
+
+
+class Pilot:
+    """Answers what is asked about the key."""
+
+    def __init__(self):
+        self.passphrases, self.agrees, self.asked = [PASSPHRASE], True, []
+
+    def passphrase(self, parent):
+        return self.passphrases.pop(0)
+
+    def give(self, parent, url):
+        self.asked.append(("give", url))
+        return self.agrees
+
+    def withdraw(self, parent, url):
+        self.asked.append(("withdraw", url))
+        return self.agrees
+
+    def forget(self, parent):
+        self.asked.append(("forget", ""))
+        return self.agrees
+
+
+@pytest.fixture
+def desk(application, worker):
+    from groundstation.gui.desk import Desk
+
+    desk = Desk(application, Answers(), worker)
+    desk.show()
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    model, plan = planned()
+    desk.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    desk.window.show_tab("fly")
+    turn_until_idle(application, desk)
+    yield desk
+    desk.window.close()
+    desk.close()
+
+
+@pytest.fixture
+def page(desk):
+    page = desk.window.tab("fly")
+    page.desk.signing.questions = Pilot()
+    return page
+
+
+def choose(application, desk, page, url):
+    kind, _, address = url.partition(":")
+    page.connection.setValue(ConnectionChoice(LinkKind(kind), address))
+    page.connection.valueChanged.emit(page.connection.value())
+    turn_until_idle(application, desk)
+
+
+def act(application, desk, page, action):
+    page.connection.signing.action(action).trigger()
+    turn_until_idle(application, desk)
+
+
+def test_signed_is_remembered_for_each_address_and_offered_for_none_in_the_simulation(application, desk, page):
+    box = page.connection
+    assert box.signing.isHidden()
+    choose(application, desk, page, "tcp:127.0.0.1:5760")
+    assert not box.signing.isHidden()
+    assert not box.value().is_signed
+    box.signing.signed.click()
+    assert box.value().is_signed
+    box.address.setText("127.0.0.1:5770")
+    box.address.editingFinished.emit()
+    assert not box.signing.value()
+    box.address.setText("127.0.0.1:5760")
+    box.address.editingFinished.emit()
+    assert box.signing.value()
+    assert read_choice(choice_path()).is_signed
+    box.signing.signed.click()
+    assert read_choice(choice_path()).signed == ()
+    turn_until_idle(application, desk)
+
+
+def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application, desk, page):
+    from groundstation.gui.fly.signing_box import KeyAction
+
+    key, box = key_from_passphrase(PASSPHRASE), page.connection.signing
+    with Autopilot() as vehicle:
+        choose(application, desk, page, vehicle.url)
+        assert box.text() == "This computer keeps no key yet."
+        assert not box.action(KeyAction.GIVE).isEnabled()
+        act(application, desk, page, KeyAction.SET)
+        assert box.text() == "This computer keeps a key."
+        act(application, desk, page, KeyAction.GIVE)
+        assert vehicle.key == key
+        assert page.desk.choice.is_signed
+        assert box.value()
+        act(application, desk, page, KeyAction.WITHDRAW)
+        turn_until(application, lambda: vehicle.key is None)
+        assert not page.desk.choice.is_signed
+        act(application, desk, page, KeyAction.FORGET)
+    assert not box.action(KeyAction.FORGET).isEnabled()
+    assert page.desk.signing.questions.asked == [("give", vehicle.url), ("withdraw", vehicle.url), ("forget", "")]
+    told = desk.window.messages.texts()
+    assert "has the key, and signs with it" in told
+    assert key.hex() not in told
+    assert PASSPHRASE not in told
+
+
+def test_nothing_is_done_when_the_pilot_thinks_better_of_it(application, desk, page):
+    from groundstation.gui.fly.signing_box import KeyAction
+
+    pilot = page.desk.signing.questions
+    signing.set_passphrase(PASSPHRASE)
+    choose(application, desk, page, "tcp:127.0.0.1:1")
+    pilot.agrees, pilot.passphrases = False, [None]
+    for action in KeyAction:
+        act(application, desk, page, action)
+    assert signing.link_signer().key == key_from_passphrase(PASSPHRASE)
+    assert "cannot be opened" not in desk.window.messages.texts()
+
+
+def test_a_vehicle_that_cannot_be_given_the_key_is_told_of(application, desk, page):
+    from groundstation.gui.fly.signing_box import KeyAction
+
+    signing.set_passphrase(PASSPHRASE)
+    choose(application, desk, page, "tcp:127.0.0.1:1")
+    act(application, desk, page, KeyAction.GIVE)
+    assert "tcp:127.0.0.1:1 cannot be opened" in desk.window.messages.texts()
+    assert not page.desk.choice.is_signed
+
+
+@pytest.mark.parametrize(
+    ("vehicle_key", "is_signed", "words"),
+    [
+        (None, True, "does not sign what it sends"),
+        (bytes(range(32)), True, "signs with another key"),
+        (bytes(range(32)), False, "may not obey a link that is not signed"),
+    ],
+)
+def test_ends_that_sign_otherwise_are_told_apart_in_words(application, desk, page, vehicle_key, is_signed, words):
+    signing.set_passphrase(PASSPHRASE)
+    with Autopilot(vehicle_key) as vehicle:
+        choose(application, desk, page, vehicle.url)
+        page.connection.set_signed(vehicle.url, is_signed)
+        turn_until_idle(application, desk)
+        page.connection.button.click()
+        turn_until(application, lambda: words in desk.window.messages.texts())
+        if is_signed:
+            assert words in page._phase.text()
+        page.desk.disconnect_vehicle()
+        turn_until(application, lambda: not page.desk.is_connected)
+
+
+def test_a_signed_link_without_a_key_says_so_and_closes(application, desk, page):
+    choose(application, desk, page, "tcp:127.0.0.1:1")
+    page.connection.signing.signed.click()
+    turn_until_idle(application, desk)
+    page.connection.button.click()
+    turn_until(application, lambda: "there is no signing key" in desk.window.messages.texts())
+    turn_until(application, lambda: not page.desk.is_connected)
+
+
+def test_a_link_that_is_opened_again_goes_on_with_the_same_time_stamps():
+    """A signer of its own each time would put the stamps a minute ahead with every attempt."""
+    import time
+
+    signing.set_passphrase(PASSPHRASE)
+    from functools import cache
+
+    connection = VehicleAt("udpout:127.0.0.1:14999", signer=cache(signing.link_signer))
+    opened = [connection.open(None, time.perf_counter, lambda *_: None) for _ in range(2)]
+    assert opened[0].link.signer is opened[1].link.signer
+    assert all(one.is_signed for one in opened)
+    for one in opened:
+        one.link.close()
+
+
+def test_a_passphrase_must_be_long_enough_and_typed_alike_twice(application):
+    from PySide6.QtWidgets import QDialogButtonBox, QLineEdit
+
+    from groundstation.gui.fly.signing_questions import PassphraseDialog
+
+    dialog = PassphraseDialog()
+    ok = dialog.buttons.button(QDialogButtonBox.StandardButton.Ok)
+    assert dialog.first.echoMode() is QLineEdit.EchoMode.Password
+    for first, second, may in (("short", "short", False), (PASSPHRASE, "other", False), (PASSPHRASE, PASSPHRASE, True)):
+        dialog.first.setText(first)
+        dialog.second.setText(second)
+        assert ok.isEnabled() is may
+        assert bool(dialog.problem()) is not may
+    assert dialog.value() == PASSPHRASE
+    dialog.deleteLater()

@@ -1,0 +1,49 @@
+"""Parts of the Fly tab that need no flight: what is kept for the next start, and the notes."""
+
+import pytest
+
+from groundstation.services.document import Document
+from groundstation.services.jobs import JobRunner
+from groundstation.services.live_settings import FlightSettings
+from groundstation.services.session import Session
+from planning.findings import Severity
+
+
+@pytest.fixture
+def new_desk(application, tmp_path, monkeypatch):
+    """Makes the desk of another start of the program."""
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
+    from groundstation.gui.fly.fly_desk import FlyDesk
+    from groundstation.gui.workspace import Workspace
+
+    runner = JobRunner()
+    yield lambda: FlyDesk(Workspace(Session(Document()), runner))
+    runner.shutdown()
+
+
+def test_whether_rtk_is_needed_is_known_at_the_next_start(new_desk):
+    new_desk().set_settings(FlightSettings(needs_rtk=True, sets_parameters=True))
+    assert new_desk().settings == FlightSettings(needs_rtk=True, sets_parameters=False)
+    new_desk().set_settings(FlightSettings())
+    assert new_desk().settings == FlightSettings()
+
+
+def test_a_setting_that_cannot_be_kept_is_told_and_holds_for_now(new_desk, tmp_path):
+    desk, said = new_desk(), []
+    desk.parent().messageShown.connect(lambda message: said.append(message.text))
+    (tmp_path / "flight.toml").mkdir()
+    desk.set_settings(FlightSettings(needs_rtk=True))
+    assert desk.settings.needs_rtk
+    assert "this is a folder" in said[0]
+
+
+@pytest.mark.parametrize(
+    ("time_s", "words"),
+    [(0.0, "0:00.0"), (59.94, "0:59.9"), (59.96, "1:00.0"), (60.0, "1:00.0"), (3599.99, "60:00.0"), (None, "armed")],
+)
+def test_times_of_notes_never_have_sixty_seconds(application, time_s, words):
+    from groundstation.gui.fly.warnings_view import FlightNotes
+
+    notes = FlightNotes()
+    notes.add(time_s, Severity.NOTE, "armed")
+    assert notes.texts().startswith(words)

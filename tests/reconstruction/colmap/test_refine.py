@@ -1,0 +1,118 @@
+"""Refining cameras with pycolmap, on the photos of Lund with the poses of their reference model."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from planning.errors import InputError, OperationCancelled
+from reconstruction.cameras import Intrinsics, PosedPhoto
+from reconstruction.colmap.folder import read_model
+from reconstruction.colmap.georeference import angle_between_deg, posed_photos
+from reconstruction.colmap.refine import RefineParameters, refine_poses
+from reconstruction.colmap.similarity import Similarity
+from tests.reconstruction.colmap.models import covariance, photos, turned
+
+UPRIGHT = Similarity(1.0, np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]), np.zeros(3))
+"""The reference model has y down; its unit is taken for a metre."""
+
+SIGMA_M, SIGMA_DEG = 0.02, 1.0
+
+
+def start(folder: Path, n: int) -> tuple[list[PosedPhoto], list[PosedPhoto]]:
+    """Photos as a drone gives them, with errors and a straight lens, its focal length 3 % too long; and the truth."""
+    truth = list(posed_photos(read_model(folder / "colmap_ground_truth"), UPRIGHT, folder))[:n]
+    rng = np.random.default_rng(0)
+    lens = Intrinsics(1296, 1936, 2435.38 * 1.03, 2435.38 * 1.03, 648.0, 968.0)
+    given = []
+    for photo in truth:
+        off = turned(photo, rng.normal(0.0, SIGMA_M, 3), rng.normal(0.0, np.radians(SIGMA_DEG), 3))
+        pose = type(off.pose)(off.pose.position_enu_m, off.pose.cam_from_enu, covariance(SIGMA_M, SIGMA_DEG))
+        given.append(PosedPhoto(photo.name, photo.path, lens, pose))
+    return given, truth
+
+
+@pytest.fixture
+def folder(shared_data):
+    pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
+    return shared_data / "multiview" / "lund_door"
+
+
+@pytest.mark.slow
+def test_refined_poses_meet_the_reference(folder):
+    given, truth = start(folder, 12)
+    found = refine_poses(given, folder, RefineParameters(max_image_size_px=600, max_features=2000))
+    assert [photo.name for photo in found.photos] == [photo.name for photo in truth]
+    assert found.left_out == ()
+    assert found.reprojection_px < 1.0
+    lens = found.photos[0].intrinsics
+    assert lens.fx_px == pytest.approx(2435.38, rel=0.01)
+    between, angles, turns, in_sigmas, turned_sigmas = [], [], [], [], []
+    for photo, true in zip(found.photos, truth, strict=True):
+        off = photo.pose.position_enu_m - true.pose.position_enu_m
+        between.append(off)
+        one, other = photo.pose.cam_from_enu, true.pose.cam_from_enu
+        angles.append(angle_between_deg(one, other))
+        turns.append(other.T @ one)
+        off_rad = cv2.Rodrigues(one @ other.T)[0].ravel()
+        turned_sigmas.append(off_rad @ np.linalg.solve(photo.pose.covariance[3:, 3:], off_rad))
+        in_sigmas.append(off @ np.linalg.solve(photo.pose.covariance[:3, :3], off))
+    # A common shift is that of the receivers' mean error; the rest is how well the photos fit together.
+    assert np.linalg.norm(np.mean(between, axis=0)) < 3.0 * SIGMA_M / 12**0.5 * 3**0.5
+    assert np.linalg.norm(np.array(between) - np.mean(between, axis=0), axis=1).max() < 1.5 * SIGMA_M
+    # The photos stand almost on a line: the model as a whole is turned about it, the photos fit each other.
+    assert np.mean(angles) < SIGMA_DEG
+    assert max(angle_between_deg(turn, turns[0]) for turn in turns) < 0.1
+    assert np.mean(in_sigmas) < 3.0 * 3.0  # three axes; errors of neighbours go together
+    assert np.mean(turned_sigmas) < 3.0 * 3.0
+    assert len(found.model.points) > 1000
+
+
+@pytest.mark.slow
+def test_neighbours_suffice_and_a_calibrated_lens_stays(folder):
+    given, truth = start(folder, 6)
+    lens = Intrinsics(1296, 1936, 2435.38, 2435.38, 648.0, 968.0, (-0.0336, 0.0, 0.0, 0.0, 1e-4))
+    calibrated = [replace(photo, intrinsics=lens) for photo in given]
+    parameters = RefineParameters(max_image_size_px=500, max_features=1500, n_neighbours=3, exhaustive_up_to=2)
+    found = refine_poses(calibrated, folder, parameters)
+    assert found.left_out == ()
+    assert {photo.intrinsics for photo in found.photos} == {lens}
+    for photo, true in zip(found.photos, truth, strict=True):
+        assert np.linalg.norm(photo.pose.position_enu_m - true.pose.position_enu_m) < 4.0 * SIGMA_M
+
+
+@pytest.mark.slow
+def test_a_refinement_can_be_cancelled(folder):
+    class Cancelling:
+        stages: list[str] = []  # noqa: RUF012
+
+        def report(self, stage, done, total):
+            self.stages.append(stage)
+            if len(self.stages) > 3:
+                raise OperationCancelled("enough")
+
+    with pytest.raises(OperationCancelled):
+        refine_poses(start(folder, 4)[0], folder, RefineParameters(max_image_size_px=400), Cancelling())
+    assert set(Cancelling.stages) == {"finding features"}
+
+
+def test_without_pycolmap_the_message_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pycolmap", None)
+    with pytest.raises(InputError, match=r"pip install 'reflight\[colmap\]'"):
+        refine_poses(photos(3), Path())
+
+
+def test_two_photos_are_too_few():
+    with pytest.raises(InputError, match="at least 3 photos with a pose, got 2"):
+        refine_poses(photos(2), Path())
+
+
+@pytest.mark.parametrize("wrong", [{"max_image_size_px": 0}, {"max_features": 0}, {"n_neighbours": 0}])
+def test_parameters_that_make_no_sense_are_refused(wrong):
+    with pytest.raises(ValueError, match="expected at least 1"):
+        RefineParameters(**wrong)

@@ -1,0 +1,51 @@
+"""How long ArduPilot takes: against legs that a real ArduCopter flew, and against the simulated vehicle."""
+
+import math
+
+import numpy as np
+import pytest
+
+from groundstation.services.flying import FlightWish, fly_plan
+from groundstation.vehicle.setup import leg_late_s
+from missions.mavlink.autopilots import Autopilot
+from planning.catalogue import profile
+from planning.plan import FlightRules
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.scenes import single_panel
+from planning.timing import leg_times_s, motion_limits
+
+LEGS = [
+    (5.61, -0.02, 6.10),
+    (8.79, 1.44, 7.17),
+    (11.30, 22.26, 12.82),
+    (12.44, -17.10, 15.00),
+    (14.53, -23.36, 19.10),
+    (15.21, 0.00, 9.01),
+    (26.33, -0.95, 10.05),
+    (39.14, -0.27, 11.29),
+    (46.80, 4.44, 12.21),
+    (60.35, -2.03, 13.79),
+]
+"""Legs of ArduCopter 4.7.0-dev (git 2598e9d4b2) in its own simulation, with the profile `ardupilot`: metres over the
+ground, metres up, and seconds without the hold. From its own log of the office flight."""
+
+
+def test_legs_take_what_a_real_arducopter_took():
+    limits = motion_limits(profile("ardupilot").aircraft, FlightRules())
+    ways = np.array([(level, 0.0, up) for level, up, _ in LEGS])
+    reckoned = leg_times_s(ways, limits) + leg_late_s(Autopilot.ARDUPILOT)
+    differences = reckoned - np.array([seconds for _, _, seconds in LEGS])
+    assert np.abs(differences).max() < 0.6
+    assert abs(differences.mean()) < 0.15
+
+
+@pytest.mark.parametrize("profile_id", ["ardupilot", "m3e"])
+def test_the_simulated_vehicle_takes_what_its_items_are_reckoned_to(profile_id):
+    """The M3E states no jerk: both fly with the autopilot's own."""
+    model = single_panel()
+    plan = plan_flight(model, PlanRequest(n_views=8, time_budget_s=2.0, profile_id=profile_id)).plan
+    flown = fly_plan(plan, model, FlightWish(autopilot=Autopilot.ARDUPILOT))
+    (sortie,) = flown.sorties
+    seconds = flown.flight.report.sorties[0].duration_flown_s
+    assert math.isclose(seconds, sortie.expected_s, rel_tol=0.04)

@@ -1,0 +1,188 @@
+"""What a vehicle will do by itself, told and judged before take-off; rally points on board."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from groundstation.vehicle.conduct import conduct
+from groundstation.vehicle.failsafes import NAMES, failsafe_checks, return_of
+from groundstation.vehicle.flight_run import FlightRun
+from groundstation.vehicle.orders import rally_messages, sortie_orders
+from groundstation.vehicle.parameter_reads import ParameterReads
+from groundstation.vehicle.parameters import ATTEMPT_S, N_ATTEMPTS
+from groundstation.vehicle.preflight import Verdict
+from groundstation.vehicle.run_records import RunOptions
+from missions.build import missions_from_plan
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import Address, MissionItemInt, ParamValue, Received
+from missions.simulator.profiles import vehicle_profile
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.site import RallyPoint
+from tests.planning.plan_cases import kiosk
+from tests.vehicle.toy import Toy, ToyLink
+
+VEHICLE = Address(1, 1)
+ARDUPILOT, PX4 = Autopilot.ARDUPILOT, Autopilot.PX4
+
+
+@pytest.fixture(scope="module")
+def planned():
+    model = kiosk()
+    return model, plan_flight(model, PlanRequest(n_views=6, time_budget_s=2.0)).plan
+
+
+def orders_of(planned, *places):
+    model, plan = planned
+    points = tuple(RallyPoint(f"rally-{n}", place) for n, place in enumerate(places, 1))
+    model = replace(model, site=replace(model.site, rally_points=points))
+    (mission,) = missions_from_plan(plan, model.site.origin, model.site.home_enu_m)
+    return sortie_orders(plan, model, mission)
+
+
+def values(autopilot, **changes):
+    """Of a vehicle out of the box, but for a return above everything."""
+    usual = {name: float(vehicle_profile(autopilot).parameters[name]) for name in NAMES[autopilot]}
+    return {**usual, **({"RTL_ALT": 5000.0} if autopilot is ARDUPILOT else {}), **changes}
+
+
+def found(orders, autopilot, code, **changes):
+    checks = failsafe_checks(autopilot, values(autopilot, **changes), orders)
+    return next((check for check in checks if check.code == code), None)
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "changes", "verdict", "words"),
+    [
+        (ARDUPILOT, {}, Verdict.OK, "flies the mission on"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 1.0}, Verdict.OK, "5 s without the link, and it breaks the mission off"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 1.0, "FS_OPTIONS": 2.0}, Verdict.OK, "flies the mission on"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 5.0}, Verdict.WARN, "lands, whatever is below"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 7.0}, Verdict.WARN, "hovers until its battery is low"),
+        (ARDUPILOT, {"FS_GCS_ENABLE": 42.0}, Verdict.WARN, "is not known (FS_GCS_ENABLE 42)"),
+        (PX4, {}, Verdict.OK, "flies the mission on"),
+        (PX4, {"NAV_DLL_ACT": 2.0}, Verdict.OK, "10 s without the link"),
+        (PX4, {"NAV_DLL_ACT": 2.0, "COM_DLL_EXCEPT": 1.0}, Verdict.OK, "flies the mission on"),
+        (PX4, {"NAV_DLL_ACT": 5.0}, Verdict.BAD, "stops its motors and falls"),
+    ],
+)
+def test_what_happens_when_the_link_is_lost_is_told(planned, autopilot, changes, verdict, words):
+    check = found(orders_of(planned), autopilot, "link-loss", **changes)
+    assert check.verdict is verdict
+    assert words in check.text
+
+
+@pytest.mark.parametrize("autopilot", Autopilot)
+def test_a_vehicle_that_does_not_say_is_not_taken_for_safe(planned, autopilot):
+    checks = {check.code: check for check in failsafe_checks(autopilot, {}, orders_of(planned))}
+    assert checks["link-loss"].verdict is checks["return"].verdict is Verdict.WARN
+
+
+@pytest.mark.parametrize(("autopilot", "name", "factor"), [(ARDUPILOT, "RTL_ALT", 100.0), (PX4, "RTL_RETURN_ALT", 1.0)])
+def test_a_return_through_the_building_is_warned_of_until_the_height_suffices(planned, autopilot, name, factor):
+    """Of an aircraft behind it; at the height that an upload would set, all is well."""
+    plan, orders = planned[1], orders_of(planned)
+    behind = np.array([[0.0, 22.0, 5.0], [0.0, 22.0, 5.0]])
+    around = {each: replace(orders.surroundings[each], path_enu_m=behind) for each in Autopilot}
+    orders = replace(orders, surroundings=around)
+    changes = {"RTL_CONE_SLOPE": 0.0} if autopilot is ARDUPILOT else {}
+    low = found(orders, autopilot, "return", **changes, **{name: 6.0 * factor})
+    assert low.verdict is Verdict.WARN
+    assert "straight through the building" in low.text
+    assert f"set {name}" in low.text
+    high = found(orders, autopilot, "return", **changes, **{name: orders.return_height_m * factor})
+    assert high.verdict is Verdict.OK
+    assert high.value >= plan.constraints.min_distance_m - 0.5
+
+
+def test_rally_points_count_as_the_parameters_have_it(planned):
+    orders = orders_of(planned, (20.0, -28.0, 0.0))
+    home, rally = orders.home_enu_m, (20.0, -28.0, 0.0)
+    assert return_of(ARDUPILOT, values(ARDUPILOT), orders).destinations_enu_m == (home, rally)
+    assert return_of(ARDUPILOT, values(ARDUPILOT, RALLY_INCL_HOME=0.0), orders).destinations_enu_m == (rally,)
+    for kind, places in (
+        (0, (home, rally)),
+        (1, (rally,)),
+        (2, (home,)),
+        (3, (home, rally)),
+        (4, (home,)),
+        (5, (rally,)),
+    ):
+        assert return_of(PX4, values(PX4, RTL_TYPE=float(kind)), orders).destinations_enu_m == places
+    assert return_of(PX4, values(PX4, RTL_TYPE=1.0), orders_of(planned)).destinations_enu_m == (home,)
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "changes", "verdict", "words"),
+    [
+        (ARDUPILOT, {}, Verdict.WARN, "nothing keeps the aircraft from leaving it (FENCE_ENABLE 0)"),
+        (ARDUPILOT, {"FENCE_ENABLE": 1.0}, Verdict.OK, "it returns (FENCE_ACTION 1)"),
+        (ARDUPILOT, {"FENCE_ENABLE": 1.0, "FENCE_ACTION": 0.0}, Verdict.WARN, "nothing keeps"),
+        (PX4, {}, Verdict.OK, "it hovers (GF_ACTION 2)"),
+        (PX4, {"GF_ACTION": 4.0}, Verdict.BAD, "falls"),
+        (PX4, {"GF_ACTION": 5.0}, Verdict.OK, "it lands"),
+    ],
+)
+def test_what_happens_at_the_geofence_is_told_where_there_is_one(planned, autopilot, changes, verdict, words):
+    orders = orders_of(planned)
+    assert orders.fences
+    check = found(orders, autopilot, "fence-action", **changes)
+    assert check.verdict is verdict
+    assert words in check.text
+    assert found(replace(orders, fences=()), autopilot, "fence-action", **changes) is None
+
+
+def test_several_parameters_are_read_at_once_and_unknown_ones_are_given_up():
+    reads = ParameterReads(("A", "B", "C"), ARDUPILOT, VEHICLE)
+    assert [message.param_id for message in reads.start(0.0)] == ["A", "B", "C"]
+    reads.receive(Received(ParamValue("B", 2.0, 9, 1, 0), VEHICLE, 0.1))
+    reads.receive(Received(ParamValue("X", 2.0, 9, 1, 0), VEHICLE, 0.1))
+    reads.receive(Received(ParamValue("A", 2.0, 9, 1, 0), Address(2, 1), 0.1))
+    now_s, n_asked = 0.0, 1
+    while reads.outcome is None:
+        now_s += ATTEMPT_S
+        asked = reads.tick(now_s)
+        assert {message.param_id for message in asked} <= {"A", "C"}
+        n_asked += bool(asked)
+    assert reads.outcome == {"B": 2.0}
+    assert n_asked == N_ATTEMPTS
+
+
+def fly(orders, toy):
+    run = FlightRun(orders, RunOptions(sets_parameters=True, connect_s=10.0, ready_s=20.0), "toy")
+    return run, conduct(run, ToyLink(toy), lambda: toy.now_s)
+
+
+def toy_at_home(orders, **faults):
+    return Toy((round(orders.home.lat_deg * 1e7), round(orders.home.lon_deg * 1e7)), **faults)
+
+
+def test_rally_points_of_the_site_are_put_on_board_and_read_back(planned):
+    orders = orders_of(planned, (20.0, -28.0, 0.0), (-10.0, -30.0, 1.0))
+    toy = toy_at_home(orders)
+    run, outcome = fly(orders, toy)
+    assert outcome.succeeded
+    assert run.on_board.rally is True
+    assert [(item.command, item.x, item.y, item.z) for item in toy.rally] == [
+        (5100, item.x, item.y, item.z) for item in rally_messages(orders, ARDUPILOT)
+    ]
+    assert toy.rally[1].z == pytest.approx(1.0, abs=0.01)
+
+
+def test_rally_points_of_another_flight_are_cleared_and_the_pilot_is_told(planned):
+    orders = orders_of(planned)
+    toy = toy_at_home(orders, rally=[MissionItemInt(1, 1, 0, 3, 5100, 0, 1, 0, 0, 0, 0, 10, 10, 5.0, 2)])
+    run, outcome = fly(orders, toy)
+    assert outcome.succeeded
+    assert toy.rally == []
+    assert "the vehicle had 1 rally points of another flight" in str([note.text for note in outcome.notes])
+    assert [check.verdict for check in run.on_board.failsafes if check.code == "rally"] == [Verdict.WARN]
+
+
+def test_where_there_are_none_on_board_nothing_is_said_or_sent(planned):
+    orders = orders_of(planned)
+    run, outcome = fly(orders, toy_at_home(orders))
+    assert outcome.succeeded
+    assert not [note for note in outcome.notes if note.code == "warning-rally"]
+    assert run.on_board.rally is None
