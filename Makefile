@@ -34,6 +34,7 @@ $(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
 $(VENV)/.warm: $(VENV)/.ready
 	$(PY) -m planning.warm_up
 	$(PY) -m missions.simulator.warm_up
+	$(PY) -m reconstruction.warm_up
 	touch $@
 
 demo: setup

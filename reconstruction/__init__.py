@@ -1,1 +1,1 @@
-"""From photos to panels to the Gaussian model. This layer holds no code yet: planning and missions come first."""
+"""From photos to panels to the Gaussian model; the model itself is not built yet."""

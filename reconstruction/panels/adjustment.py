@@ -24,8 +24,11 @@ from reconstruction.rectify.surface import FacadeSurface
 
 Array = NDArray[np.float64]
 
-ROUNDS = 6
+ROUNDS = 8
 """Of linearising and solving: poses are good to metres and degrees, and it is nearly linear in them."""
+
+HALVINGS = 8
+"""Of a step that makes things worse, or moves a photo until it does not see the facade any more."""
 
 CONVERGED_M = 1e-6
 
@@ -39,7 +42,8 @@ STEP_RAD = 1e-6
 UNKNOWN_POSE = np.diag([5.0**2] * 3 + [np.radians(5.0) ** 2] * 3)
 """Covariance of a pose that states none: single GNSS, and a compass."""
 
-LEAST_SIGMA_M = 1e-4
+LEAST_SIGMA_M = 0.003
+"""Frames are built straight and evenly spaced to some millimetres, however sharply a photo shows them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,8 +99,15 @@ def adjust(photos: Sequence[PosedPhoto], fit: SurfaceFit, groups: Sequence[LineG
     covariance, residual = np.zeros((0, 0)), np.inf
     for _ in range(ROUNDS):
         step, covariance, residual = problem.solve(state, positions)
-        positions = positions + step[: len(groups)]
-        state = state.moved(step[len(groups) :], numbers)
+        cost = problem.cost(state, positions)
+        for _ in range(HALVINGS):
+            tried = state.moved(step[len(groups) :], numbers)
+            if problem.cost(tried, positions + step[: len(groups)]) <= cost:
+                positions, state = positions + step[: len(groups)], tried
+                break
+            step = 0.5 * step
+        else:
+            break
         if np.abs(step).max() < CONVERGED_M:
             break
     keep = len(groups) + len(fit.covariance)
@@ -186,6 +197,19 @@ class _Problem:
             right[part] -= self.pose_information[number] @ state.pose_changes[number]
         covariance = _inverse(normal)
         return covariance @ right, covariance, float(np.sqrt(squares / max(1, count)))
+
+    def cost(self, state: _State, positions: Array) -> float:
+        """Half the sum of squares, linear beyond `HUBER`, priors included; inf where a photo sees nothing any more."""
+        total = float(state.surface_change @ self.surface_information @ state.surface_change)
+        for number in self.numbers:
+            change = state.pose_changes[number]
+            total += float(change @ self.pose_information[number] @ change)
+            here = coordinates(state.photos[number], state.surface, self.lines[number])
+            if not np.isfinite(here).all():
+                return np.inf
+            off = np.abs(here - positions[self.groups[number]][:, None]) / self.sigmas[number][:, None]
+            total += float(np.where(off <= HUBER, off**2, HUBER * (2.0 * off - HUBER)).sum())
+        return 0.5 * total
 
     def _of_photo(self, state: _State, positions: Array, number: int, order: int, size: int) -> tuple[Array, Array]:
         """Design matrix and residuals of one photo's points, weighted."""

@@ -18,6 +18,7 @@ from reconstruction.cameras import PosedPhoto
 from reconstruction.panels.facades import Facade, building_facades
 from reconstruction.panels.record import SolvedFacade
 from reconstruction.panels.solve import solve_facade
+from reconstruction.rectify.fit import SurfaceFit
 from reconstruction.rectify.patches import PatchParameters, facades_in_photo
 from reconstruction.rectify.view import surface_view
 from reconstruction.segmentation.parameters import SegmentationParameters
@@ -62,10 +63,13 @@ class FoundPanels:
     ----------
     grids
         By the facade's id and the photo's number: what was found in each photo.
+    fits
+        By the facade's id: its surface as the coarse model has it, from which `solve_facade` starts.
     """
 
     facades: tuple[SolvedFacade, ...]
     grids: dict[tuple[str, int], FacadeGrid]
+    fits: dict[str, SurfaceFit]
     decisions: dict[str, Decision]
     findings: tuple[Finding, ...]
 
@@ -104,6 +108,7 @@ def find_panels(
         )
     solved: list[SolvedFacade] = []
     grids: dict[tuple[str, int], FacadeGrid] = {}
+    fits: dict[str, SurfaceFit] = {}
     decisions: dict[str, Decision] = {}
     findings: list[Finding] = []
     for order, facade in enumerate(facades):
@@ -121,11 +126,11 @@ def find_panels(
             )
             continue
         solved.append(result)
-        decisions[name] = facade.curvature
+        fits[name], decisions[name] = facade.fit, facade.curvature
         grids |= {(name, number): grid for number, grid in found.items()}
     if not solved:
         raise InfeasibleError("no grid of panels was found on any facade; choose sharper photos taken from the front")
-    return FoundPanels(tuple(solved), grids, decisions, tuple(findings))
+    return FoundPanels(tuple(solved), grids, fits, decisions, tuple(findings))
 
 
 def _grids(

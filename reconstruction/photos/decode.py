@@ -25,6 +25,13 @@ FLAGS = {
     8: cv2.IMREAD_REDUCED_GRAYSCALE_8,
 }
 
+COLOUR_FLAGS = {
+    1: cv2.IMREAD_COLOR,
+    2: cv2.IMREAD_REDUCED_COLOR_2,
+    4: cv2.IMREAD_REDUCED_COLOR_4,
+    8: cv2.IMREAD_REDUCED_COLOR_8,
+}
+
 MAX_PIXELS = 400 * 10**6
 """Larger pictures are refused: the largest aerial cameras have 150 megapixels, and a file of some kilobytes can claim
 4300. A progressive one takes 6 bytes per pixel while it is decoded."""
@@ -46,9 +53,9 @@ def grey_picture(photo: PhotoMetadata, scale: Scale = 1) -> NDArray[np.uint8]:
     return _picture(photo, FLAGS[scale], scale)
 
 
-def colour_picture(photo: PhotoMetadata) -> NDArray[np.uint8]:
-    """The picture, shape (h, w, 3), blue, green, red; errors as in `grey_picture`."""
-    return _picture(photo, cv2.IMREAD_COLOR, 1)
+def colour_picture(photo: PhotoMetadata, scale: Scale = 1) -> NDArray[np.uint8]:
+    """The picture, shape (h, w, 3), blue, green, red; scale and errors as in `grey_picture`."""
+    return _picture(photo, COLOUR_FLAGS[scale], scale)
 
 
 def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]:

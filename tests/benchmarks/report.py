@@ -30,8 +30,10 @@ RUN_COLUMNS = ["name", "status", "message", "seconds", "is_quick", "machine", "l
 
 
 def save(outcome: Outcome, folder: Path) -> None:
-    """Keep the rows and the circumstances of one run."""
+    """Keep the rows and the circumstances of one run; one that was skipped leaves an earlier run's as they are."""
     folder.mkdir(parents=True, exist_ok=True)
+    if outcome.status == "skipped" and (folder / f"{outcome.name}.csv").exists():
+        return
     _write_csv(folder / f"{outcome.name}.csv", COLUMNS, [asdict(row) for row in outcome.rows])
     runs = {run["name"]: run for run in _read_csv(folder / "runs.csv")}
     content = asdict(outcome)

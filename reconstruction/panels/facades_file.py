@@ -1,0 +1,66 @@
+"""`reflight-facades/1`: what is known of found facades beyond the corners of their panels (docs/file-formats.md)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from reconstruction.cameras import PosedPhoto
+from reconstruction.panels.find import FoundPanels
+from reconstruction.panels.record import SolvedFacade, SolvedPanel
+
+FACADES_FORMAT = "reflight-facades/1"
+DIGITS = 5
+
+
+def facades_bytes(found: FoundPanels, photos: Sequence[PosedPhoto]) -> bytes:
+    """Content of the file.
+
+    Parameters
+    ----------
+    photos
+        That were searched, in the order that `found` counts them.
+    """
+    content = {
+        "format": FACADES_FORMAT,
+        "facades": [_facade(facade, found, photos) for facade in found.facades],
+    }
+    return json.dumps(content, indent=1, allow_nan=False).encode()
+
+
+def _facade(facade: SolvedFacade, found: FoundPanels, photos: Sequence[PosedPhoto]) -> dict[str, Any]:
+    surface = facade.surface
+    return {
+        "id": facade.id,
+        "surface": {
+            "anchor_enu_m": _rounded(surface.anchor_enu_m),
+            "right_enu": _rounded(surface.right_enu, 9),
+            "up_enu": _rounded(surface.up_enu, 9),
+            "curvature_per_m": surface.curvature_per_m,
+        },
+        "curvature": asdict(found.decisions[facade.id]),
+        "rows": [asdict(line) for line in facade.rows],
+        "columns": [asdict(line) for line in facade.columns],
+        "photos": [photos[number].name for name, number in found.grids if name == facade.id],
+        "pose_changes": {photos[number].name: _rounded(change, 7) for number, change in facade.pose_changes.items()},
+        "panels": [_panel(panel) for panel in facade.panels],
+    }
+
+
+def _panel(panel: SolvedPanel) -> dict[str, Any]:
+    variances = np.maximum(np.diagonal(panel.covariance_m2, axis1=1, axis2=2), 0.0)
+    return {
+        "id": panel.id,
+        "row": panel.row,
+        "column": panel.column,
+        "confidence": round(panel.confidence, 4),
+        "corner_sigmas_enu_m": _rounded(np.sqrt(variances)),
+    }
+
+
+def _rounded(values: np.ndarray, digits: int = DIGITS) -> Any:
+    return np.round(values, digits).tolist()

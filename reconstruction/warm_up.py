@@ -1,0 +1,32 @@
+"""Compile the kernels of reconstruction once and keep them on disk: `python -m reconstruction.warm_up`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
+from reconstruction.dataset.panel_images import draw_panels
+from reconstruction.photos.sharpness import sharpness
+from reconstruction.scores.overlaps import pixel_overlaps
+from reconstruction.scores.raster import index_image
+from reconstruction.segmentation.segment import segment_rectified
+
+
+def compile_kernels() -> None:
+    """Run every kernel on small inputs."""
+    lens = Intrinsics(32, 24, 20.0, 20.0, 16.0, 12.0)
+    photo = PosedPhoto("", Path(), lens, Pose.looking(np.zeros(3), 0.0, 0.0))
+    draw_panels(photo, np.array([[[-1.0, 5.0, -1.0], [1.0, 5.0, -1.0], [1.0, 5.0, 1.0], [-1.0, 5.0, 1.0]]]))
+    y, x = np.mgrid[:400, :400]
+    grid = np.where((x % 80 < 6) | (y % 100 < 6), 60, 180) + np.random.default_rng(0).integers(0, 9, x.shape)
+    picture = grid.astype(np.uint8)
+    sharpness(picture)
+    segment_rectified(picture)
+    index = index_image([np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0]])], 12, 12)
+    pixel_overlaps(index, index)
+
+
+if __name__ == "__main__":
+    compile_kernels()
