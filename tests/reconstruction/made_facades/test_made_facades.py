@@ -266,3 +266,9 @@ def test_wrong_calls_are_refused() -> None:
         Layout(0, 3)
     with pytest.raises(ValueError, match="narrower"):
         Layout(mullion_width_m=1.2)
+    with pytest.raises(ValueError, match="missing_panels: expected a share"):
+        Layout(missing_panels=1.5)
+    with pytest.raises(ValueError, match="reflection: expected a share"):
+        Disturbances(reflection=-0.1)
+    with pytest.raises(ValueError, match="street"):
+        Disturbances(street_m=0.0)

@@ -216,10 +216,6 @@ def test_pictures_of_other_kinds_are_refused_in_words(bad: NDArray[np.generic]) 
         segment_image(bad)
 
 
-def test_parameters_out_of_range_are_named() -> None:
-    with pytest.raises(ValueError, match="long_side_px"):
-        SegmentationParameters(long_side_px=3)
-    with pytest.raises(ValueError, match="beta"):
-        SegmentationParameters(beta=0.0)
-    with pytest.raises(ValueError, match="max_tilt_deg"):
-        SegmentationParameters(max_tilt_deg=45.0)
+def test_the_papers_posterior_finds_the_same_grid() -> None:
+    truth = made(seed=3)
+    check(segment_rectified(truth.picture, SegmentationParameters(use_posterior=True)), truth)

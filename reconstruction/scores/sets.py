@@ -1,0 +1,180 @@
+"""Sets of photos with truth: made facades, annotated real ones, or a folder of the user's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from reconstruction.cameras import Intrinsics
+from reconstruction.made_facades.cases import Shape, case_name, random_case
+from reconstruction.made_facades.record import Case, MadeFacade
+from reconstruction.made_facades.render import make_facade
+from reconstruction.made_facades.scene import BASE_ABOVE_GROUND_M, BORDER_M
+from reconstruction.rectify.surface import FacadeSurface
+from reconstruction.rectify.view import surface_view
+from reconstruction.scores.annotated import READERS, RECTIFIED_SETS, SHOWABLE_SETS, AnnotatedPhoto
+from reconstruction.scores.overlaps import MOST_PANELS
+from reconstruction.scores.pictures import pictures_in, read_labels, read_picture
+from reconstruction.segmentation.record import Rectification
+from reconstruction.segmentation.views import WholePicture
+
+Mask = NDArray[np.bool_]
+
+MADE_SETS: dict[str, Shape] = {"made-planar": "planar", "made-curved": "curved"}
+EXTENT_MARGIN_M = 2.0
+"""What a coarse model of a glass building may be wrong by at its edges."""
+
+SET_NAMES = (*MADE_SETS, *READERS, "folder")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScoredPhoto:
+    """A photo with its truth.
+
+    Parameters
+    ----------
+    image
+        Shape (height, width, 3), uint8, blue, green, red.
+    index
+        Shape (height, width): number of the true panel, 0 for none.
+    region
+        Shape (height, width): everything that counts as glass; None: the panels.
+    views
+        Rectified views of its facades: from its pose and the surface it shows, or the photo itself where it is
+        fronto-parallel; None where nothing is known.
+    may_be_shown
+        Whether the photo's licence lets it appear in pictures of results.
+    """
+
+    name: str
+    image: NDArray[np.uint8]
+    index: NDArray[np.uint16]
+    region: Mask | None = None
+    views: tuple[Rectification, ...] | None = None
+    may_be_shown: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class PhotoSet:
+    """Photos by name, made or read one after the other, each when it is asked for."""
+
+    name: str
+    photo_names: tuple[str, ...]
+    photos: Callable[[], Iterator[ScoredPhoto]]
+
+    @property
+    def n_photos(self) -> int:
+        """How many there are."""
+        return len(self.photo_names)
+
+
+def made_set(
+    name: str, n_seeds: int, intrinsics: Intrinsics | None = None, extent_margin_m: float | None = EXTENT_MARGIN_M
+) -> PhotoSet:
+    """Made facades with strong reflections: `made-planar` or `made-curved`, seeds 0 to `n_seeds` - 1; see `scored`."""
+    shape = MADE_SETS[name]
+
+    def photos() -> Iterator[ScoredPhoto]:
+        for seed in range(n_seeds):
+            yield scored(make_facade(random_case(shape, seed, intrinsics)), extent_margin_m)
+
+    return PhotoSet(name, tuple(case_name(shape, seed) for seed in range(n_seeds)), photos)
+
+
+def scored(made: MadeFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) -> ScoredPhoto:
+    """A made facade as a photo to score, with what its stated pose shows of the wall's surface as its view.
+
+    Parameters
+    ----------
+    extent_margin_m
+        The view ends so far beyond the wall with its masonry, which is what a coarse model tells; where in it the glass
+        begins is not told. None: the extent is not known, and the view holds everything that the photo shows.
+    """
+    low = high = None
+    if extent_margin_m is not None:
+        beside, below = BORDER_M + extent_margin_m, BASE_ABOVE_GROUND_M + extent_margin_m
+        low = np.array([made.columns_m[0] - beside, made.rows_m[0] - below])
+        high = np.array([made.columns_m[-1] + beside, made.rows_m[-1] + beside])
+    view = surface_view(made.photo, surface_of(made.case), low, high)
+    return ScoredPhoto(made.photo.name, made.image, made.index, made.facade, (view,))
+
+
+def surface_of(case: Case) -> FacadeSurface:
+    """The made wall as the rest of the program knows surfaces."""
+    right, _, up = case.wall.wall_from_enu
+    return FacadeSurface(np.array(case.wall.base_enu_m), right, up, case.wall.curvature_per_m)
+
+
+def annotated_set(name: str, folder: Path) -> PhotoSet:
+    """Annotated photos of real facades: `cmp`, `ecp` or `offices`.
+
+    Parameters
+    ----------
+    folder
+        That holds the set's own folder, or that folder itself.
+
+    Raises
+    ------
+    InputError
+        There are no such photos.
+    """
+    subfolder, reader = READERS[name]
+    inner = folder / subfolder
+    folder = inner if inner.is_dir() else folder
+    names = tuple(photo.name for photo in reader(folder))
+
+    def photos() -> Iterator[ScoredPhoto]:
+        for photo in reader(folder):
+            yield _as_scored(photo, name)
+
+    return PhotoSet(name, names, photos)
+
+
+def _as_scored(photo: AnnotatedPhoto, set_name: str) -> ScoredPhoto:
+    views = whole_view(photo.image) if set_name in RECTIFIED_SETS else None
+    return ScoredPhoto(photo.name, photo.image, photo.index, views=views, may_be_shown=set_name in SHOWABLE_SETS)
+
+
+def whole_view(image: NDArray[np.uint8]) -> tuple[Rectification, ...]:
+    """The one view of a photo that is fronto-parallel already."""
+    height, width = image.shape[:2]
+    return (WholePicture(width, height),)
+
+
+def folder_set(images: Path, truth: Path, is_rectified: bool = False) -> PhotoSet:
+    """The user's own photos, with index images of the same names: PNG, 8 or 16 bit, 0 for no panel.
+
+    Parameters
+    ----------
+    is_rectified
+        Whether the photos are fronto-parallel.
+
+    Raises
+    ------
+    InputError
+        A folder holds no pictures, or photos and index images do not belong together.
+    """
+    image_paths, truth_paths = pictures_in(images), pictures_in(truth)
+    missing = [name for name in image_paths if name not in truth_paths]
+    if missing:
+        raise InputError(f"{truth}: expected an index image for each photo; '{missing[0]}' has none")
+
+    def photos() -> Iterator[ScoredPhoto]:
+        for name, path in image_paths.items():
+            image, index = read_picture(path), read_labels(truth_paths[name])
+            if index.ndim != 2:
+                raise InputError(f"{truth_paths[name]}: expected one channel with panel numbers, found a colour image")
+            if index.shape != image.shape[:2]:
+                (h, w), (ih, iw) = index.shape, image.shape[:2]
+                raise InputError(f"{truth_paths[name]}: {w} x {h} pixels, but its photo has {iw} x {ih}")
+            if index.max(initial=0) > MOST_PANELS:
+                raise InputError(f"{truth_paths[name]}: expected panel numbers up to {MOST_PANELS}, got {index.max()}")
+            views = whole_view(image) if is_rectified else None
+            yield ScoredPhoto(name, image, np.asarray(index, np.uint16), views=views)
+
+    return PhotoSet("folder", tuple(image_paths), photos)

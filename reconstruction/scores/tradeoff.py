@@ -1,0 +1,146 @@
+"""What accuracy of the search for panels costs in time: its knobs turned one at a time, on the same photos."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from planning.progress import QUIET, Monitor, QualityPoint
+from planning.tradeoff.curves import Curve, falling
+from planning.tradeoff.picture import GapAxis, Line, Panel
+from reconstruction.scores.metrics import PhotoScores, SetScores, summarise
+from reconstruction.scores.run import own_method, score_answer
+from reconstruction.scores.sets import PhotoSet
+from reconstruction.segmentation.parameters import DETECTORS, SegmentationParameters
+
+KNOBS = {"long_side_px": "image size", "n_samples": "samples", "detector": "detector"}
+"""Settings that trade quality for time, as the user knows them."""
+
+MIOU_AXIS = GapAxis(
+    label="individual mIoU",
+    ticks=(1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002),
+    text=lambda gap: f"{1.0 - gap:g}",
+    floor=1e-3,
+    bound_text="1: every panel to the pixel",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentVariants:
+    """Values of each knob; all others stay as they are."""
+
+    long_sides_px: tuple[int, ...] = (400, 800, 1200, 1600)
+    samples: tuple[int, ...] = (32, 128, 512, 0)
+    detectors: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.detectors if name not in DETECTORS]
+        if unknown:
+            raise ValueError(f"--detectors: expected {', '.join(DETECTORS)}, got {unknown[0]}")
+        if any(size < 16 for size in self.long_sides_px):
+            raise ValueError(f"--sizes: expected 16 or more, got {min(self.long_sides_px)}")
+        if any(number < 0 for number in self.samples):
+            raise ValueError(f"--samples: expected 0 (all) or more, got {min(self.samples)}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SettingScores:
+    """One setting of one knob and what came of it. The knob is empty for the settings that the others start from."""
+
+    knob: str
+    value: str
+    parameters: SegmentationParameters
+    scores: SetScores
+
+    @property
+    def gap(self) -> float:
+        """1 - individual mIoU."""
+        single = self.scores.individual_miou
+        return 1.0 if single is None else 1.0 - single.mean
+
+    @property
+    def name(self) -> str:
+        """For tables."""
+        return f"{self.knob} {self.value}" if self.knob else "as asked"
+
+
+def run_variants(
+    photos: PhotoSet, base: SegmentationParameters, variants: SegmentVariants, monitor: Monitor = QUIET
+) -> tuple[SettingScores, ...]:
+    """Score every setting on every photo; each photo is made or read once.
+
+    Raises
+    ------
+    InputError
+        A photo cannot be read.
+    OperationCancelled
+        The user cancelled.
+    """
+    settings = _settings(base, variants)
+    done: list[list[PhotoScores]] = [[] for _ in settings]
+    total = photos.n_photos * len(settings)
+    for number, photo in enumerate(photos.photos()):
+        for which, (_, _, parameters) in enumerate(settings):
+            monitor.report("comparing settings", number * len(settings) + which, total)
+            method = own_method(parameters)
+            if number == which == 0:
+                # Compiling is in no setting's time.
+                method(photo, QUIET)
+            answer = method(photo, QUIET)
+            done[which].append(score_answer(photo, answer))
+    return tuple(
+        SettingScores(knob, value, parameters, summarise(scores))
+        for (knob, value, parameters), scores in zip(settings, done, strict=True)
+    )
+
+
+def _settings(base: SegmentationParameters, variants: SegmentVariants) -> list[tuple[str, str, SegmentationParameters]]:
+    values: dict[str, Sequence[Any]] = {
+        "long_side_px": variants.long_sides_px,
+        "n_samples": variants.samples,
+        "detector": variants.detectors,
+    }
+    settings = [("", "", base)]
+    for name, knob in KNOBS.items():
+        settings += [(knob, str(value), replace(base, **{name: value})) for value in values[name]]
+    return settings
+
+
+def variant_rows(runs: Sequence[SettingScores]) -> list[dict[str, Any]]:
+    """Rows of the table."""
+    rows = []
+    for run in runs:
+        single, scores = run.scores.individual_miou, run.scores
+        rows.append(
+            {
+                "setting": run.name,
+                "seconds": round(scores.seconds.mean, 4),
+                "individual_miou": None if single is None else round(single.mean, 5),
+                "individual_miou_worst": None if single is None else round(single.worst, 5),
+                "overall_iou": round(scores.overall_iou.mean, 5),
+                "coverage_p5": round(scores.coverage[5], 5),
+                "missed": scores.n_missed,
+                "photos": len(scores.photos),
+            }
+        )
+    return rows
+
+
+def variants_panel(title: str, runs: Sequence[SettingScores]) -> Panel:
+    """A line for each knob: the best mIoU that its settings reach in the time they take."""
+    knobs = dict.fromkeys(run.knob for run in runs)
+    lines = []
+    for knob in knobs:
+        chosen = sorted((run for run in runs if run.knob == knob), key=lambda run: run.scores.seconds.mean)
+        best = min(chosen, key=lambda run: run.gap)
+        remark = f"{best.value}: " if knob else ""
+        remark += f"{1.0 - best.gap:.4f} in {best.scores.seconds.mean:.2f} s"
+        lines.append(Line(knob or "as asked", _curve(chosen), remark))
+    return Panel(title, tuple(lines))
+
+
+def _curve(runs: Sequence[SettingScores]) -> Curve:
+    """Settings of one knob, the fastest first."""
+    points = [QualityPoint(run.scores.seconds.mean, run.gap) for run in runs]
+    return falling(points, max(point.t_s for point in points))

@@ -1,0 +1,127 @@
+"""What the picture says about an edge of the grid at each place along one direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reconstruction.segmentation.peaks import local_maxima
+
+Array = NDArray[np.float64]
+
+LEAST_SUPPORT = 0.12
+"""Share of a column with edges below which it is no candidate; texture alone reaches about 0.1."""
+
+PROMINENCE = 0.03
+"""A candidate's support rises above its surroundings by so much."""
+
+WITNESSES = (4.0, 12.0)
+"""Fewest and most independent witnesses along a line. A mirror image may run along a whole pane, so every pane beside
+the line is one; more than a dozen are not independent either, because a reflected tower spans many panes."""
+
+UNSEEN = -3.0
+"""Least gain of an edge, nats: a profile of the colour of the glass beside it is unseen once in twenty cases. Two
+unseen edges then cost less than one odd size on a facade with a dozen equal ones."""
+
+LEAST_SEEN, MOST_SEEN = 0.35, 0.97
+"""Probabilities that a witness sees an edge of the grid, on curtain walls."""
+
+N_SEEN = 16
+"""Probabilities in between over which the likelihood is averaged."""
+
+CLUTTER_MARGIN = 0.25
+"""Clutter piles up more in some columns than in the usual one: by so much, as a share of `least_seen`."""
+
+FINE = 2
+"""Bins per pixel of the histogram that candidates are the peaks of: the edges of thin profiles are 2 to 3 px apart."""
+
+
+APART_PX = 2.0
+"""Two edges in one row are at least so far apart: what blurs the picture makes one of nearer ones."""
+
+
+def support_of(histogram: Array) -> Array:
+    """Support from a histogram of edges in bins of 1 / FINE pixels, shape (FINE * w,).
+
+    Narrow, so that a mirror image that is displaced from pane to pane does not add up; edges of the grid scatter by a
+    quarter of a pixel.
+    """
+    padded = np.pad(histogram, 1)
+    return np.asarray(np.minimum(padded[:-2] + padded[1:-1] + padded[2:], 1.0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evidence:
+    """Log-odds that a frame begins or ends at a place.
+
+    Panes along a line are witnesses. They see clutter with a probability that the usual column tells, and an edge of
+    the grid with one that differs from line to line, because a dark profile before dark glass is hardly seen: any from
+    `least_seen` to `MOST_SEEN` is as probable as the others.
+
+    Parameters
+    ----------
+    support
+        Shape (FINE * w,): share of the rows with an edge within 0.75 px of each bin, 0 to 1.
+    places_px
+        Shape (n,), ascending: local maxima, where an edge may be.
+    clutter
+        Probability that a witness sees an edge where the grid has none.
+    witnesses
+        Independent observations along a line.
+    least_seen
+        Probability with which a witness sees the worst edge of the grid.
+    """
+
+    support: Array
+    places_px: Array
+    clutter: float
+    witnesses: float
+    least_seen: float
+
+    @classmethod
+    def of(cls, support: Array, n_panes: int | None = None, least_seen: float = LEAST_SEEN) -> Evidence:
+        """From the support of bins of 1 / FINE pixels.
+
+        Parameters
+        ----------
+        n_panes
+            Along a line, where it is known.
+        least_seen
+            Probability with which a witness sees the worst edge of the grid.
+        """
+        witnesses = WITNESSES[1] if n_panes is None else float(np.clip(1.5 * n_panes, *WITNESSES))
+        if support.size == 0:
+            return cls(support, np.empty(0), 0.05, witnesses, least_seen)
+        padded = np.pad(support, 1)
+        positions, _ = local_maxima(0.25 * padded[:-2] + 0.5 * support + 0.25 * padded[2:], PROMINENCE)
+        found = _at(support, positions / FINE)
+        keep = found >= LEAST_SUPPORT
+        clutter = float(np.clip(np.quantile(support, 0.6) + CLUTTER_MARGIN * least_seen, 0.03, 0.4))
+        return cls(support, positions[keep] / FINE, clutter, witnesses, least_seen)
+
+    def gains(self, places_px: Array) -> Array:
+        """Gain of an edge at each place, shape (n,), nats; at least `UNSEEN`.
+
+        A place beside a maximum shows no edge of its own: the support there is that of the maximum.
+        """
+        share = np.where(self._is_beside(places_px), 0.0, _at(self.support, places_px))
+        given_clutter = share * np.log(self.clutter) + (1.0 - share) * np.log(1.0 - self.clutter)
+        seen = np.linspace(self.least_seen, MOST_SEEN, N_SEEN)
+        given_edge = share[:, None] * np.log(seen) + (1.0 - share[:, None]) * np.log(1.0 - seen)
+        likelihoods = self.witnesses * (given_edge - given_clutter[:, None])
+        gain = np.logaddexp.reduce(likelihoods, axis=1) - np.log(N_SEEN)
+        return np.asarray(np.maximum(gain, UNSEEN))
+
+    def _is_beside(self, places_px: Array) -> NDArray[np.bool_]:
+        if self.places_px.size == 0:
+            return np.zeros(places_px.shape, bool)
+        after = np.clip(np.searchsorted(self.places_px, places_px), 0, self.places_px.size - 1)
+        before = np.maximum(after - 1, 0)
+        near = np.minimum(np.abs(self.places_px[after] - places_px), np.abs(self.places_px[before] - places_px))
+        return np.asarray((near > 0.0) & (near < APART_PX))
+
+
+def _at(support: Array, places_px: Array) -> Array:
+    return np.asarray(support[np.clip((places_px * FINE).astype(int), 0, support.size - 1)])

@@ -1,0 +1,193 @@
+"""From a photo to its panels: rectify, find the grid, take the cells back into the photo."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.progress import QUIET, Monitor
+from reconstruction.rectify.warp import warp
+from reconstruction.segmentation.facades import views_without_pose
+from reconstruction.segmentation.fuse import fused
+from reconstruction.segmentation.grid import Axes, find_grid
+from reconstruction.segmentation.parameters import SegmentationParameters
+from reconstruction.segmentation.pictures import checked_image, grey
+from reconstruction.segmentation.record import FacadeGrid, FoundPanel, GridLine, Rectification, Segmentation
+from reconstruction.segmentation.refine import refined_lines
+from reconstruction.segmentation.straighten import straightening, straightening_of_grid
+from reconstruction.segmentation.views import CorrectedView, WholePicture, scaled_view
+
+Array = NDArray[np.float64]
+
+LEAST_FINER = 1.1
+"""Pixels of the finer picture per coarse one from which on a second look gains anything."""
+
+
+def segment_image(
+    image: NDArray[Any],
+    rectifications: Sequence[Rectification] | None = None,
+    parameters: SegmentationParameters | None = None,
+    monitor: Monitor = QUIET,
+    name: str = "",
+) -> Segmentation:
+    """Find the panels of all facades in a photo.
+
+    Parameters
+    ----------
+    image
+        Shape (h, w) or (h, w, 3), 8 bit.
+    rectifications
+        One view for each facade; None where no pose is known: they are found from vanishing points.
+    name
+        Of the photo, for the record.
+
+    Raises
+    ------
+    InputError
+        Not such a picture.
+    """
+    parameters = parameters or SegmentationParameters()
+    checked = checked_image(image)
+    height, width = checked.shape[:2]
+    if rectifications is None:
+        monitor.report("find vanishing points", 0, 1)
+        views: Sequence[Rectification] = views_without_pose(
+            grey(checked), parameters.max_tilt_deg, parameters.long_side_px, parameters.seed
+        )
+    else:
+        views = rectifications
+    facades = []
+    for number, view in enumerate(views):
+        monitor.report("find facades", number, len(views))
+        facades.append(segment_view(checked, view, parameters, monitor, _letters(number)))
+    return Segmentation(name, width, height, tuple(facades))
+
+
+def segment_rectified(
+    picture: NDArray[Any], parameters: SegmentationParameters | None = None, monitor: Monitor = QUIET
+) -> FacadeGrid:
+    """Find the panels of one facade in a picture whose rows and columns run along the grid's lines.
+
+    Raises
+    ------
+    InputError
+        Not a picture of shape (h, w) or (h, w, 3) and 8 bit.
+    """
+    checked = checked_image(picture)
+    view = WholePicture(checked.shape[1], checked.shape[0])
+    return segment_view(checked, view, parameters or SegmentationParameters(), monitor, "A")
+
+
+def segment_view(
+    image: NDArray[np.uint8],
+    view: Rectification,
+    parameters: SegmentationParameters,
+    monitor: Monitor,
+    facade_id: str,
+) -> FacadeGrid:
+    """Find the panels of one facade through its rectified view."""
+    scale = min(1.0, parameters.long_side_px / max(view.width_px, view.height_px))
+    small = scaled_view(view, scale)
+    picture, valid = _seen(image, small)
+    if parameters.straighten:
+        monitor.report("straighten", 0, 1)
+        bend = straightening(picture, parameters.max_tilt_deg, parameters.seed)
+        small, picture, valid = _bent(image, small, picture, valid, bend)
+    axes = Axes.of(picture, valid, parameters)
+    rows, columns = find_grid(axes, parameters, monitor)
+    if parameters.straighten and rows and columns:
+        last = straightening_of_grid(axes.down.edges, axes.across.edges, rows, columns)
+        if last is not None:
+            small, picture, valid = _bent(image, small, picture, valid, last)
+            rows, columns = find_grid(Axes.of(picture, valid, parameters), parameters, monitor)
+    finer = min(1.0, parameters.refined_long_side_px / max(view.width_px, view.height_px)) / scale
+    if finer > LEAST_FINER and rows and columns:
+        small = scaled_view(small, finer)
+        rows, columns = refined_lines(image, small, finer, rows, columns, monitor)
+    return facade_grid(facade_id, small, rows, columns)
+
+
+def segment_views(
+    images: Sequence[NDArray[np.uint8]],
+    views: Sequence[Rectification],
+    parameters: SegmentationParameters,
+    monitor: Monitor,
+    facade_id: str,
+) -> FacadeGrid:
+    """Find the panels of one facade in several photos at once, through views of the same window of it.
+
+    The grid is that of all views; its rectification and corners are those of the first one. Poses must agree to a pixel
+    of the rectified pictures, for the frames to lie on one another; nothing is straightened.
+
+    Raises
+    ------
+    InputError
+        The views are not of one size.
+    """
+    scale = min(1.0, parameters.long_side_px / max(max(view.width_px, view.height_px) for view in views))
+    small = [scaled_view(view, scale) for view in views]
+    seen = [warp(image, view) for image, view in zip(images, small, strict=True)]
+    monitor.report("fuse views", 0, 1)
+    picture, valid = fused([grey(picture) for picture, _ in seen], [mask for _, mask in seen])
+    rows, columns = find_grid(Axes.of(picture, None if valid.all() else valid, parameters), parameters, monitor)
+    return facade_grid(facade_id, small[0], rows, columns)
+
+
+Seen = tuple[Rectification, NDArray[np.uint8], NDArray[np.bool_] | None]
+
+
+def _bent(
+    image: NDArray[np.uint8],
+    view: Rectification,
+    picture: NDArray[np.uint8],
+    valid: NDArray[np.bool_] | None,
+    homography: Array | None,
+) -> Seen:
+    """The view and its picture through a homography; as they are without one."""
+    if homography is None:
+        return view, picture, valid
+    view = CorrectedView(view, homography, view.width_px, view.height_px)
+    return view, *_seen(image, view)
+
+
+def _seen(image: NDArray[np.uint8], view: Rectification) -> tuple[NDArray[np.uint8], NDArray[np.bool_] | None]:
+    """Grey rectified picture and where it shows the photo (None: everywhere)."""
+    picture, valid = warp(image, view)
+    return grey(picture), None if valid.all() else valid
+
+
+def facade_grid(
+    facade_id: str, view: Rectification, rows: tuple[GridLine, ...], columns: tuple[GridLine, ...]
+) -> FacadeGrid:
+    """Panels between lines; cells that the view cannot take back into the photo are missing."""
+    panels, missing = [], []
+    for from_top, (above, below) in enumerate(pairwise(rows)):
+        row = len(rows) - 2 - from_top
+        for column, (left, right) in enumerate(pairwise(columns)):
+            corners = view.to_photo(_corners(left, right, below, above))
+            if not np.isfinite(corners).all():
+                missing.append((row, column))
+                continue
+            confidence = min(line.confidence for line in (above, below, left, right))
+            panels.append(FoundPanel(f"{facade_id}-r{row}c{column}", row, column, corners, confidence))
+    return FacadeGrid(facade_id, view, rows, columns, tuple(panels), tuple(missing))
+
+
+def _corners(left: GridLine, right: GridLine, below: GridLine, above: GridLine) -> Array:
+    x0, x1 = left.position_px + left.width_px / 2, right.position_px - right.width_px / 2
+    y0, y1 = above.position_px + above.width_px / 2, below.position_px - below.width_px / 2
+    return np.array([[x0, y1], [x1, y1], [x1, y0], [x0, y0]])
+
+
+def _letters(number: int) -> str:
+    """A, B, ... Z, AA, AB, ..."""
+    name = ""
+    number += 1
+    while number:
+        number, digit = divmod(number - 1, 26)
+        name = chr(ord("A") + digit) + name
+    return name

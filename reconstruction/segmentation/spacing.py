@@ -1,0 +1,290 @@
+"""Which edges belong to the grid: the most probable set of frames, given evidence for edges and repeating spacings.
+
+Walking across a facade, panels and frame profiles alternate. A set of edges says where each begins and ends; its
+probability is that of the evidence (how much of each edge was seen) times that of the sizes. Sizes follow a Chinese
+restaurant process: a size is new, at a price, or one of those already on the facade, the cheaper the more often it
+occurs. So a regular facade is told by few sizes, alternating or grouped ones by a few more, and a random one by none;
+no number of sizes has to be chosen. Missing lines pay for themselves where two usual sizes replace an odd one.
+The best set is found by dynamic programming, the confidence of each edge by the sums over all sets (forward-backward).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reconstruction.segmentation.evidence import APART_PX, Evidence
+
+Array = NDArray[np.float64]
+
+SIZE_SIGMA_PX = 0.8
+"""Of one and the same size measured twice: both edges' errors."""
+
+CONCENTRATION = 1.0
+"""Of the Chinese restaurant process: weight of a new size against one sighting of a known one."""
+
+MOST_CROSSED = 0.4
+"""Of the usual support of crossing lines, that may be seen within a profile."""
+
+INSIDE_PX = 2.5
+LEAST_INSIDE_PX = 3
+"""Of a profile where crossing lines are looked for: off its edges by the blur, and long enough to tell."""
+
+CAUTION = (0.0, 6.0)
+"""Cost of each edge in the first round, nats; the better end result of both is taken. Reflections of another facade
+bring false lines with sizes of their own, which are counted unless only sure lines are at first."""
+
+ROUNDS = 4
+"""Of finding the set and counting its sizes again; real facades settle after two."""
+
+
+@dataclass(frozen=True, slots=True)
+class SizeLimits:
+    """Shortest panel, widest frame, and the length of the picture, pixels; widest frame as a share of usual panels."""
+
+    min_panel_px: float
+    max_frame_px: float
+    max_frame_share: float
+    length_px: float
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A profile from edge to edge (the same place twice for a joint without width), and its confidence, 0 to 1.
+
+    `is_inferred` where neither edge was seen: the spacing asks for it.
+    """
+
+    first_px: float
+    last_px: float
+    confidence: float
+    is_inferred: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sizes:
+    """Sizes seen so far, each shape (k,): middles (px) and how often; new ones have density `broad` per pixel."""
+
+    middles_px: Array
+    counts: Array
+    broad: float
+
+    def log_density(self, sizes_px: Array) -> Array:
+        """Log of the density of each size, any shape."""
+        total = float(self.counts.sum()) + CONCENTRATION
+        density = np.full(np.shape(sizes_px), CONCENTRATION / total * self.broad)
+        scale = 1.0 / (SIZE_SIGMA_PX * np.sqrt(2.0 * np.pi))
+        for middle, count in zip(self.middles_px, self.counts, strict=True):
+            off = (sizes_px - middle) / SIZE_SIGMA_PX
+            density += count / total * scale * np.exp(-0.5 * np.minimum(off * off, 1400.0))
+        return np.asarray(np.log(density))
+
+
+def _mean_between(values: Array, places_px: Array) -> Array:
+    """Mean of values over what lies inside each two places, shape (n, n), 0 where that is too short to tell."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    first = np.clip(np.ceil(places_px + INSIDE_PX), 0, values.size).astype(int)
+    last = np.clip(np.floor(places_px - INSIDE_PX), 0, values.size).astype(int)
+    length = last[None, :] - first[:, None]
+    return np.where(
+        length >= LEAST_INSIDE_PX, (sums[last][None, :] - sums[first][:, None]) / np.maximum(length, 1), 0.0
+    )
+
+
+def clustered(sizes_px: Array, broad: float) -> Sizes:
+    """Sizes that occur at least twice, those within three standard deviations of a neighbour taken together."""
+    ordered = np.sort(sizes_px)
+    if ordered.size == 0:
+        return Sizes(np.empty(0), np.empty(0), broad)
+    groups = np.split(ordered, np.nonzero(np.diff(ordered) > 3.0 * SIZE_SIGMA_PX)[0] + 1)
+    kept = [group for group in groups if group.size >= 2]
+    return Sizes(np.array([np.median(group) for group in kept]), np.array([float(g.size) for g in kept]), broad)
+
+
+def most_probable_frames(
+    evidence: Evidence, limits: SizeLimits, use_spacing: bool = True, crossed: Array | None = None
+) -> tuple[Frame, ...]:
+    """Find the most probable set of frames, from first to last.
+
+    Parameters
+    ----------
+    use_spacing
+        Count sizes and expect them again; without it all sizes are equally probable.
+    crossed
+        Shape (length,): how much of the other direction's lines is seen at each place, as a multiple of the usual. They
+        end at a profile and go on through a low row of panels, however dark: that tells the two apart.
+
+    Returns
+    -------
+    tuple
+        At least two, or none where nothing is more probable than an empty facade.
+    """
+    if not use_spacing:
+        fixed = _Costs.of(evidence.places_px, limits, *_no_sizes(limits), crossed)
+        gains = evidence.gains(evidence.places_px)
+        return _as_frames(_best_set(gains, fixed), evidence.places_px, gains, fixed)
+    results = [_settled(evidence, limits, crossed, caution) for caution in CAUTION]
+    return max(results, key=lambda result: result[0])[1]
+
+
+def _no_sizes(limits: SizeLimits) -> tuple[Sizes, Sizes]:
+    """Of panels and of frames, before any was seen."""
+    nothing = np.empty(0)
+    return Sizes(nothing, nothing, 1.0 / limits.length_px), Sizes(nothing, nothing, 1.0 / limits.max_frame_px)
+
+
+def _settled(
+    evidence: Evidence, limits: SizeLimits, crossed: Array | None, caution: float
+) -> tuple[float, tuple[Frame, ...]]:
+    """The set that counting its own sizes does not change any more, and the logarithm of its probability.
+
+    In the first round every edge costs `caution`: with much of it only sure lines tell the sizes.
+    """
+    panels, widths = _no_sizes(limits)
+    places, best = evidence.places_px, np.empty((0, 2))
+    for done in range(ROUNDS):
+        gains = evidence.gains(places) - (caution if done == 0 else 0.0)
+        costs = _Costs.of(places, limits, panels, widths, crossed)
+        pairs = _best_set(gains, costs)
+        if not pairs:
+            return 0.0, ()
+        found = places[np.array(pairs)]
+        if done > 0 and np.array_equal(found, best):
+            break
+        best = found
+        sizes, thick = best[1:, 0] - best[:-1, 1], best[:, 1] - best[:, 0]
+        panels, widths = clustered(sizes, panels.broad), clustered(thick[thick > 0.0], widths.broad)
+        widest = limits.max_frame_share * float(np.median(sizes))
+        limits = replace(limits, max_frame_px=min(limits.max_frame_px, widest))
+        places = _with_expected(evidence.places_px, best, panels, widths, limits.length_px)
+    gains = evidence.gains(places)
+    pairs = _best_set(gains, costs := _Costs.of(places, limits, panels, widths, crossed))
+    if not pairs:
+        return 0.0, ()
+    best = places[np.array(pairs)]
+    edges = np.unique(np.array(pairs))
+    sizes, thick = best[1:, 0] - best[:-1, 1], best[:, 1] - best[:, 0]
+    score = float(gains[edges].sum()) + _log_sequence(sizes, panels.broad) + _log_sequence(thick, widths.broad)
+    return score, _as_frames(pairs, places, gains, costs)
+
+
+def _log_sequence(sizes_px: Array, broad: float) -> float:
+    """Log of the density of sizes one after the other: each is new, or like those before it."""
+    total = 0.0
+    for index, size in enumerate(sizes_px):
+        before = sizes_px[:index]
+        total += float(Sizes(before, np.ones(index), broad).log_density(np.array([size]))[0])
+    return total
+
+
+def _with_expected(places: Array, frames: Array, panels: Sizes, widths: Sizes, length_px: float) -> Array:
+    """Places and those where known sizes let an edge be expected: across a profile, and across a panel."""
+    near = [places + sign * width for width in widths.middles_px for sign in (-1.0, 1.0)]
+    for size in panels.middles_px:
+        for width in (0.0, *widths.middles_px):
+            near += [frames[:, 1] + size + width, frames[:, 0] - size - width]
+    expected = np.sort(np.concatenate([*near, np.empty(0)]))
+    expected = expected[(expected >= 0.0) & (expected <= length_px)]
+    if expected.size == 0 or places.size == 0:
+        return places
+    after = np.clip(np.searchsorted(places, expected), 1, places.size - 1) if places.size > 1 else np.zeros(1, int)
+    distance = np.minimum(np.abs(expected - places[after]), np.abs(expected - places[after - 1]))
+    expected = expected[distance > SIZE_SIGMA_PX]
+    if expected.size:
+        expected = expected[np.concatenate([[True], np.diff(expected) > 0.5 * SIZE_SIGMA_PX])]
+    return np.sort(np.concatenate([places, expected]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Costs:
+    """Log densities between each two candidates, shape (n, n), upper triangle, and of a joint without width."""
+
+    panel: Array
+    frame: Array
+    joint: float
+
+    @classmethod
+    def of(cls, places_px: Array, limits: SizeLimits, panels: Sizes, widths: Sizes, crossed: Array | None) -> _Costs:
+        gap = places_px[None, :] - places_px[:, None]
+        panel = np.where(gap >= limits.min_panel_px, panels.log_density(gap), -np.inf)
+        frame = np.where((gap >= APART_PX) & (gap <= limits.max_frame_px), widths.log_density(gap), -np.inf)
+        if crossed is not None:
+            frame = np.where(_mean_between(crossed, places_px) > MOST_CROSSED, -np.inf, frame)
+        return cls(panel, frame, float(widths.log_density(np.zeros(1))[0]))
+
+    def mirrored(self) -> _Costs:
+        """Of the same walk from the other end."""
+        return _Costs(self.panel[::-1, ::-1].T, self.frame[::-1, ::-1].T, self.joint)
+
+
+def _best_set(gains: Array, costs: _Costs) -> list[tuple[int, int]]:
+    """Frames (first, last) of the best set by Viterbi's recursion; empty where no set beats the empty facade.
+
+    `closed[j]`: best walk whose last panel ends at edge j; `first[j]`: one of a first frame only, a panel may begin at
+    j; `opened[j]`: a panel may begin at j after others.
+    """
+    n = gains.size
+    first, first_from = np.empty(n), np.empty(n, int)
+    closed, closed_from = np.full(n, -np.inf), np.full(n, -1)
+    opened, opened_from = np.full(n, -np.inf), np.full(n, -1)
+    for j in range(n):
+        frame = np.append(costs.frame[:j, j] + gains[:j] + gains[j], gains[j] + costs.joint)
+        first_from[j] = int(np.argmax(frame))
+        first[j] = frame[first_from[j]]
+        if j == 0:
+            continue
+        panel = np.maximum(first[:j], opened[:j]) + costs.panel[:j, j] + gains[j]
+        closed_from[j] = int(np.argmax(panel))
+        closed[j] = panel[closed_from[j]]
+        frame = np.append(costs.frame[:j, j] + closed[:j] + gains[j], closed[j] + costs.joint)
+        opened_from[j] = int(np.argmax(frame))
+        opened[j] = frame[opened_from[j]]
+    j = int(np.argmax(opened)) if n else -1
+    if n == 0 or not opened[j] > 0.0:
+        return []
+    frames = []
+    while True:
+        frames.append((int(opened_from[j]), j))
+        i = int(closed_from[opened_from[j]])
+        if first[i] >= opened[i]:
+            return [(int(first_from[i]), i), *reversed(frames)]
+        j = i
+
+
+def _sums(gains: Array, costs: _Costs) -> tuple[Array, Array, float]:
+    """As `_best_set`, with sums over all walks in place of the best: log of `closed`, of `first` + `opened`, of all."""
+    n = gains.size
+    closed, first, opened = (np.full(n, -np.inf) for _ in range(3))
+    for j in range(n):
+        first[j] = np.logaddexp.reduce(np.append(costs.frame[:j, j] + gains[:j] + gains[j], gains[j] + costs.joint))
+        if j == 0:
+            continue
+        closed[j] = gains[j] + np.logaddexp.reduce(np.logaddexp(first[:j], opened[:j]) + costs.panel[:j, j])
+        opened[j] = np.logaddexp.reduce(np.append(costs.frame[:j, j] + closed[:j] + gains[j], closed[j] + costs.joint))
+    everything = np.logaddexp(0.0, np.logaddexp.reduce(opened, initial=-np.inf))
+    return closed, np.logaddexp(first, opened), float(everything)
+
+
+def _edge_confidences(places: Array, gains: Array, costs: _Costs) -> tuple[Array, Array]:
+    """Probabilities that a panel ends, and that one begins, within two standard deviations of each place."""
+    closed, begun, everything = _sums(gains, costs)
+    mirror_closed, mirror_begun, _ = _sums(gains[::-1], costs.mirrored())
+    ends = np.exp(np.minimum(closed + mirror_begun[::-1] - gains - everything, 0.0))
+    begins = np.exp(np.minimum(begun + mirror_closed[::-1] - gains - everything, 0.0))
+    near = np.abs(places[None, :] - places[:, None]) <= 2.0 * SIZE_SIGMA_PX
+    return np.minimum(near @ ends, 1.0), np.minimum(near @ begins, 1.0)
+
+
+def _as_frames(pairs: list[tuple[int, int]], places: Array, gains: Array, costs: _Costs) -> tuple[Frame, ...]:
+    """Frames with their confidence: the lesser of its two edges', of the inner one at either end of the facade."""
+    if not pairs:
+        return ()
+    ends, begins = _edge_confidences(places, gains, costs)
+    sure = [min(float(ends[first]), float(begins[last])) for first, last in pairs]
+    sure[0], sure[-1] = float(begins[pairs[0][1]]), float(ends[pairs[-1][0]])
+    return tuple(
+        Frame(float(places[i]), float(places[j]), p, bool(max(gains[i], gains[j]) <= 0.0))
+        for (i, j), p in zip(pairs, sure, strict=True)
+    )
