@@ -38,6 +38,12 @@ LINE_TILT_DEG = 2.0
 MOST_WIDER = 2.5
 """The first and last profile may be so many times as wide as the usual one, as where two elements meet."""
 
+PARTS = (2, 3, 4)
+"""Into how many parts, overlapping by half, an extent is divided where nothing is found in the whole of it."""
+
+LEAST_IN_PART = 5
+"""Lines that a part must show to be believed: a part sees fewer panes, and reflections more easily look like lines."""
+
 EXTENT_ROUNDS = 4
 """Of looking for columns within the found height and rows within the found width."""
 
@@ -102,12 +108,10 @@ def find_grid(
     for done in range(EXTENT_ROUNDS if parameters.find_extent else 1):
         monitor.report("find lines", done, EXTENT_ROUNDS)
         before = y_extent, x_extent
-        columns = find_lines(
-            down, y_extent, parameters, crossed_by(across.edges.is_edge, rows, x_extent), _n_panes(rows)
-        )
+        columns = search(down, y_extent, parameters, crossed_by(across.edges.is_edge, rows, x_extent), _n_panes(rows))
         if len(rows) < 2 and len(columns) > 1 and parameters.find_extent:
             x_extent = columns[0].position_px, columns[-1].position_px
-        rows = find_lines(
+        rows = search(
             across, x_extent, parameters, crossed_by(down.edges.is_edge, columns, y_extent), _n_panes(columns)
         )
         if len(columns) > 1:
@@ -142,6 +146,30 @@ def _n_panes(lines: tuple[GridLine, ...]) -> int | None:
 def _inner(lines: tuple[GridLine, ...]) -> tuple[GridLine, ...]:
     """Lines with panels on both sides; all of them where there are too few, though the outer ones may be of a wall."""
     return lines[1:-1] if len(lines) > 3 else lines
+
+
+def search(
+    axis: Axis,
+    extent_px: tuple[float, float],
+    parameters: SegmentationParameters,
+    crossed: Array | None = None,
+    n_panes: int | None = None,
+) -> tuple[GridLine, ...]:
+    """As `find_lines`, and where that finds next to nothing, in parts of the extent: the facade may be one of them.
+
+    Lines that fill a third of a picture full of other buildings drown in the whole of it.
+    """
+    lines = find_lines(axis, extent_px, parameters, crossed, n_panes)
+    if len(lines) > 2 or not parameters.find_extent:
+        return lines
+    start, length = extent_px[0], extent_px[1] - extent_px[0]
+    for n_parts in PARTS:
+        step = 0.5 * length / n_parts
+        parts = [(start + i * step, start + (i + 2) * step) for i in range(2 * n_parts - 1)]
+        best = max((find_lines(axis, part, parameters, crossed, n_panes) for part in parts), key=len)
+        if len(best) >= LEAST_IN_PART:
+            return best
+    return lines
 
 
 def find_lines(

@@ -51,9 +51,9 @@ def measure(context: Context) -> Iterator[Row]:
         n_few = QUICK_SEEDS if context.is_quick else FEW_SEEDS
         scores, _ = score_set(made_set(name, n_few, extent_margin_m=None), own_method())
         yield from _scores(f"{name}, extent of the wall not known", scores, n_few)
-    yield from _large(2 if context.is_quick else 6)
-    yield from _knobs(context, 1 if context.is_quick else 4)
-    yield from _detectors(QUICK_SEEDS if context.is_quick else 10)
+    yield from _large(1 if context.is_quick else 4)
+    yield from _knobs(context)
+    yield from _detectors(1 if context.is_quick else 10)
     for name in REAL_SETS:
         yield from _real(context, name)
     yield from _counting()
@@ -97,15 +97,18 @@ def _large(n_seeds: int) -> Iterator[Row]:
                   slowest < LARGE_S, n_seeds)  # fmt: skip
 
 
-def _knobs(context: Context, n_seeds: int) -> Iterator[Row]:
+def _knobs(context: Context) -> Iterator[Row]:
     """Accuracy against the size of the picture that is searched, and the pixels of a row that are compared."""
-    photos = made_set("made-planar", n_seeds, LARGE)
-    variants = SegmentVariants(SIZES_PX, (16, 32, 64, 128, 512, 2048))
-    runs = run_variants(photos, SegmentationParameters(), variants)
-    title = f"made-planar at 5280 x 3956, {n_seeds} photos"
+    n_seeds, camera, sizes_px, samples = 3, LARGE, SIZES_PX, (16, 32, 64, 128, 512, 2048)
+    if context.is_quick:
+        n_seeds, camera, sizes_px, samples = 1, wide_camera(), SIZES_PX[:4], (16, 512)
+    photos = made_set("made-planar", n_seeds, camera)
+    runs = run_variants(photos, SegmentationParameters(), SegmentVariants(sizes_px, samples))
+    scene = f"made-planar, {camera.width_px} x {camera.height_px}"
+    title = f"{scene}, {n_seeds} photos"
     draw(title, [variants_panel("accuracy against time for one photo", runs)], MIOU_AXIS,
          context.folder / "segmentation-knobs.png")  # fmt: skip
-    yield from (_setting("made-planar, 5280 x 3956", run, n_seeds) for run in runs)
+    yield from (_setting(scene, run, n_seeds) for run in runs)
 
 
 def _detectors(n_seeds: int) -> Iterator[Row]:

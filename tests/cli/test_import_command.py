@@ -92,7 +92,7 @@ def test_damaged_missions_are_refused_with_a_reason(reflight, pane, shared_data,
 def test_photos_plans_and_sites_are_no_missions(reflight, pane, shared_data, tmp_path):
     out = tmp_path / "p.json"
     photo = next((shared_data / "dji" / "photos").iterdir())
-    assert "no mission file that is known" in reflight("import", photo, "--site", pane / "site.json", "-o", out).error
+    assert "found a photo" in reflight("import", photo, "--site", pane / "site.json", "-o", out).error
     error = reflight("import", pane / "plan.json", "--site", pane / "site.json", "-o", out).error
     assert "found a plan; it needs no import" in error
     assert (

@@ -23,7 +23,7 @@ def test_made_photos_are_scored_and_the_worst_shown(reflight, tmp_path):
     with (out / "segmentation-scores.csv").open(newline="") as file:
         assert [row["photo"] for row in csv.DictReader(file)] == ["planar-000", "planar-001"]
     assert all(cv2.imread(path) is not None for path in done.json["pictures"])
-    text = reflight("score", "segmentation", *QUICK, "-o", out).out
+    text = reflight("score", "segmentation", "--seeds", 1, "--width", 480, "--extent-unknown", "-o", out).out
     assert "individual mIoU" in text
     assert "coverage, 5 % percentile" in text
 
