@@ -25,6 +25,7 @@ def phrasebook() -> Phrasebook:
         insight,
         mission,
         parts,
+        photos,
         plan,
         project,
         report,
@@ -33,7 +34,7 @@ def phrasebook() -> Phrasebook:
         stages,
     )
 
-    tables = (dji, fly, insight, mission, parts, plan, project, report, site, site_import, stages)
+    tables = (dji, fly, insight, mission, parts, photos, plan, project, report, site, site_import, stages)
     return Phrasebook(source for table in tables for source in table.SENTENCES)
 
 

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PARTS = ("planning", "missions", "groundstation/vehicle", "groundstation/services")
+PARTS = ("planning", "missions", "reconstruction", "groundstation/vehicle", "groundstation/services")
 
 TOPS = {"planning", "missions", "reconstruction", "groundstation"}
 

@@ -17,6 +17,7 @@ from groundstation.gui.sentences import (
     insight,
     mission,
     parts,
+    photos,
     plan,
     project,
     report,
@@ -42,7 +43,7 @@ from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
-FROM_SOURCES = (dji, fly, insight, mission, plan, project, report, site, site_import, stages)
+FROM_SOURCES = (dji, fly, insight, mission, photos, plan, project, report, site, site_import, stages)
 """Tables of whole sentences; `parts` holds words and what Python says."""
 
 NOT_SHOWN = {
@@ -53,6 +54,15 @@ NOT_SHOWN = {
     "groundstation/services/brief_pictures.py": "drawings; their words come from brief_html.py",
     "groundstation/services/import_words.py": "patterns, and English for what the import says otherwise",
     "missions/dji/xml_text.py": "file content",
+    **{
+        f"reconstruction/colmap/{name}.py": "the window reads no COLMAP models"
+        for name in ("binary", "camera_models", "folder", "georeference", "text")
+    },
+    "reconstruction/rectify/curvature.py": "the decision about each facade, for the command line",
+    "reconstruction/rectify/vanishing_view.py": "facades in the window are rectified by their poses",
+    "reconstruction/segmentation/fuse.py": "views are fused in measurements only",
+    "reconstruction/segmentation/parameters.py": "settings are read from files on the command line",
+    "reconstruction/segmentation/pictures.py": "the window decodes its photos itself",
     "missions/simulator/ardupilot_scheduler.py": "texts of an autopilot, which no vehicle translates",
     "missions/simulator/px4_scheduler.py": "texts of an autopilot",
     "missions/simulator/commands.py": "texts of an autopilot",
@@ -82,6 +92,7 @@ NO_SENTENCE = {
         *("smallest clearance", "findings: {0}"),
     ),
     "stands in `parts` with the words of each constraint": ("{0} {1} instead of {2}",),
+    "stands in `parts` without its colon": ("focal lengths are from: ",),
     "patterns that other messages are searched for": (
         *(" - at `$", "^Object missing", "\\bsortie (\\d+), leg (\\d+)\\b", "sortie (\\d+)", "QGC WPL (\\d+)"),
         " to WGS 84",
@@ -96,10 +107,13 @@ NO_SENTENCE = {
     ),
     "names of states, for which the window has its own words or none": (
         *("on the ground", "in the air", "taking off", "to come", "RTK float", "RTK fixed", "Exchange | None"),
+        "cut off",
     ),
     "said on the command line only": (
         *("{0}; what was flown before is in {1}", "sortie {0}: ", ", asked for"),
         "{0}nothing was recorded: the vehicle sent no positions in flight",
+        "the site has no building mesh, and panels are found on one; name a mesh instead",
+        "the site would be written over the file it is imported from; name another file",
     ),
     "options, for which `import_words` puts the label of a field": (
         *("--rows {0} --columns {1}", "--panel-grid {0}", "--gap {0}"),

@@ -334,6 +334,22 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "at the geofence it hovers ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "at the geofence it stops its motors and falls ({0}): set it otherwise"),
     QT_TRANSLATE_NOOP("Sentences", "what the vehicle does at the geofence is not known: see {0}"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the sortie climbs to {0} m above take-off, the vehicle's fence ends at {1} m: raise {2}",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "the sortie climbs to {0} m below the vehicle's fence: raise {1}"),
+    QT_TRANSLATE_NOOP("Sentences", "the sortie stays {0} m below the vehicle's fence ({1})"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the sortie goes {0} m away from home, the vehicle's fence ends at {1} m: raise {2}",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "the sortie comes within {0} m of the vehicle's fence: raise {1}"),
+    QT_TRANSLATE_NOOP("Sentences", "the sortie stays {0} m inside the vehicle's fence ({1})"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} is {1}: the autopilot commands no camera, or no gimbal; set it to {2} and restart the vehicle",
+    ),
     QT_TRANSLATE_NOOP("Sentences", "the rally points ({0}) were not uploaded yet"),
     QT_TRANSLATE_NOOP("Sentences", "the rally points ({0}) are on board, read back and equal"),
     QT_TRANSLATE_NOOP(

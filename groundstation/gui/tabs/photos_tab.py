@@ -1,29 +1,22 @@
-"""The Photos tab: its place in the window; what it will do is not built yet, and it says so."""
+"""The Photos tab: read the photos of a flight, find the glass panels in them, and correct what was found."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication
-
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.prepared_tab import PreparedTab
+    from groundstation.gui.photos.photos_page import PhotosPage
     from groundstation.gui.stage import Stage
     from groundstation.gui.workspace import Workspace
 
 
-def make(_workspace: Workspace, _stage: Stage) -> PreparedTab:
-    """Page that says what to do meanwhile."""
-    from groundstation.gui.prepared_tab import PreparedTab
+def make(workspace: Workspace, stage: Stage) -> PhotosPage:
+    """Strip, map and findings of the photos, and the grid over the one that is chosen."""
+    from groundstation.gui.photos.photos_page import PhotosPage
 
-    return PreparedTab(
-        QCoreApplication.translate("Tabs", "Reading photos in this window is not built yet."),
-        QCoreApplication.translate(
-            "Tabs", "Keep the photos of each flight in the project's folder 'photos'; they will be read from there."
-        ),
-    )
+    return PhotosPage(workspace, stage)
 
 
 TAB = TabSpec(
@@ -33,4 +26,5 @@ TAB = TabSpec(
     tip=QT_TRANSLATE_NOOP("Tabs", "Read the photos and find the glass panels"),
     place=Place.WHOLE_PAGE,
     make=make,
+    implementation="groundstation.gui.photos.photos_page",
 )

@@ -1014,6 +1014,25 @@ Blickrichtung: {2}</translation>
     </message>
 </context>
 <context>
+    <name>FacadeTable</name>
+    <message>
+        <source>Facades found</source>
+        <translation>Gefundene Fassaden</translation>
+    </message>
+    <message>
+        <source>Facade</source>
+        <translation>Fassade</translation>
+    </message>
+    <message>
+        <source>Panels</source>
+        <translation>Scheiben</translation>
+    </message>
+    <message>
+        <source>Photos</source>
+        <translation>Fotos</translation>
+    </message>
+</context>
+<context>
     <name>FindingsList</name>
     <message>
         <source>Findings</source>
@@ -1479,6 +1498,25 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Add panel grid {0}</source>
         <translation>Scheibenraster {0} hinzufügen</translation>
+    </message>
+</context>
+<context>
+    <name>GridView</name>
+    <message>
+        <source>Photo with the grid found in it</source>
+        <translation>Foto mit dem Raster, das darin gefunden wurde</translation>
+    </message>
+    <message>
+        <source>row {0}, column {1}</source>
+        <translation>Reihe {0}, Spalte {1}</translation>
+    </message>
+    <message>
+        <source>{0}: no panel</source>
+        <translation>{0}: keine Scheibe</translation>
+    </message>
+    <message>
+        <source>{0}: confidence {1:.0f} %</source>
+        <translation>{0}: Sicherheit {1:.0f} %</translation>
     </message>
 </context>
 <context>
@@ -2449,6 +2487,45 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>PhotoPane</name>
+    <message>
+        <source>Photo</source>
+        <translation>Foto</translation>
+    </message>
+    <message>
+        <source>Rectified</source>
+        <translation>Entzerrt</translation>
+    </message>
+    <message>
+        <source>Whole</source>
+        <translation>Ganz</translation>
+    </message>
+    <message>
+        <source>Show all of the picture (0)</source>
+        <translation>Das ganze Bild zeigen (0)</translation>
+    </message>
+    <message>
+        <source>Facade whose grid is corrected</source>
+        <translation>Fassade, deren Raster berichtigt wird</translation>
+    </message>
+    <message>
+        <source>Choose a photo in the strip below.</source>
+        <translation>Wählen Sie unten im Streifen ein Foto.</translation>
+    </message>
+    <message>
+        <source>Facade {0}</source>
+        <translation>Fassade {0}</translation>
+    </message>
+    <message>
+        <source>The photo is being decoded ...</source>
+        <translation>Das Foto wird dekodiert ...</translation>
+    </message>
+    <message>
+        <source>This photo cannot be shown.</source>
+        <translation>Dieses Foto kann nicht gezeigt werden.</translation>
+    </message>
+</context>
+<context>
     <name>PhotoStrip</name>
     <message>
         <source>Photos of the sortie</source>
@@ -2493,6 +2570,155 @@ Blickrichtung: {3}</translation>
     <message>
         <source>new sections: {0}</source>
         <translation>neue Sektoren: {0}</translation>
+    </message>
+</context>
+<context>
+    <name>PhotosDesk</name>
+    <message>
+        <source>Open or import a site first: photos are placed on it.</source>
+        <translation>Öffnen oder importieren Sie zuerst einen Standort: darauf werden die Fotos eingeordnet.</translation>
+    </message>
+    <message>
+        <source>Read photos</source>
+        <translation>Fotos lesen</translation>
+    </message>
+    <message>
+        <source>Find panels</source>
+        <translation>Scheiben suchen</translation>
+    </message>
+    <message>
+        <source>Measure the search</source>
+        <translation>Suche messen</translation>
+    </message>
+    <message>
+        <source>Use found panels</source>
+        <translation>Gefundene Scheiben verwenden</translation>
+    </message>
+    <message>
+        <source>Solve panels</source>
+        <translation>Scheiben berechnen</translation>
+    </message>
+</context>
+<context>
+    <name>PhotosPage</name>
+    <message>
+        <source>Read photos</source>
+        <translation>Fotos lesen</translation>
+    </message>
+    <message>
+        <source>Choose folder ...</source>
+        <translation>Ordner wählen ...</translation>
+    </message>
+    <message>
+        <source>Find panels</source>
+        <translation>Scheiben suchen</translation>
+    </message>
+    <message>
+        <source>Use these panels</source>
+        <translation>Diese Scheiben verwenden</translation>
+    </message>
+    <message>
+        <source>Poses, sharpness, exposure and the coverage that was achieved</source>
+        <translation>Lagen, Schärfe, Belichtung und die erreichte Abdeckung</translation>
+    </message>
+    <message>
+        <source>What is wrong with photos stands here.</source>
+        <translation>Was an Fotos nicht stimmt, steht hier.</translation>
+    </message>
+    <message>
+        <source>Find the grid of every facade in the photos and put it into 3-D</source>
+        <translation>Das Raster jeder Fassade in den Fotos suchen und in 3D bringen</translation>
+    </message>
+    <message>
+        <source>Put these panels into the site in the place of its own; undo takes it back</source>
+        <translation>Diese Scheiben anstelle der bisherigen in den Standort setzen; Rückgängig nimmt es zurück</translation>
+    </message>
+    <message>
+        <source>Panels</source>
+        <translation>Scheiben</translation>
+    </message>
+    <message>
+        <source>Accuracy and time</source>
+        <translation>Genauigkeit und Zeit</translation>
+    </message>
+    <message>
+        <source>Folder of photos</source>
+        <translation>Ordner mit Fotos</translation>
+    </message>
+    <message>
+        <source>Move line</source>
+        <translation>Linie verschieben</translation>
+    </message>
+    <message>
+        <source>Add line</source>
+        <translation>Linie hinzufügen</translation>
+    </message>
+    <message>
+        <source>Remove line</source>
+        <translation>Linie entfernen</translation>
+    </message>
+    <message>
+        <source>Restore panel</source>
+        <translation>Scheibe wiederherstellen</translation>
+    </message>
+    <message>
+        <source>Remove panel</source>
+        <translation>Scheibe entfernen</translation>
+    </message>
+    <message>
+        <source>Folder: {0}</source>
+        <translation>Ordner: {0}</translation>
+    </message>
+    <message>
+        <source>Open or import a site first: photos are placed on it.</source>
+        <translation>Öffnen oder importieren Sie zuerst einen Standort: darauf werden die Fotos eingeordnet.</translation>
+    </message>
+    <message>
+        <source>Read the photos of the flight.</source>
+        <translation>Lesen Sie die Fotos des Flugs.</translation>
+    </message>
+    <message>
+        <source>Find the panels in these photos.</source>
+        <translation>Suchen Sie die Scheiben in diesen Fotos.</translation>
+    </message>
+    <message>
+        <source>The corrected panels are being solved ...</source>
+        <translation>Die berichtigten Scheiben werden berechnet ...</translation>
+    </message>
+    <message>
+        <source>No grid was looked for in this photo; photos with one have the sign ▦.</source>
+        <translation>In diesem Foto wurde kein Raster gesucht; Fotos mit einem haben das Zeichen ▦.</translation>
+    </message>
+    <message>
+        <source>Blue panels are sure, orange less so, pink ones doubtful; dashed lines were not seen.</source>
+        <translation>Blaue Scheiben sind sicher, orange weniger, rosa zweifelhaft; gestrichelte Linien wurden nicht gesehen.</translation>
+    </message>
+    <message>
+        <source>The site has other panels now: read the photos again to count what they show.</source>
+        <translation>Der Standort hat jetzt andere Scheiben: lesen Sie die Fotos neu, um zu zählen, was sie zeigen.</translation>
+    </message>
+    <message>
+        <source>{0} photos, {1} of them usable.</source>
+        <translation>{0} Fotos, davon {1} brauchbar.</translation>
+    </message>
+    <message>
+        <source>They show {0} of {1} sections.</source>
+        <translation>Sie zeigen {0} von {1} Sektoren.</translation>
+    </message>
+    <message>
+        <source>They show {0} sections; the plan promised {1}, of which {2:.1f} % are seen.</source>
+        <translation>Sie zeigen {0} Sektoren; der Plan versprach {1}, von denen {2:.1f} % zu sehen sind.</translation>
+    </message>
+</context>
+<context>
+    <name>PlaceMap</name>
+    <message>
+        <source>Where the photos were taken</source>
+        <translation>Wo die Fotos aufgenommen wurden</translation>
+    </message>
+    <message>
+        <source>N ↑</source>
+        <translation>N ↑</translation>
     </message>
 </context>
 <context>
@@ -3029,6 +3255,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>At the geofence</source>
         <translation>Am Geofence</translation>
+    </message>
+    <message>
+        <source>Height limit</source>
+        <translation>Höhengrenze</translation>
+    </message>
+    <message>
+        <source>Circle around home</source>
+        <translation>Kreis um den Startplatz</translation>
     </message>
 </context>
 <context>
@@ -4604,6 +4838,22 @@ Take it over?</source>
         <translation>kein bekannter Wert: {0}</translation>
     </message>
     <message>
+        <source>black</source>
+        <translation>schwarz</translation>
+    </message>
+    <message>
+        <source>white</source>
+        <translation>weiß</translation>
+    </message>
+    <message>
+        <source>longer</source>
+        <translation>länger</translation>
+    </message>
+    <message>
+        <source>shorter</source>
+        <translation>kürzer</translation>
+    </message>
+    <message>
         <source>number</source>
         <translation>Zahl</translation>
     </message>
@@ -5324,6 +5574,10 @@ Take it over?</source>
         <translation>eine TSPLIB-Aufgabe</translation>
     </message>
     <message>
+        <source>a photo</source>
+        <translation>ein Foto</translation>
+    </message>
+    <message>
         <source>a folder</source>
         <translation>ein Ordner</translation>
     </message>
@@ -5358,6 +5612,10 @@ Take it over?</source>
     <message>
         <source>a TSPLIB instance (.tsp or .atsp)</source>
         <translation>eine TSPLIB-Aufgabe (.tsp oder .atsp)</translation>
+    </message>
+    <message>
+        <source>a photo (JPEG, PNG, TIFF or BMP)</source>
+        <translation>ein Foto (JPEG, PNG, TIFF oder BMP)</translation>
     </message>
     <message>
         <source>&apos;plan&apos; makes a plan of it</source>
@@ -5689,7 +5947,7 @@ Take it over?</source>
     </message>
     <message>
         <source>cannot be written: the folder &apos;{0}&apos; is write-protected; name a file in another one</source>
-        <translation>nicht schreibbar: Der Ordner &apos;{0}&apos; ist schreibgeschützt; eine Datei in einem anderen angeben</translation>
+        <translation>nicht zu schreiben: Der Ordner &apos;{0}&apos; ist schreibgeschützt; eine Datei in einem anderen nennen</translation>
     </message>
     <message>
         <source>would replace {0}, which it is made from; name another file</source>
@@ -7092,6 +7350,34 @@ Take it over?</source>
         <translation>was das Fluggerät am Geofence tut, ist nicht bekannt: siehe {0}</translation>
     </message>
     <message>
+        <source>the sortie climbs to {0} m above take-off, the vehicle&apos;s fence ends at {1} m: raise {2}</source>
+        <translation>der Flug steigt auf {0} m über Start, der Geofence des Fluggeräts endet bei {1} m: {2} erhöhen</translation>
+    </message>
+    <message>
+        <source>the sortie climbs to {0} m below the vehicle&apos;s fence: raise {1}</source>
+        <translation>der Flug steigt bis {0} m unter den Geofence des Fluggeräts: {1} erhöhen</translation>
+    </message>
+    <message>
+        <source>the sortie stays {0} m below the vehicle&apos;s fence ({1})</source>
+        <translation>der Flug bleibt {0} m unter dem Geofence des Fluggeräts ({1})</translation>
+    </message>
+    <message>
+        <source>the sortie goes {0} m away from home, the vehicle&apos;s fence ends at {1} m: raise {2}</source>
+        <translation>der Flug führt {0} m vom Startplatz weg, der Geofence des Fluggeräts endet bei {1} m: {2} erhöhen</translation>
+    </message>
+    <message>
+        <source>the sortie comes within {0} m of the vehicle&apos;s fence: raise {1}</source>
+        <translation>der Flug kommt dem Geofence des Fluggeräts auf {0} m nahe: {1} erhöhen</translation>
+    </message>
+    <message>
+        <source>the sortie stays {0} m inside the vehicle&apos;s fence ({1})</source>
+        <translation>der Flug bleibt {0} m innerhalb des Geofence des Fluggeräts ({1})</translation>
+    </message>
+    <message>
+        <source>{0} is {1}: the autopilot commands no camera, or no gimbal; set it to {2} and restart the vehicle</source>
+        <translation>{0} ist {1}: der Autopilot steuert keine Kamera oder keinen Gimbal an; auf {2} setzen und das Fluggerät neu starten</translation>
+    </message>
+    <message>
         <source>the rally points ({0}) were not uploaded yet</source>
         <translation>die Rally-Punkte ({0}) wurden noch nicht hochgeladen</translation>
     </message>
@@ -7590,6 +7876,386 @@ Take it over?</source>
     <message>
         <source>lower the endurance of the aircraft&apos;s profile</source>
         <translation>die Flugdauer im Profil des Fluggeräts senken</translation>
+    </message>
+    <message>
+        <source>this site has no building mesh, and panels are found on one; import the coarse model of the building</source>
+        <translation>dieser Standort hat kein Gebäudenetz, auf dem Scheiben gesucht werden; importieren Sie das grobe Modell des Gebäudes</translation>
+    </message>
+    <message>
+        <source>none of the photos says where it was taken, so that panels cannot be put into 3-D</source>
+        <translation>kein Foto sagt, wo es aufgenommen wurde, sodass Scheiben nicht in 3D gebracht werden können</translation>
+    </message>
+    <message>
+        <source>solving facades</source>
+        <translation>Fassaden werden berechnet</translation>
+    </message>
+    <message>
+        <source>trying scales</source>
+        <translation>Maßstäbe werden ausprobiert</translation>
+    </message>
+    <message>
+        <source>a line can be moved as far as its neighbours and the edge of the picture; remove the line that is in the way first</source>
+        <translation>eine Linie kann bis zu ihren Nachbarn und zum Bildrand verschoben werden; entfernen Sie zuerst die Linie, die im Weg ist</translation>
+    </message>
+    <message>
+        <source>there is a line already; point at a place between two lines, or beyond the last</source>
+        <translation>da ist schon eine Linie; zeigen Sie auf eine Stelle zwischen zwei Linien oder jenseits der letzten</translation>
+    </message>
+    <message>
+        <source>a facade needs two lines in each direction at least; add another line before this one goes</source>
+        <translation>eine Fassade braucht mindestens zwei Linien in jeder Richtung; fügen Sie eine andere hinzu, bevor Sie diese entfernen</translation>
+    </message>
+    <message>
+        <source>no panel is left; a site needs at least one: put one back before these panels are used</source>
+        <translation>es ist keine Scheibe übrig; ein Standort braucht mindestens eine: stellen Sie eine wieder her, bevor diese Scheiben verwendet werden</translation>
+    </message>
+    <message>
+        <source>reading photos</source>
+        <translation>Fotos werden gelesen</translation>
+    </message>
+    <message>
+        <source>none of its {0} photos can be read; the first: {1}</source>
+        <translation>keines der {0} Fotos darin kann gelesen werden; das erste: {1}</translation>
+    </message>
+    <message>
+        <source>the file has no end, so that a part of the picture is missing</source>
+        <translation>die Datei hat kein Ende, sodass ein Teil des Bildes fehlt</translation>
+    </message>
+    <message>
+        <source>expected a folder of photos, found a file</source>
+        <translation>ein Ordner mit Fotos wird erwartet, gefunden wurde eine Datei</translation>
+    </message>
+    <message>
+        <source>expected a folder of photos, found nothing</source>
+        <translation>ein Ordner mit Fotos wird erwartet, gefunden wurde nichts</translation>
+    </message>
+    <message>
+        <source>holds no .jpg photo; name the folder that was copied from the camera&apos;s card</source>
+        <translation>enthält kein Foto (.jpg); nennen Sie den Ordner, der von der Karte der Kamera kopiert wurde</translation>
+    </message>
+    <message>
+        <source>expected a photo, found something that is not a regular file</source>
+        <translation>ein Foto wird erwartet, gefunden wurde etwas, das keine gewöhnliche Datei ist</translation>
+    </message>
+    <message>
+        <source>is no JPEG file; only .jpg photos as the camera wrote them can be read</source>
+        <translation>ist keine JPEG-Datei; nur Fotos (.jpg), wie die Kamera sie geschrieben hat, können gelesen werden</translation>
+    </message>
+    <message>
+        <source>the JPEG file holds no picture; copy it from the card again</source>
+        <translation>die JPEG-Datei enthält kein Bild; kopieren Sie sie noch einmal von der Karte</translation>
+    </message>
+    <message>
+        <source>the JPEG header has more than {0} parts; refused as hostile</source>
+        <translation>der Kopf der JPEG-Datei hat mehr als {0} Teile; als bösartig zurückgewiesen</translation>
+    </message>
+    <message>
+        <source>the header of the JPEG file is damaged; copy it from the card again</source>
+        <translation>der Kopf der JPEG-Datei ist beschädigt; kopieren Sie sie noch einmal von der Karte</translation>
+    </message>
+    <message>
+        <source>the file ends in its header; copy it from the card again</source>
+        <translation>die Datei endet in ihrem Kopf; kopieren Sie sie noch einmal von der Karte</translation>
+    </message>
+    <message>
+        <source>the photos were taken {0} km from the site &apos;{1}&apos;; expected at most {2} km; are they the right photos, and the right site?</source>
+        <translation>die Fotos wurden {0} km vom Standort &apos;{1}&apos; entfernt aufgenommen; höchstens {2} km werden erwartet; sind es die richtigen Fotos und der richtige Standort?</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos were taken far from the site and are left out</source>
+        <translation>{0} von {1} Fotos wurden weit vom Standort aufgenommen und werden ausgelassen</translation>
+    </message>
+    <message>
+        <source>above take-off</source>
+        <translation>über dem Startplatz</translation>
+    </message>
+    <message>
+        <source>above sea level or ellipsoid</source>
+        <translation>über dem Meer oder dem Ellipsoid</translation>
+    </message>
+    <message>
+        <source>no photo says its height {0}; choose the other way of counting heights</source>
+        <translation>kein Foto sagt seine Höhe {0}; wählen Sie die andere Art, Höhen zu zählen</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos do not say their height {2}; theirs is counted the other way</source>
+        <translation>{0} von {1} Fotos sagen ihre Höhe {2} nicht; ihre wird auf die andere Art gezählt</translation>
+    </message>
+    <message>
+        <source>absolute heights</source>
+        <translation>absoluten Höhen</translation>
+    </message>
+    <message>
+        <source>heights above take-off</source>
+        <translation>Höhen über dem Startplatz</translation>
+    </message>
+    <message>
+        <source>by their {0} the photos would lie {1} m higher: the site&apos;s own height, the receiver, or the place of take-off is off by that</source>
+        <translation>nach ihren {0} lägen die Fotos {1} m höher: um so viel ist die Höhe des Standorts, der Empfänger oder der Startplatz falsch</translation>
+    </message>
+    <message>
+        <source>by their {0} the photos would lie {1} m lower: the site&apos;s own height, the receiver, or the place of take-off is off by that</source>
+        <translation>nach ihren {0} lägen die Fotos {1} m tiefer: um so viel ist die Höhe des Standorts, der Empfänger oder der Startplatz falsch</translation>
+    </message>
+    <message>
+        <source>EXIF and XMP of a photo give positions {0} m apart; EXIF&apos;s are taken</source>
+        <translation>EXIF und XMP eines Fotos geben Orte an, die {0} m auseinanderliegen; die von EXIF werden genommen</translation>
+    </message>
+    <message>
+        <source>RTK was not fixed in {0} of {1} photos: their positions are good to decimetres or metres</source>
+        <translation>in {0} von {1} Fotos war RTK nicht fixiert: ihre Orte sind auf Dezimeter oder Meter genau</translation>
+    </message>
+    <message>
+        <source>heights are counted as asked for: {0}</source>
+        <translation>Höhen werden gezählt wie verlangt: {0}</translation>
+    </message>
+    <message>
+        <source>heights are those above the ellipsoid, because RTK was fixed in all photos</source>
+        <translation>es gelten die Höhen über dem Ellipsoid, weil RTK in allen Fotos fixiert war</translation>
+    </message>
+    <message>
+        <source>heights are absolute ones, good to some metres: the photos do not say those above take-off</source>
+        <translation>es gelten die absoluten Höhen, auf einige Meter genau: die Fotos sagen die über dem Startplatz nicht</translation>
+    </message>
+    <message>
+        <source>because RTK was fixed in only {0} of {1} photos</source>
+        <translation>weil RTK nur in {0} von {1} Fotos fixiert war</translation>
+    </message>
+    <message>
+        <source>heights are those above take-off, counted from the site&apos;s home, {0}</source>
+        <translation>es gelten die Höhen über dem Startplatz, gezählt vom Startplatz des Standorts, {0}</translation>
+    </message>
+    <message>
+        <source>no line of a grid was found in any photo of this facade</source>
+        <translation>in keinem Foto dieser Fassade wurde eine Linie eines Rasters gefunden</translation>
+    </message>
+    <message>
+        <source>its pose was moved until the facade fell out of sight</source>
+        <translation>seine Lage wurde verschoben, bis die Fassade nicht mehr zu sehen war</translation>
+    </message>
+    <message>
+        <source>none of the {0} photos shows an upright facade of the coarse model; do poses and model belong to the same origin?</source>
+        <translation>keines der {0} Fotos zeigt eine aufrechte Fassade des groben Modells; gehören Lagen und Modell zum selben Nullpunkt?</translation>
+    </message>
+    <message>
+        <source>finding panels</source>
+        <translation>Scheiben werden gesucht</translation>
+    </message>
+    <message>
+        <source>a facade was left out: {0}</source>
+        <translation>eine Fassade wurde ausgelassen: {0}</translation>
+    </message>
+    <message>
+        <source>a wall with {0} panel was left out</source>
+        <translation>eine Wand mit {0} Scheibe wurde ausgelassen</translation>
+    </message>
+    <message>
+        <source>no grid of panels was found on any facade; choose sharper photos taken from the front</source>
+        <translation>auf keiner Fassade wurde ein Raster von Scheiben gefunden; wählen Sie schärfere Fotos, die von vorn aufgenommen sind</translation>
+    </message>
+    <message>
+        <source>facade {0}: no photo shows a grid with at least one panel</source>
+        <translation>Fassade {0}: kein Foto zeigt ein Raster mit mindestens einer Scheibe</translation>
+    </message>
+    <message>
+        <source>coverage of the photos</source>
+        <translation>Abdeckung der Fotos</translation>
+    </message>
+    <message>
+        <source>no photo shows panel &apos;{0}&apos;</source>
+        <translation>kein Foto zeigt Scheibe &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>{0} of the {1} sections that the plan promised are on no photo</source>
+        <translation>{0} der {1} Sektoren, die der Plan versprach, sind auf keinem Foto</translation>
+    </message>
+    <message>
+        <source>claims to be a picture of {0} x {1} pixels; expected at most {2} megapixels, so it is not decoded</source>
+        <translation>gibt sich als Bild von {0} x {1} Pixeln aus; höchstens {2} Megapixel werden erwartet, darum wird es nicht dekodiert</translation>
+    </message>
+    <message>
+        <source>has more than {0} MiB; expected a photo</source>
+        <translation>hat mehr als {0} MiB; ein Foto wird erwartet</translation>
+    </message>
+    <message>
+        <source>cannot be read any more ({0})</source>
+        <translation>kann nicht mehr gelesen werden ({0})</translation>
+    </message>
+    <message>
+        <source>the file was cut off, so that part of the picture is missing; copy it again</source>
+        <translation>die Datei wurde abgeschnitten, sodass ein Teil des Bildes fehlt; kopieren Sie sie noch einmal</translation>
+    </message>
+    <message>
+        <source>the picture cannot be decoded ({0}); copy the file again</source>
+        <translation>das Bild kann nicht dekodiert werden ({0}); kopieren Sie die Datei noch einmal</translation>
+    </message>
+    <message>
+        <source>the picture cannot be decoded; copy the file again</source>
+        <translation>das Bild kann nicht dekodiert werden; kopieren Sie die Datei noch einmal</translation>
+    </message>
+    <message>
+        <source>expected a picture of {0} x {1} pixels, as the header says, got {2} x {3}; the file is damaged: copy it again</source>
+        <translation>ein Bild von {0} x {1} Pixeln wird erwartet, wie der Kopf sagt, gefunden wurden {2} x {3}; die Datei ist beschädigt: kopieren Sie sie noch einmal</translation>
+    </message>
+    <message>
+        <source>dewarp data</source>
+        <translation>Entzerrungsdaten</translation>
+    </message>
+    <message>
+        <source>calibrated focal length</source>
+        <translation>kalibrierte Brennweite</translation>
+    </message>
+    <message>
+        <source>focal length and catalogue sensor</source>
+        <translation>Brennweite und Sensor des Katalogs</translation>
+    </message>
+    <message>
+        <source>35 mm equivalent</source>
+        <translation>Kleinbild-Äquivalent</translation>
+    </message>
+    <message>
+        <source>photos of other cameras are left out ({0}); choose another camera to use those instead</source>
+        <translation>Fotos anderer Kameras werden ausgelassen ({0}); wählen Sie eine andere Kamera, um stattdessen diese zu verwenden</translation>
+    </message>
+    <message>
+        <source>no photo can be given a camera pose ({0}); {1}</source>
+        <translation>keinem Foto kann eine Lage der Kamera gegeben werden ({0}); {1}</translation>
+    </message>
+    <message>
+        <source>use the files as the camera wrote them: programs that edit, send or share photos often take that out</source>
+        <translation>verwenden Sie die Dateien, wie die Kamera sie geschrieben hat: Programme, die Fotos bearbeiten, senden oder teilen, nehmen das oft heraus</translation>
+    </message>
+    <message>
+        <source>a position</source>
+        <translation>ein Ort</translation>
+    </message>
+    <message>
+        <source>a height</source>
+        <translation>eine Höhe</translation>
+    </message>
+    <message>
+        <source>where the camera looked</source>
+        <translation>die Blickrichtung der Kamera</translation>
+    </message>
+    <message>
+        <source>a focal length</source>
+        <translation>eine Brennweite</translation>
+    </message>
+    <message>
+        <source>{0} without {1}</source>
+        <translation>{0} ohne {1}</translation>
+    </message>
+    <message>
+        <source>there are none</source>
+        <translation>es gibt keine</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos do not say {2} and get no pose, the first {3}; {4}</source>
+        <translation>{0} von {1} Fotos sagen nicht: {2}, und bekommen keine Lage, das erste {3}; {4}</translation>
+    </message>
+    <message>
+        <source>focal lengths are from</source>
+        <translation>Brennweiten stammen aus</translation>
+    </message>
+    <message>
+        <source>{0} ({1} photos)</source>
+        <translation>{0} ({1} Fotos)</translation>
+    </message>
+    <message>
+        <source>the distortion of the lens is not known for {0} of {1} photos: straight lines may be bent by tens of pixels near the edges; refine the cameras, or use photos with dewarp data</source>
+        <translation>die Verzeichnung des Objektivs ist für {0} von {1} Fotos nicht bekannt: gerade Linien können am Rand um Dutzende Pixel gebogen sein; verfeinern Sie die Kameras oder verwenden Sie Fotos mit Entzerrungsdaten</translation>
+    </message>
+    <message>
+        <source>the {0} of {1} photos is of another picture size and not used: it gives a focal length far from that of the 35 mm equivalent; {2}</source>
+        <translation>{0} von {1} Fotos gehört zu einer anderen Bildgröße und wird nicht verwendet: es ergibt eine Brennweite weit von der des Kleinbild-Äquivalents; {2}</translation>
+    </message>
+    <message>
+        <source>{0} photos are marked to be shown turned; pixels are counted in the pictures as they are stored</source>
+        <translation>{0} Fotos sollen gedreht gezeigt werden; Pixel werden in den Bildern gezählt, wie sie gespeichert sind</translation>
+    </message>
+    <message>
+        <source>shows the same as {0}: from the same place, in the same direction</source>
+        <translation>zeigt dasselbe wie {0}: vom selben Ort, in dieselbe Richtung</translation>
+    </message>
+    <message>
+        <source>looks like {0}; nothing says where they were taken</source>
+        <translation>sieht aus wie {0}; nichts sagt, wo sie aufgenommen wurden</translation>
+    </message>
+    <message>
+        <source>checking photos</source>
+        <translation>Fotos werden geprüft</translation>
+    </message>
+    <message>
+        <source>measured on its edges</source>
+        <translation>gemessen an seinen Kanten</translation>
+    </message>
+    <message>
+        <source>by speed, exposure and distance; there are too few edges to measure it</source>
+        <translation>nach Geschwindigkeit, Belichtung und Abstand; es gibt zu wenige Kanten, um sie zu messen</translation>
+    </message>
+    <message>
+        <source>is blurred by {0} px ({1}), more than {2} px; take it again, slower</source>
+        <translation>ist um {0} px unscharf ({1}), mehr als {2} px; nehmen Sie es noch einmal auf, langsamer</translation>
+    </message>
+    <message>
+        <source>{0} % of the picture are {1}, more than {2} %; expose {3}</source>
+        <translation>{0} % des Bildes sind {1}, mehr als {2} %; belichten Sie {3}</translation>
+    </message>
+    <message>
+        <source>shows too few edges ({0}) to tell whether it is sharp</source>
+        <translation>zeigt zu wenige Kanten ({0}), um zu sagen, ob es scharf ist</translation>
+    </message>
+    <message>
+        <source>a surface needs at least {0} points of the coarse model, found {1}</source>
+        <translation>eine Fläche braucht mindestens {0} Punkte des groben Modells, gefunden: {1}</translation>
+    </message>
+    <message>
+        <source>the points of the coarse model lie on a line: they do not make a surface</source>
+        <translation>die Punkte des groben Modells liegen auf einer Linie: sie ergeben keine Fläche</translation>
+    </message>
+    <message>
+        <source>looking for facades</source>
+        <translation>Fassaden werden gesucht</translation>
+    </message>
+    <message>
+        <source>casting rays</source>
+        <translation>Strahlen werden verfolgt</translation>
+    </message>
+    <message>
+        <source>the photo does not show this facade from its front</source>
+        <translation>das Foto zeigt diese Fassade nicht von vorn</translation>
+    </message>
+    <message>
+        <source>the photo shows no area of this facade</source>
+        <translation>das Foto zeigt keine Fläche dieser Fassade</translation>
+    </message>
+    <message>
+        <source>find lines</source>
+        <translation>Linien werden gesucht</translation>
+    </message>
+    <message>
+        <source>compare rows</source>
+        <translation>Zeilen werden verglichen</translation>
+    </message>
+    <message>
+        <source>refine lines</source>
+        <translation>Linien werden verfeinert</translation>
+    </message>
+    <message>
+        <source>find vanishing points</source>
+        <translation>Fluchtpunkte werden gesucht</translation>
+    </message>
+    <message>
+        <source>find facades</source>
+        <translation>Fassaden werden gesucht</translation>
+    </message>
+    <message>
+        <source>straighten</source>
+        <translation>wird gerade gerichtet</translation>
+    </message>
+    <message>
+        <source>fuse views</source>
+        <translation>Ansichten werden vereint</translation>
     </message>
 </context>
 <context>
@@ -8179,14 +8845,6 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Modell und Akte jeder Scheibe ansehen</translation>
     </message>
     <message>
-        <source>Reading photos in this window is not built yet.</source>
-        <translation>Fotos lesen gibt es in diesem Fenster noch nicht.</translation>
-    </message>
-    <message>
-        <source>Keep the photos of each flight in the project&apos;s folder &apos;photos&apos;; they will be read from there.</source>
-        <translation>Die Fotos jedes Flugs im Projektordner „photos“ ablegen; von dort werden sie gelesen.</translation>
-    </message>
-    <message>
         <source>Photos</source>
         <translation>Fotos</translation>
     </message>
@@ -8225,6 +8883,100 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>The building, its glass, and where you may fly</source>
         <translation>Das Gebäude, sein Glas und der erlaubte Flugraum</translation>
+    </message>
+</context>
+<context>
+    <name>ThumbnailStrip</name>
+    <message>
+        <source>Photos in the order of time</source>
+        <translation>Fotos in zeitlicher Reihenfolge</translation>
+    </message>
+    <message>
+        <source>cannot be decoded</source>
+        <translation>kann nicht dekodiert werden</translation>
+    </message>
+    <message>
+        <source>the file was cut off</source>
+        <translation>die Datei wurde abgeschnitten</translation>
+    </message>
+    <message>
+        <source>blurred</source>
+        <translation>unscharf</translation>
+    </message>
+    <message>
+        <source>too dark</source>
+        <translation>zu dunkel</translation>
+    </message>
+    <message>
+        <source>too bright</source>
+        <translation>zu hell</translation>
+    </message>
+    <message>
+        <source>shows the same as another one</source>
+        <translation>zeigt dasselbe wie ein anderes</translation>
+    </message>
+    <message>
+        <source>does not say where it was taken</source>
+        <translation>sagt nicht, wo es aufgenommen wurde</translation>
+    </message>
+</context>
+<context>
+    <name>ToolBox</name>
+    <message>
+        <source>Undo</source>
+        <translation>Rückgängig</translation>
+    </message>
+    <message>
+        <source>Redo</source>
+        <translation>Wiederholen</translation>
+    </message>
+    <message>
+        <source>Move</source>
+        <translation>Verschieben</translation>
+    </message>
+    <message>
+        <source>Drag a line to its place; elsewhere, drag the picture</source>
+        <translation>Eine Linie an ihren Platz ziehen; anderswo das Bild ziehen</translation>
+    </message>
+    <message>
+        <source>Panel on or off</source>
+        <translation>Scheibe an/aus</translation>
+    </message>
+    <message>
+        <source>A press takes a panel out, or puts it back</source>
+        <translation>Ein Druck nimmt eine Scheibe heraus oder stellt sie wieder her</translation>
+    </message>
+    <message>
+        <source>Add upright line</source>
+        <translation>Senkrechte dazu</translation>
+    </message>
+    <message>
+        <source>A press adds a vertical line of the grid</source>
+        <translation>Ein Druck fügt dem Raster eine senkrechte Linie hinzu</translation>
+    </message>
+    <message>
+        <source>Add level line</source>
+        <translation>Waagrechte dazu</translation>
+    </message>
+    <message>
+        <source>A press adds a horizontal line of the grid</source>
+        <translation>Ein Druck fügt dem Raster eine waagrechte Linie hinzu</translation>
+    </message>
+    <message>
+        <source>Remove line</source>
+        <translation>Linie entfernen</translation>
+    </message>
+    <message>
+        <source>A press on a line removes it</source>
+        <translation>Ein Druck auf eine Linie entfernt sie</translation>
+    </message>
+    <message>
+        <source>Take back: {0}</source>
+        <translation>Zurücknehmen: {0}</translation>
+    </message>
+    <message>
+        <source>Do again: {0}</source>
+        <translation>Noch einmal: {0}</translation>
     </message>
 </context>
 <context>
@@ -8284,6 +9036,52 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source> x </source>
         <translation> x </translation>
+    </message>
+</context>
+<context>
+    <name>TrialChart</name>
+    <message>
+        <source>Measure on this facade</source>
+        <translation>An dieser Fassade messen</translation>
+    </message>
+    <message>
+        <source>Search its photos again at several scales, and with fewer of them</source>
+        <translation>Ihre Fotos noch einmal in mehreren Maßstäben durchsuchen, und mit weniger von ihnen</translation>
+    </message>
+    <message>
+        <source>What a finer picture and more photos cost in time, and what they bring.</source>
+        <translation>Was ein feineres Bild und mehr Fotos an Zeit kosten, und was sie bringen.</translation>
+    </message>
+    <message>
+        <source>● side {0} px: {1}</source>
+        <translation>● Seite {0} px: {1}</translation>
+    </message>
+    <message>
+        <source>■ photos {0}: {1}</source>
+        <translation>■ Fotos {0}: {1}</translation>
+    </message>
+    <message>
+        <source>{0:.1f} s, no grid</source>
+        <translation>{0:.1f} s, kein Raster</translation>
+    </message>
+    <message>
+        <source>{0:.1f} s, {1} panels, ± {2:.3g} {3}</source>
+        <translation>{0:.1f} s, {1} Scheiben, ± {2:.3g} {3}</translation>
+    </message>
+</context>
+<context>
+    <name>TrialPlot</name>
+    <message>
+        <source>Accuracy of corners against the time of the search</source>
+        <translation>Genauigkeit der Ecken gegen die Zeit der Suche</translation>
+    </message>
+    <message>
+        <source>± {0} at a corner</source>
+        <translation>± {0} an einer Ecke</translation>
+    </message>
+    <message>
+        <source>time of the search in s</source>
+        <translation>Zeit der Suche in s</translation>
     </message>
 </context>
 <context>

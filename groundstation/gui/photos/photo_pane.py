@@ -1,0 +1,130 @@
+"""The chosen photo, large: as it is or rectified, with the grids that were found in it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QButtonGroup, QComboBox, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from groundstation.gui.photos.grid_view import GridView
+from groundstation.gui.photos.photo_store import LargePicture, PhotoStore
+from groundstation.services.photo_cards import PhotoCard
+from groundstation.services.photo_desk import GridPlace, PanelDraft
+
+
+class PhotoPane(QWidget):
+    """Shows one photo of a draft.
+
+    Signals
+    -------
+    refused(str)
+        The photo cannot be shown, and why.
+    placeChanged()
+        Another grid is in hand, or none.
+    """
+
+    refused = Signal(str)
+    placeChanged = Signal()  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, store: PhotoStore, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._store = store
+        self._card: PhotoCard | None = None
+        self._draft: PanelDraft | None = None
+        self.view, self.facade, self._name = GridView(), QComboBox(), QLabel()
+        self.photo, self.rectified = QPushButton(self.tr("Photo")), QPushButton(self.tr("Rectified"))
+        self.whole = QPushButton(self.tr("Whole"))
+        self.whole.setToolTip(self.tr("Show all of the picture (0)"))
+        self.facade.setAccessibleName(self.tr("Facade whose grid is corrected"))
+        group = QButtonGroup(self)
+        for button in (self.photo, self.rectified):
+            button.setCheckable(True)
+            group.addButton(button)
+            button.clicked.connect(self._show)
+        self.photo.setChecked(True)
+        self.facade.activated.connect(self._show)
+        self.whole.clicked.connect(self.view.show_whole)
+        bar = QHBoxLayout()
+        bar.addWidget(self._name, 1)
+        for widget in (self.facade, self.photo, self.rectified, self.whole):
+            bar.addWidget(widget)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        layout.addLayout(bar)
+        layout.addWidget(self.view, 1)
+        store.largeReady.connect(self._take)
+        self.set_text(self.tr("Choose a photo in the strip below."))
+        self._show()
+
+    def set_text(self, text: str) -> None:
+        """Say something while there is no picture."""
+        self.view.set_text(text)
+
+    def set_card(self, card: PhotoCard | None) -> None:
+        """Show another photo."""
+        if card is not self._card:
+            self._card = card
+            self._show()
+
+    def set_draft(self, draft: PanelDraft | None) -> None:
+        """Show other grids."""
+        self._draft = draft
+        self._show()
+
+    def card(self) -> PhotoCard | None:
+        """The photo that is shown."""
+        return self._card
+
+    def place(self) -> GridPlace | None:
+        """Where a correction would be made."""
+        found = self._places()
+        index = self.facade.currentIndex()
+        return found[index] if 0 <= index < len(found) else None
+
+    def show_facade(self, facade_id: str) -> None:
+        """Take the grid of this facade in hand, where the photo has one."""
+        names = [place.facade for place in self._places()]
+        if facade_id in names:
+            self.facade.setCurrentIndex(names.index(facade_id))
+            self._show()
+
+    def _places(self) -> tuple[GridPlace, ...]:
+        draft, card = self._draft, self._card
+        if draft is None or card is None:
+            return ()
+        return tuple(place for place in draft.places() if draft.photos[place.photo].path == card.path)
+
+    def _show(self) -> None:
+        """Bring everything up to date; a picture that is there already is not decoded again."""
+        places, card = self._places(), self._card
+        names = [self.tr("Facade {0}").format(place.facade) for place in places]
+        if [self.facade.itemText(k) for k in range(self.facade.count())] != names:
+            self.facade.clear()
+            self.facade.addItems(names)
+        self.facade.setVisible(len(names) > 1)
+        self._name.setText("" if card is None else card.path.name)
+        place = self.place()
+        self.rectified.setEnabled(place is not None)
+        if place is None:
+            self.photo.setChecked(True)
+        grids = () if self._draft is None else tuple(self._draft.grid(one) for one in places)
+        grid = None if place is None or self._draft is None else self._draft.grid(place)
+        is_rectified = self.rectified.isChecked()
+        view = grid.rectification if is_rectified and grid is not None else None
+        shown = self.view.picture()
+        if card is None:
+            self.view.set_picture(None)
+        elif shown is None or shown.path != card.path or shown.view is not view:
+            self.view.set_picture(None)
+            self.set_text(self.tr("The photo is being decoded ..."))
+            self._store.ask_large(card.metadata, view)
+        self.view.set_grids(grids, grid, is_rectified=is_rectified)
+        self.placeChanged.emit()
+
+    def _take(self, picture: LargePicture) -> None:
+        if self._card is None or picture.path != self._card.path:
+            return
+        self.view.set_picture(picture)
+        if picture.problem:
+            self.set_text(self.tr("This photo cannot be shown."))
+            self.refused.emit(picture.problem)

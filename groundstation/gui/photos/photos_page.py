@@ -1,0 +1,311 @@
+"""The Photos tab's widgets put together: signals go to the desk, what it finds comes back here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtGui import QAction, QCloseEvent
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSplitter, QTabWidget, QVBoxLayout, QWidget
+
+from groundstation.gui.main_window import MainWindow
+from groundstation.gui.mission.findings_list import FindingsList
+from groundstation.gui.photos.facade_table import FacadeTable
+from groundstation.gui.photos.photo_pane import PhotoPane
+from groundstation.gui.photos.photo_store import PhotoStore
+from groundstation.gui.photos.photos_desk import PhotosDesk
+from groundstation.gui.photos.place_map import PlaceMap
+from groundstation.gui.photos.thumbnail_strip import ThumbnailStrip
+from groundstation.gui.photos.tool_box import ToolBox
+from groundstation.gui.photos.trial_chart import TrialChart
+from groundstation.gui.questions import Questions
+from groundstation.gui.scrolling import scrolled
+from groundstation.gui.stage import Stage
+from groundstation.gui.workspace import Workspace
+from groundstation.services.document import Document, Item, ItemKind
+from groundstation.services.photo_cards import card_of_place
+from groundstation.services.photo_edits import add_line, move_line, remove_line, set_panel
+from groundstation.services.units import UnitSystem, per_cent
+from planning.findings import Severity
+from reconstruction.panels.record import Axis
+
+SIDE_PX, DETAIL_PX = 250, 320
+"""First widths beside the photo, at 1280 pixels."""
+
+
+class PhotosPage(QObject):
+    """The tab."""
+
+    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+        super().__init__(stage)
+        self._workspace, self._stage = workspace, stage
+        self.desk, self.questions = PhotosDesk.of(workspace), Questions()
+        self.store = PhotoStore(self)
+        self.strip, self.map, self.pane = ThumbnailStrip(self.store), PlaceMap(), PhotoPane(self.store)
+        self.findings, self.table, self.tools = FindingsList(), FacadeTable(), ToolBox()
+        self.trials = TrialChart()
+        self.read, self.choose = QPushButton(self.tr("Read photos")), QPushButton(self.tr("Choose folder ..."))
+        self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
+        self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
+        self.left = self._make_page()
+        self.right: QWidget | None = None
+        self.bottom: QWidget | None = None
+        self._connect()
+        self._units_changed(workspace.units)
+        self._show_trials()
+        self._show_photos()
+
+    # A tab
+
+    def shown(self) -> None:
+        """Nothing is shared with others."""
+        self._show_state()
+
+    def hidden(self) -> None:
+        """Jobs go on."""
+
+    def actions(self) -> tuple[QAction, ...]:
+        """There are none."""
+        return ()
+
+    # How it is put together
+
+    def _make_page(self) -> QWidget:
+        page = QWidget()
+        layout = QVBoxLayout(page)
+        layout.setContentsMargins(6, 6, 6, 6)
+        layout.setSpacing(6)
+        top = QHBoxLayout()
+        self.read.setProperty("primary", "true")
+        self.read.setToolTip(self.tr("Poses, sharpness, exposure and the coverage that was achieved"))
+        self.folder.setProperty("role", "muted")
+        self.coverage.setWordWrap(True)
+        top.addWidget(self.choose)
+        top.addWidget(self.read)
+        top.addWidget(self.folder, 1)
+        top.addWidget(self.coverage, 2)
+        self.splitter = QSplitter(Qt.Orientation.Horizontal)
+        for part in (self._make_side(), self.pane, self._make_detail()):
+            self.splitter.addWidget(part)
+        self.splitter.setStretchFactor(1, 1)
+        self.splitter.setSizes([SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX])
+        self.splitter.setChildrenCollapsible(False)
+        layout.addLayout(top)
+        layout.addWidget(self.splitter, 1)
+        layout.addWidget(self.strip)
+        return page
+
+    def _make_side(self) -> QWidget:
+        side = QSplitter(Qt.Orientation.Vertical)
+        self.findings.set_placeholder(self.tr("What is wrong with photos stands here."))
+        side.addWidget(self.map)
+        side.addWidget(self.findings)
+        side.setSizes([200, 260])
+        return side
+
+    def _make_detail(self) -> QWidget:
+        detail = QWidget()
+        layout = QVBoxLayout(detail)
+        layout.setContentsMargins(0, 4, 0, 0)
+        self.find.setToolTip(self.tr("Find the grid of every facade in the photos and put it into 3-D"))
+        self.use.setToolTip(self.tr("Put these panels into the site in the place of its own; undo takes it back"))
+        self.use.setProperty("primary", "true")
+        self.state.setWordWrap(True)
+        self.state.setProperty("role", "muted")
+        self.table.setMinimumHeight(80)
+        for widget in (self.find, self.table, self.tools, self.state, self.use):
+            layout.addWidget(widget, int(widget is self.table))
+        tabs = QTabWidget()
+        tabs.addTab(detail, self.tr("Panels"))
+        tabs.addTab(scrolled(self.trials), self.tr("Accuracy and time"))
+        return tabs
+
+    def _connect(self) -> None:
+        desk, workspace, view = self.desk, self._workspace, self.pane.view
+        self.choose.clicked.connect(self._choose_folder)
+        self.read.clicked.connect(self._read)
+        self.find.clicked.connect(desk.find)
+        self.use.clicked.connect(self._use)
+        self.strip.chosen.connect(self._show_photo)
+        self.map.chosen.connect(self.strip.choose)
+        self.findings.placePicked.connect(self._go_to_place)
+        self.table.chosen.connect(self._go_to_facade)
+        self.tools.valueChanged.connect(view.set_tool)
+        self.trials.measure.clicked.connect(self._measure)
+        desk.trialsChanged.connect(self._show_trials)
+        self.tools.undo.clicked.connect(desk.undo)
+        self.tools.redo.clicked.connect(desk.redo)
+        self.pane.refused.connect(lambda text: workspace.say(Severity.ERROR, workspace.words(text)))
+        self.pane.placeChanged.connect(self._show_state)
+        view.lineMoved.connect(self._move_line)
+        view.lineAdded.connect(self._add_line)
+        view.lineRemoved.connect(self._remove_line)
+        view.panelSwitched.connect(self._switch_panel)
+        desk.photosChanged.connect(self._show_photos)
+        desk.draftChanged.connect(self._show_draft)
+        desk.stateChanged.connect(self._show_state)
+        workspace.unitsChanged.connect(self._units_changed)
+        workspace.documentChanged.connect(self._document_changed)
+        window = self._stage.window()
+        if isinstance(window, MainWindow):
+            window.closing.connect(self._window_closing)
+
+    # What the user does
+
+    def _choose_folder(self) -> None:
+        folder = self.questions.folder(self._stage.window(), self.tr("Folder of photos"))
+        if folder is not None:
+            self.desk.read(folder)
+
+    def _read(self) -> None:
+        folder = self.desk.usual_folder()
+        if folder is not None:
+            self.desk.read(folder)
+
+    def _use(self) -> None:
+        """Take the panels over, and show them in the shared view."""
+        draft, window = self.desk.draft, self._stage.window()
+        if self.desk.use() and draft is not None and isinstance(window, MainWindow):
+            window.show_tab("site")
+            first = next(facade.id for facade in draft.found.facades if facade.panels)
+            self._workspace.jump_to(Item(ItemKind.FACADE, first))
+
+    def _measure(self) -> None:
+        place = self.pane.place()
+        if place is not None:
+            self.desk.measure(place.facade)
+
+    def _move_line(self, axis: Axis, index: int, position_px: float) -> None:
+        place = self.pane.place()
+        if place is not None:
+            self.desk.edit(self.tr("Move line"), lambda draft: move_line(draft, place, axis, index, position_px))
+
+    def _add_line(self, axis: Axis, position_px: float) -> None:
+        place = self.pane.place()
+        if place is not None:
+            self.desk.edit(self.tr("Add line"), lambda draft: add_line(draft, place, axis, position_px))
+
+    def _remove_line(self, axis: Axis, index: int) -> None:
+        place = self.pane.place()
+        if place is not None:
+            self.desk.edit(self.tr("Remove line"), lambda draft: remove_line(draft, place, axis, index))
+
+    def _switch_panel(self, row: int, column: int, is_panel: bool) -> None:
+        place = self.pane.place()
+        if place is not None:
+            label = self.tr("Restore panel") if is_panel else self.tr("Remove panel")
+            self.desk.edit(label, lambda draft: set_panel(draft, place, row, column, is_panel=is_panel))
+
+    def _go_to_place(self, place: str) -> None:
+        number = card_of_place(self.desk.cards, place)
+        if number is not None:
+            self.strip.choose(number)
+
+    def _go_to_facade(self, facade_id: str) -> None:
+        """Show the first photo with a grid of a facade."""
+        draft = self.desk.draft
+        place = None if draft is None else next((one for one in draft.places() if one.facade == facade_id), None)
+        if draft is None or place is None:
+            return
+        number = card_of_place(self.desk.cards, str(draft.photos[place.photo].path))
+        if number is not None:
+            self.strip.choose(number)
+            self.pane.show_facade(facade_id)
+
+    def _window_closing(self, event: QCloseEvent) -> None:
+        if event.isAccepted():
+            self.store.close()
+
+    # What is shown
+
+    def _show_photos(self) -> None:
+        desk, model = self.desk, self._workspace.document.site
+        self.strip.set_cards(desk.cards)
+        self.map.set_photos(desk.cards)
+        self.map.set_site(None if model is None else model.site)
+        self.findings.set_findings(() if desk.intake is None else desk.intake.findings)
+        self.pane.set_card(None)
+        if desk.cards:
+            self.strip.choose(0)
+        self._show_draft()
+
+    def _show_photo(self, number: int) -> None:
+        self.map.choose(number)
+        self.pane.set_card(self.desk.cards[number] if 0 <= number < len(self.desk.cards) else None)
+
+    def _show_draft(self) -> None:
+        draft = self.desk.draft
+        places = () if draft is None else draft.places()
+        self.table.set_draft(draft)
+        self.strip.set_searched(frozenset(draft.photos[place.photo].path for place in places) if draft else frozenset())
+        self.pane.set_draft(draft)
+        if draft is not None and self.pane.place() is None and places:
+            self._go_to_facade(places[0].facade)
+        self._show_state()
+
+    def _show_trials(self) -> None:
+        self.trials.set_trials(self.desk.trials)
+
+    def _show_state(self) -> None:
+        desk, has_site = self.desk, self._workspace.document.site is not None
+        folder = desk.usual_folder()
+        self.folder.setText("" if folder is None else self.tr("Folder: {0}").format(_short(folder)))
+        self.folder.setToolTip("" if folder is None else str(folder))
+        self.choose.setEnabled(has_site and not desk.is_busy)
+        self.read.setEnabled(has_site and folder is not None and not desk.is_busy)
+        self.find.setEnabled(desk.intake is not None and bool(desk.intake.photos) and not desk.is_busy)
+        self.tools.set_possible(
+            can_edit=self.pane.place() is not None, undo_label=desk.undo_label, redo_label=desk.redo_label
+        )
+        self.trials.measure.setEnabled(self.pane.place() is not None and not desk.is_busy)
+        draft = desk.draft
+        self.use.setEnabled(draft is not None and not draft.unsolved)
+        self.state.setText(self._where_it_stands())
+        self.coverage.setText(self._coverage_text())
+
+    def _where_it_stands(self) -> str:
+        desk = self.desk
+        if self._workspace.document.site is None:
+            return self.tr("Open or import a site first: photos are placed on it.")
+        if desk.intake is None:
+            return self.tr("Read the photos of the flight.")
+        if desk.draft is None:
+            return self.tr("Find the panels in these photos.")
+        if desk.draft.unsolved:
+            return self.tr("The corrected panels are being solved ...")
+        if self.pane.place() is None:
+            return self.tr("No grid was looked for in this photo; photos with one have the sign \u25a6.")
+        return self.tr("Blue panels are sure, orange less so, pink ones doubtful; dashed lines were not seen.")
+
+    def _coverage_text(self) -> str:
+        intake = self.desk.intake
+        if intake is None:
+            return ""
+        if not self.desk.is_coverage_current:
+            return self.tr("The site has other panels now: read the photos again to count what they show.")
+        found = intake.coverage
+        n_photos = self.tr("{0} photos, {1} of them usable.").format(len(intake.metadata), sum(intake.usable))
+        if found.planned_counts is None:
+            seen = self.tr("They show {0} of {1} sections.").format(found.covered, found.counts.size)
+        else:
+            promised = int((found.planned_counts > 0).sum())
+            share = per_cent(promised - int(found.missed.sum()), promised) if promised else 100.0
+            seen = self.tr("They show {0} sections; the plan promised {1}, of which {2:.1f} % are seen.").format(
+                found.covered, promised, share
+            )
+        return f"{n_photos} {seen}"
+
+    def _units_changed(self, units: UnitSystem) -> None:
+        self.findings.set_units(units)
+        self.table.set_units(units)
+        self.trials.set_units(units)
+
+    def _document_changed(self, before: Document, after: Document) -> None:
+        if before.site is not after.site:
+            self.map.set_site(None if after.site is None else after.site.site)
+        self._show_state()
+
+
+def _short(folder: Path) -> str:
+    """The last two parts of a path."""
+    return str(Path(*folder.parts[-2:]))

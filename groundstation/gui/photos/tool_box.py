@@ -1,0 +1,67 @@
+"""Buttons that choose what a press on the picture does, and take corrections back."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QButtonGroup, QGridLayout, QPushButton, QWidget
+
+from groundstation.gui.photos.grid_view import Tool
+
+
+class ToolBox(QWidget):
+    """Edits a `Tool`; `undo` and `redo` are its buttons for that.
+
+    Signals
+    -------
+    valueChanged(Tool)
+    """
+
+    valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.undo, self.redo = QPushButton("\u21b6"), QPushButton("\u21b7")
+        self.undo.setAccessibleName(self.tr("Undo"))
+        self.redo.setAccessibleName(self.tr("Redo"))
+        self._buttons: dict[Tool, QPushButton] = {}
+        group = QButtonGroup(self)
+        layout = QGridLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        texts = (
+            (Tool.MOVE, self.tr("Move"), self.tr("Drag a line to its place; elsewhere, drag the picture")),
+            (Tool.PANEL, self.tr("Panel on or off"), self.tr("A press takes a panel out, or puts it back")),
+            (Tool.ADD_COLUMN, self.tr("Add upright line"), self.tr("A press adds a vertical line of the grid")),
+            (Tool.ADD_ROW, self.tr("Add level line"), self.tr("A press adds a horizontal line of the grid")),
+            (Tool.REMOVE_LINE, self.tr("Remove line"), self.tr("A press on a line removes it")),
+        )
+        for number, (tool, text, tip) in enumerate(texts):
+            button = QPushButton(text)
+            button.setCheckable(True)
+            button.setToolTip(tip)
+            button.clicked.connect(lambda _checked=False, tool=tool: self.valueChanged.emit(tool))
+            group.addButton(button)
+            self._buttons[tool] = button
+            layout.addWidget(button, number // 2, 2 * (number % 2), 1, 2)
+        layout.addWidget(self.undo, 2, 2)
+        layout.addWidget(self.redo, 2, 3)
+        self.setValue(Tool.MOVE)
+
+    def value(self) -> Tool:
+        """What a press does."""
+        return next(tool for tool, button in self._buttons.items() if button.isChecked())
+
+    def setValue(self, tool: Tool) -> None:  # noqa: N802
+        """Choose another tool."""
+        self._buttons[tool].setChecked(True)
+
+    def set_possible(self, *, can_edit: bool, undo_label: str, redo_label: str) -> None:
+        """Enable what can be done; labels say what would be taken back or done again, empty for nothing."""
+        for button in self._buttons.values():
+            button.setEnabled(can_edit)
+        for button, label, tip in (
+            (self.undo, undo_label, self.tr("Take back: {0}")),
+            (self.redo, redo_label, self.tr("Do again: {0}")),
+        ):
+            button.setEnabled(bool(label))
+            button.setToolTip(tip.format(label) if label else "")

@@ -1,0 +1,267 @@
+"""The Photos tab in the real window: reading, looking, correcting by hand, taking over."""
+
+from __future__ import annotations
+
+import gc
+from dataclasses import replace
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from groundstation.services.document import Document
+from groundstation.services.history import History
+from groundstation.services.photo_cards import PhotoMark
+from groundstation.services.site_edits import HeightReference, set_origin
+from planning.findings import Severity
+from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.services.photo_cases import draft_of, site_model, with_paths, write_photos
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("photos")
+    write_photos(folder)
+    damaged = sorted(folder.iterdir())[2]
+    damaged.write_bytes(damaged.read_bytes()[:-4000])
+    return folder
+
+
+@pytest.fixture(scope="module")
+def desk(application, worker, tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
+        from groundstation.gui.desk import Desk
+
+        desk = Desk(application, Answers(), worker)
+        desk.show()
+        desk.window.setGeometry(0, 0, 1280, 720)
+        turn_until(application, lambda: desk.window.stage.scene() is not None)
+        yield desk
+        desk.window.close()
+        desk.close()
+        gc.collect()
+
+
+class Page:
+    """The tab with its photos read, and hands to work it."""
+
+    def __init__(self, application, desk, folder):
+        self.application, self.desk = application, desk
+        desk.workspace.session.open(Document(site_model()), None)
+        desk.window.show_tab("photos")
+        self.tab = desk.window.tab("photos")
+        self.messages = []
+        desk.workspace.messageShown.connect(self.messages.append)
+        self.tab.questions = Answers(folder=folder)
+        self.tab.choose.click()
+        self.idle()
+
+    @property
+    def view(self):
+        return self.tab.pane.view
+
+    @property
+    def draft(self):
+        return self.tab.desk.draft
+
+    @property
+    def grid(self):
+        return self.draft.grid(self.tab.pane.place())
+
+    def idle(self):
+        turn_until_idle(self.application, self.desk)
+        turn_until(self.application, lambda: not self.tab.store.is_busy())
+        self.application.processEvents()
+
+    def found(self):
+        """Give the desk what a search finds in these photos; the search itself is tested where it is."""
+        cards = self.tab.desk.cards
+        draft = draft_of([card.posed for card in cards])
+        self.tab.desk._history = History(with_paths(draft, [card.path for card in cards]))
+        self.tab.desk.draftChanged.emit()
+        self.idle()
+
+    def at(self, point_px):
+        return self.view.place_of(point_px).toPoint()
+
+    def press(self, point_px):
+        QTest.mouseClick(self.view, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, self.at(point_px))
+        self.idle()
+
+    def drag(self, start, end):
+        buttons = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+        QTest.mousePress(self.view, *buttons, start)
+        QTest.mouseMove(self.view, end)
+        QTest.mouseRelease(self.view, *buttons, end)
+        self.idle()
+
+
+@pytest.fixture
+def page(application, desk, folder):
+    page = Page(application, desk, folder)
+    yield page
+    desk.workspace.messageShown.disconnect(page.messages.append)
+
+
+@pytest.fixture
+def found(page):
+    page.found()
+    return page
+
+
+def middle(grid, row, column):
+    from groundstation.services.photo_grids import cell_middle
+
+    return cell_middle(grid, row, column)
+
+
+def use_tool(page, tool):
+    from groundstation.gui.photos.grid_view import Tool
+
+    page.tab.tools._buttons[Tool[tool]].click()
+
+
+def test_a_folder_is_read_and_each_photo_has_its_marks(page):
+    cards = page.tab.desk.cards
+    assert len(cards) == 3
+    assert PhotoMark.CUT_OFF in cards[2].marks
+    assert not cards[0].marks
+    assert page.tab.strip.model().rowCount() == 3
+    assert "2 of them usable" in page.tab.coverage.text()
+    assert page.tab.find.isEnabled()
+    assert not page.tab.use.isEnabled()
+
+
+def test_the_first_photo_is_shown_and_a_finding_leads_to_its_own(page):
+    assert page.tab.pane.card() is page.tab.desk.cards[0]
+    assert page.view.picture().levels[0].width() == 800
+    page.tab.findings.placePicked.emit(str(page.tab.desk.cards[1].path))
+    page.idle()
+    assert page.tab.pane.card() is page.tab.desk.cards[1]
+    assert page.view.picture().path == page.tab.desk.cards[1].path
+
+
+def test_a_damaged_photo_says_why_it_is_not_shown(page):
+    page.tab.strip.choose(2)
+    page.idle()
+    assert page.view.picture() is None
+    assert any("cut off" in message.text for message in page.messages if message.severity is Severity.ERROR)
+
+
+def test_a_folder_without_photos_is_refused_in_words(page, tmp_path):
+    page.tab.questions = Answers(folder=tmp_path)
+    page.tab.choose.click()
+    page.idle()
+    assert any("holds no .jpg photo" in message.text for message in page.messages)
+    assert len(page.tab.desk.cards) == 3
+
+
+def test_a_place_on_the_map_chooses_its_photo(page):
+    found = []
+    page.tab.map.chosen.connect(found.append)
+    spot = page.tab.map._at(page.tab.map._places[1]).toPoint()
+    QTest.mouseClick(page.tab.map, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
+    assert found == [1]
+    assert page.tab.pane.card() is page.tab.desk.cards[1]
+
+
+@pytest.mark.parametrize("is_rectified", [False, True])
+def test_a_line_is_dragged_in_both_views_and_the_facade_solved_again(found, is_rectified):
+    if is_rectified:
+        found.tab.pane.rectified.click()
+        found.idle()
+    before = [line.position_m for line in found.draft.facade("A").columns]
+    line, y = found.grid.columns[4].position_px, middle(found.grid, 1, 4)[1]
+    to = 0.7 * line + 0.3 * found.grid.columns[5].position_px
+    found.drag(found.at((line, y)), found.at((to, y)))
+    after = [line.position_m for line in found.draft.facade("A").columns]
+    assert not found.draft.unsolved
+    assert after[4] - before[4] == pytest.approx(0.3 * (before[5] - before[4]), abs=0.06)
+    assert found.tab.desk.undo_label == "Move line"
+    found.tab.tools.undo.click()
+    found.idle()
+    assert [line.position_m for line in found.draft.facade("A").columns] == before
+    assert found.tab.tools.redo.isEnabled()
+
+
+def test_panels_and_lines_come_and_go_by_a_press(found):
+    use_tool(found, "PANEL")
+    found.press(middle(found.grid, 2, 3))
+    assert len(found.draft.facade("A").panels) == 29
+    assert "no panel" in found.view.words_at(found.view.place_of(middle(found.grid, 2, 3)))
+    found.press(middle(found.grid, 2, 3))
+    assert len(found.draft.facade("A").panels) == 30
+    use_tool(found, "ADD_ROW")
+    found.press(middle(found.grid, 1, 3))
+    assert len(found.draft.facade("A").panels) == 40
+    use_tool(found, "REMOVE_LINE")
+    found.press((middle(found.grid, 1, 0)[0], found.grid.rows[2].position_px))
+    assert len(found.draft.facade("A").panels) == 30
+    use_tool(found, "MOVE")
+
+
+def test_a_press_beside_everything_moves_the_picture_and_changes_nothing(found):
+    draft, corner = found.draft, found.view.to_picture(found.view.rect().center().toPointF())
+    found.view.zoom_by(2.0)
+    start = QPoint(3, 3)
+    found.drag(start, start + QPoint(40, 20))
+    assert found.draft is draft
+    assert (found.view.to_picture(found.view.rect().center().toPointF()) - corner).x() < 0
+    found.view.show_whole()
+
+
+def test_used_panels_replace_those_of_the_site_and_undo_brings_them_back(found):
+    found.tab.use.click()
+    found.idle()
+    workspace = found.desk.workspace
+    assert [len(facade.panels) for facade in workspace.document.site.site.facades] == [30]
+    assert found.desk.window.shown_tab() == "site"
+    assert workspace.selection.id == "A"
+    assert "other panels now" in found.tab.coverage.text()
+    workspace.session.undo()
+    assert [facade.id for facade in workspace.document.site.site.facades] == ["X"]
+    assert found.draft is not None
+
+
+def test_another_site_clears_the_photos(found):
+    found.desk.workspace.session.open(Document(), None)
+    assert found.tab.desk.cards == ()
+    assert found.draft is None
+    assert not found.tab.read.isEnabled()
+
+
+def test_photos_stay_when_the_site_is_saved_and_go_when_it_moves(found):
+    workspace = found.desk.workspace
+    model = workspace.document.site
+    anew = replace(model, building=site_model().building)
+    workspace.session.amend(replace(workspace.document, site=anew))
+    assert len(found.tab.desk.cards) == 3
+    moved = set_origin(anew, 22.34, 114.2636, 62.0, HeightReference.ELLIPSOID)
+    workspace.change("Move", replace(workspace.document, site=moved))
+    assert found.tab.desk.cards == ()
+
+
+def test_photos_that_were_read_for_another_site_are_not_shown(page):
+    folder = page.tab.desk.folder
+    page.desk.workspace.session.open(Document(), None)
+    page.desk.workspace.session.open(Document(site_model()), None)
+    page.tab.desk.read(folder)
+    page.desk.workspace.session.open(Document(), None)
+    page.idle()
+    assert page.tab.desk.cards == ()
+
+
+def test_a_new_window_shows_the_same_photos(application, found):
+    from groundstation.services.settings import Language
+
+    before = found.draft
+    found.desk.choose(language=Language.GERMAN)
+    turn_until(application, lambda: found.desk.window.stage.scene() is not None)
+    found.desk.window.show_tab("photos")
+    found.tab = found.desk.window.tab("photos")
+    found.idle()
+    assert found.draft is before
+    assert found.tab.strip.model().rowCount() == 3
+    found.desk.choose(language=Language.ENGLISH)
+    turn_until(application, lambda: found.desk.window.stage.scene() is not None)
