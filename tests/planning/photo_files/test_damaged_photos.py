@@ -105,10 +105,10 @@ def test_entities_are_never_expanded_nor_files_fetched(tmp_path):
     ids=["deep", "quotes", "long", "colons", "elements", "nested"],
 )
 def test_packets_made_to_be_slow_are_not(text):
-    started = time.perf_counter()
+    started = time.process_time()
     read_xmp(text.encode())
     read_xmp((text + "</x").encode())
-    assert time.perf_counter() - started < LONGEST_S
+    assert time.process_time() - started < LONGEST_S
 
 
 def test_packets_with_very_many_properties_are_cut():
