@@ -9,17 +9,22 @@ from pathlib import Path
 
 from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.project_file import check_not_index
+from groundstation.vehicle.duration import items_duration_s, timed_by_items
+from groundstation.vehicle.orders import sortie_orders
+from missions.build import missions_from_plan
 from missions.flight.flight_file import Flight, flight_of, write_flight
 from missions.flight.logs.flights import LogFlights
 from missions.flight.logs.read import read_log
 from missions.flight.photo_folder import read_photo_flights
 from missions.flight.report import report_flight
-from planning.errors import InputError
+from missions.mavlink.autopilots import Autopilot
+from planning.errors import InfeasibleError, InputError, MissionError
 from planning.findings import Finding
 from planning.json_file import check_output
 from planning.photo_files.places import PhotoHeights
+from planning.plan import Plan
 from planning.progress import QUIET, Monitor
-from planning.site import Site
+from planning.site import Site, SiteModel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +79,8 @@ def report_files(
         found = read_photo_flights(photos, site_model.site, heights, monitor)
     else:
         found = _of_logs(logs, site_model.site, heights, monitor)
-    report = report_flight(plan, site_model, found.records, monitor=monitor)
+    timed = plan if found.autopilot is None else _timed(plan, site_model, found.autopilot)
+    report = report_flight(timed, site_model, found.records, monitor=monitor)
     flight = flight_of(plan, site_model, found.records, report)
     if out is not None:
         write_flight(out, flight)
@@ -84,7 +90,22 @@ def report_files(
 def _of_logs(logs: Sequence[Path], site: Site, heights: PhotoHeights, monitor: Monitor) -> LogFlights:
     """Flights of all logs, one after the other."""
     found = [read_log(log, site, "sea-level" if heights == "absolute" else "takeoff", monitor) for log in logs]
+    autopilots = {flights.autopilot for flights in found}
     return LogFlights(
         tuple(record for flights in found for record in flights.records),
         tuple(finding for flights in found for finding in flights.findings),
+        autopilots.pop() if len(autopilots) == 1 else None,
     )
+
+
+def _timed(plan: Plan, site_model: SiteModel, autopilot: Autopilot) -> Plan:
+    """The plan with the durations of its items; as it is where no items can be made of it.
+
+    Its own durations are those of an aircraft that turns at the waypoint, which MAVLink's do not.
+    """
+    try:
+        missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
+        orders = [sortie_orders(plan, site_model, mission) for mission in missions]
+        return timed_by_items(plan, {each.number: items_duration_s(each, autopilot) for each in orders})
+    except (InputError, MissionError, InfeasibleError):
+        return plan  # It was flown all the same, in other items; the report on it must not be lost.

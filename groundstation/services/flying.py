@@ -17,7 +17,7 @@ from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.mission_files import within_item_limit
 from groundstation.services.project_file import check_not_index
 from groundstation.vehicle.conduct import conduct
-from groundstation.vehicle.duration import items_duration_s
+from groundstation.vehicle.duration import items_duration_s, timed_by_items
 from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
 from groundstation.vehicle.run_records import RunOptions, RunOutcome, RunView
@@ -188,10 +188,8 @@ def fly_plan(
     records = tuple(record for record, _ in flown)
     sorties = tuple(sortie for _, sortie in flown)
     # The report compares with how long these items take: the plan's own durations are those of a DJI aircraft.
-    ground_s = plan.rules.takeoff_landing_s
-    timed = [replace(own, duration_s=s.expected_s + ground_s) for own, s in zip(plan.sorties, sorties, strict=False)]
-    timed += plan.sorties[len(timed) :]
-    report = report_flight(replace(plan, sorties=tuple(timed)), site_model, records, monitor=monitor)
+    timed = timed_by_items(plan, {sortie.number: sortie.expected_s for sortie in sorties})
+    report = report_flight(timed, site_model, records, monitor=monitor)
     flight = flight_of(planned, site_model, records, report)
     return Flown(flight, sorties, findings, time.perf_counter() - started_s, error)
 

@@ -21,6 +21,7 @@ from missions.mavlink.wire import Counts
 from missions.simulator.airframe import Airframe
 from missions.simulator.build import make_airframe
 from missions.simulator.effects.link_loss import through_air
+from missions.simulator.profiles import vehicle_profile
 from missions.simulator.scene import Conditions
 from missions.simulator.server import MAX_SPEEDUP, serve
 from missions.simulator.vehicle import SimulatedVehicle
@@ -32,6 +33,9 @@ from planning.site import Origin, SiteModel
 SAMPLE_S = 0.1
 """Simulated time between two notes of where the aircraft truly is."""
 
+LONGEST_DISARM_DELAY_S = 127.0
+"""Range of ArduPilot's DISARM_DELAY."""
+
 CALM = Conditions()
 """No wind, RTK, no loss."""
 
@@ -39,8 +43,10 @@ CALM = Conditions()
 class SampledVehicle(SimulatedVehicle):
     """A simulated vehicle that notes where it truly is, on the thread that flies it."""
 
-    def __init__(self, autopilot: Autopilot, airframe: Airframe, origin: Origin) -> None:
-        super().__init__(autopilot, airframe, origin, is_ready=True)
+    def __init__(
+        self, autopilot: Autopilot, airframe: Airframe, origin: Origin, parameters: Mapping[str, float]
+    ) -> None:
+        super().__init__(autopilot, airframe, origin, parameters=parameters, is_ready=True)
         self._lock = threading.Lock()
         self._truth = TruthRecorder(self)
 
@@ -183,7 +189,7 @@ class Simulation:
             autopilot=self.autopilot,
         )
         flown = with_charge(airframe, self.charge, decisions)
-        vehicle = SampledVehicle(self.autopilot, flown, self.site_model.site.origin)
+        vehicle = SampledVehicle(self.autopilot, flown, self.site_model.site.origin, self._parameters())
         ground, air = memory_pair(vehicle=vehicle.address, clock=clock)
         ground.observe(observe)
         link = through_air(ground, decisions, self.conditions, lambda: vehicle.flight_s, self.seed)
@@ -192,3 +198,14 @@ class Simulation:
             target=serve, args=(vehicle, [air], self.speed_up), name="simulated-vehicle", daemon=True
         ).start()
         return OpenedLink(link, decisions, vehicle)
+
+    def _parameters(self) -> dict[str, float]:
+        """What a vehicle whose time runs faster than the orders to it needs to be set otherwise.
+
+        ArduPilot stops its motors where it is not told to take off within DISARM_DELAY after arming: 10 s, which forty
+        times as fast are over before the next order has come.
+        """
+        if self.autopilot is not Autopilot.ARDUPILOT or self.speed_up <= 1.0:
+            return {}
+        usual_s = vehicle_profile(self.autopilot).parameters["DISARM_DELAY"]
+        return {"DISARM_DELAY": min(usual_s * self.speed_up, LONGEST_DISARM_DELAY_S)}

@@ -9,7 +9,7 @@ from pathlib import Path
 from groundstation.services.live_connection import OpenedLink
 from groundstation.services.live_events import FlightEnded
 from groundstation.services.settings import data_folder
-from groundstation.vehicle.duration import items_duration_s
+from groundstation.vehicle.duration import items_duration_s, timed_by_items
 from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.telemetry_log import TelemetryLog, new_log_path
 from missions.flight.flight_file import flight_of, write_flight
@@ -87,9 +87,7 @@ def keep_flight(
     expected_s
         How long the items of sorties take by their number; plans reckon with an aircraft that turns at its waypoints.
     """
-    plan = case.plan
-    sorties = (replace(s, duration_s=expected_s.get(n, s.duration_s)) for n, s in enumerate(plan.sorties, 1))
-    report = report_case(case.with_plan(replace(plan, sorties=tuple(sorties))), records)
+    report = report_case(case.with_plan(timed_by_items(case.plan, expected_s)), records)
     problem = ""
     for place in dict.fromkeys((path, flights_folder(None) / path.name)):
         try:

@@ -8,6 +8,7 @@ when the place is within the item's radius, before the aircraft rests or the nos
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from missions.mavlink.px4_motion import px4_leg_s, px4_turn_s
 from missions.model import Mission
 from planning.frames import Vec3, wrap_heading_deg
 from planning.geodesy.enu import enu_from_geodetic
+from planning.plan import Plan
 from planning.timing import MotionLimits, leg_times_s, motion_limits
 
 
@@ -58,6 +60,22 @@ def items_duration_s(orders: SortieOrders, autopilot: Autopilot) -> float:
         elif item.command == mavlink.MAV_CMD_NAV_LAND:
             total_s += _landing_s(here, orders.home_enu_m, autopilot, limits)
     return total_s
+
+
+def timed_by_items(plan: Plan, items_s: Mapping[int, float]) -> Plan:
+    """A plan whose sorties take as long as their items, and the time on the ground besides.
+
+    Parameters
+    ----------
+    items_s
+        From lift-off to touch-down, by the number of the sortie; the others stay as they are.
+    """
+    ground_s = plan.rules.takeoff_landing_s
+    sorties = (
+        replace(sortie, duration_s=items_s[number] + ground_s) if number in items_s else sortie
+        for number, sortie in enumerate(plan.sorties, 1)
+    )
+    return replace(plan, sorties=tuple(sorties))
 
 
 def _place(item: MissionItem, mission: Mission) -> Vec3:

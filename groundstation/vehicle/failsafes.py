@@ -1,6 +1,7 @@
 """What the vehicle will do by itself, by its parameters, against what this sortie can bear.
 
-ArduPilot: parameter documentation of Copter 4.5, `failsafe_gcs_check` and `AP_Rally`. PX4: parameter reference 1.16.
+ArduPilot: parameter documentation of Copter 4.5, `failsafe_gcs_check`, `AP_Rally`, and `compute_return_target` of RTL,
+which never returns above the fence's height. PX4: parameter reference 1.16.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from groundstation.vehicle import fence_limits
 from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.preflight import PreflightCheck, Verdict
 from groundstation.vehicle.watch import DISTANCE_TOLERANCE_M
@@ -19,9 +21,12 @@ from planning.rally import return_way
 NAMES = {
     Autopilot.ARDUPILOT: (
         *("FS_GCS_ENABLE", "FS_GCS_TIMEOUT", "FS_OPTIONS", "RTL_ALT", "RTL_CONE_SLOPE"),
-        *("RALLY_INCL_HOME", "FENCE_ENABLE", "FENCE_ACTION"),
+        *("RALLY_INCL_HOME", *fence_limits.NAMES[Autopilot.ARDUPILOT]),
     ),
-    Autopilot.PX4: ("NAV_DLL_ACT", "COM_DL_LOSS_T", "COM_DLL_EXCEPT", "RTL_RETURN_ALT", "RTL_TYPE", "GF_ACTION"),
+    Autopilot.PX4: (
+        *("NAV_DLL_ACT", "COM_DL_LOSS_T", "COM_DLL_EXCEPT", "RTL_RETURN_ALT", "RTL_TYPE"),
+        *fence_limits.NAMES[Autopilot.PX4],
+    ),
 }
 """Parameters that decide it, by autopilot."""
 
@@ -104,7 +109,12 @@ def failsafe_checks(
     values
         Of the parameters in `NAMES`, as far as the vehicle knows them.
     """
-    return (*_link(autopilot, values), *_return(autopilot, values, orders), *_fence(autopilot, values, orders))
+    return (
+        *_link(autopilot, values),
+        *_return(autopilot, values, orders),
+        *_fence(autopilot, values, orders),
+        *fence_limits.fence_limit_checks(autopilot, values, orders),
+    )
 
 
 def _link(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[PreflightCheck]:
@@ -144,7 +154,11 @@ def return_of(autopilot: Autopilot, values: Mapping[str, float], orders: SortieO
             return None
         has_home = not rally or bool(values.get("RALLY_INCL_HOME", 1.0))
         places = (home, *rally) if has_home else rally
-        return Return(values["RTL_ALT"] / 100.0, "RTL_ALT", places, values.get("RTL_CONE_SLOPE", 0.0))
+        limits = fence_limits.fence_limits(autopilot, values)
+        height_m, name = values["RTL_ALT"] / 100.0, "RTL_ALT"
+        if height_m > limits.height_m - limits.margin_m:
+            height_m, name = limits.height_m - limits.margin_m, "FENCE_ALT_MAX"
+        return Return(height_m, name, places, values.get("RTL_CONE_SLOPE", 0.0))
     if "RTL_RETURN_ALT" not in values:
         return None
     kind = int(values.get("RTL_TYPE", 0.0))

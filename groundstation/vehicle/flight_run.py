@@ -79,7 +79,7 @@ class FlightRun:
         self.phase = Phase.CONNECTING
         self.watch = Watch()
         self.on_board = OnBoard()
-        self.now_s = 0.0
+        self.now_s = self._started_s = 0.0
         self.outcome: RunOutcome | None = None
         self.answers: tuple[CommandOutcome, ...] = ()
         self.notes: tuple[FlightEvent, ...] = ()
@@ -111,7 +111,7 @@ class FlightRun:
         """Begin."""
         from groundstation.vehicle.steps import sortie_steps
 
-        self.now_s = now_s
+        self.now_s = self._started_s = now_s
         self._steps = sortie_steps(self)
         return self._advance()
 
@@ -178,8 +178,8 @@ class FlightRun:
         return self._checks
 
     def note(self, code: str, text: str) -> None:
-        """Note something, in the record too where one is made."""
-        self.notes = (*self.notes, FlightEvent(self.now_s, code, text))
+        """Note something, in seconds since the run began, and in the record too where one is made."""
+        self.notes = (*self.notes, FlightEvent(self.now_s - self._started_s, code, text))
         if self.recorder is not None:
             self.recorder.note(code, text)
 

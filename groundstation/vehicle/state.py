@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Generic, TypeVar
 
+from missions.flight.logs.photo_clock import PhotoClock
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
@@ -124,8 +125,11 @@ class VehicleState:
         Time of its last message of any kind.
     heartbeat
         Its last heartbeat; the value counts them.
-    boot_time_s
-        The vehicle's own time: seconds since it was switched on. In a simulation faster than real time it runs ahead.
+    boot_time_s, boot_time_heard_s
+        The vehicle's own time: seconds since it was switched on, and when it told that. In a simulation faster than
+        real time it runs ahead.
+    photo_clock
+        From the UNIX time of photos to the vehicle's own.
     home_altitude_amsl_m
         From where it counts heights above home, as its positions tell; PX4 corrects it in flight.
     camera
@@ -143,6 +147,8 @@ class VehicleState:
     heard: float | None = None
     heartbeat: Timed[int] | None = None
     boot_time_s: float | None = None
+    boot_time_heard_s: float = 0.0
+    photo_clock: PhotoClock = field(default_factory=PhotoClock)
     mode: Timed[str] | None = None
     armed: Timed[bool] | None = None
     landed: Timed[Landed] | None = None

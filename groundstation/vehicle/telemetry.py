@@ -24,6 +24,7 @@ from groundstation.vehicle.state import (
     VehicleState,
     VehicleText,
 )
+from missions.flight.logs.photo_clock import NEARBY_S, PhotoClock
 from missions.flight.logs.raw import camera_angles_rad, is_yaw_from_north
 from missions.flight.record import TakenPhoto
 from missions.mavlink import messages
@@ -93,6 +94,8 @@ def folded(state: VehicleState, received: messages.Received, frame: LocalFrame) 
     if state.address is None or source.system != state.address.system:
         return state
     state = replace(state, heard=received.time_s)
+    if isinstance(message, messages.SystemTime) and source != state.address:
+        return state
     handler = _HANDLERS.get(type(message))
     return state if handler is None else handler(state, message, received.time_s, frame)
 
@@ -119,7 +122,7 @@ def _heartbeat(state: VehicleState, message: messages.Heartbeat, received: messa
 def _position(
     state: VehicleState, message: messages.GlobalPositionInt, now_s: float, frame: LocalFrame
 ) -> VehicleState:
-    state = _with_boot_time(state, message.time_boot_ms)
+    state = _with_boot_time(state, message.time_boot_ms, now_s)
     if not _on_globe(message.lat, message.lon):
         return state
     above_m = message.relative_alt / 1000.0
@@ -129,10 +132,15 @@ def _position(
 
 
 def _attitude(state: VehicleState, message: messages.Attitude, now_s: float, _: LocalFrame) -> VehicleState:
-    state = _with_boot_time(state, message.time_boot_ms)
+    state = _with_boot_time(state, message.time_boot_ms, now_s)
     if not _finite(message.yaw, message.pitch, message.roll):
         return state
     return replace(state, attitude=Timed(Angles(_wrapped(message.yaw), message.pitch, message.roll), now_s))
+
+
+def _system_time(state: VehicleState, message: messages.SystemTime, now_s: float, _: LocalFrame) -> VehicleState:
+    state = _with_boot_time(state, message.time_boot_ms, now_s)
+    return replace(state, photo_clock=state.photo_clock.told(message.time_unix_usec, message.time_boot_ms / 1000.0))
 
 
 def _gimbal(
@@ -251,7 +259,11 @@ def _feedback(state: VehicleState, message: messages.CameraFeedback, now_s: floa
     if not _on_globe(message.lat, message.lng) or not _finite(message.alt_rel):
         return state
     place = frame.enu_m(message.lat, message.lng, message.alt_rel)
-    time_s = now_s if state.boot_time_s is None else state.boot_time_s
+    time_s = now_s
+    if state.boot_time_s is not None:
+        own_s, silent_s = state.boot_time_s, now_s - state.boot_time_heard_s
+        clock = state.photo_clock.heard(message.time_usec, own_s, silent_s)
+        state, time_s = replace(state, photo_clock=clock), clock.taken_s(message.time_usec, own_s, silent_s)
     return _with_photo(state, message.img_idx, time_s, place, "camera-feedback", now_s)
 
 
@@ -293,20 +305,25 @@ def _with_photo(state: VehicleState, index: int, time_s: float, place: Vec3, sou
         return state
     camera, motion = state.camera, state.motion
     is_known = camera is not None and camera.age_s(now_s) <= CAMERA_AGE_S
+    is_recent = motion is not None and motion.age_s(now_s) <= CAMERA_AGE_S
     photo = TakenPhoto(
         index,
         time_s,
         place,
         wrap_heading_deg(math.degrees(camera.value.heading_rad)) if is_known and camera is not None else None,
         math.degrees(camera.value.pitch_rad) if is_known and camera is not None else None,
-        math.hypot(*motion.value.velocity_enu_m_s[:2]) if motion is not None else None,
+        math.hypot(*motion.value.velocity_enu_m_s[:2]) if is_recent and motion is not None else None,
         source,
     )
     return replace(state, photos=(*state.photos, photo))
 
 
-def _with_boot_time(state: VehicleState, time_boot_ms: int) -> VehicleState:
-    return replace(state, boot_time_s=time_boot_ms / 1000.0)
+def _with_boot_time(state: VehicleState, time_boot_ms: int, now_s: float) -> VehicleState:
+    """State with the vehicle's own time; where that began again, UNIX times are to be compared with it anew."""
+    boot_s = time_boot_ms / 1000.0
+    is_new = state.boot_time_s is not None and boot_s < state.boot_time_s - NEARBY_S
+    clock = PhotoClock() if is_new else state.photo_clock
+    return replace(state, boot_time_s=boot_s, boot_time_heard_s=now_s, photo_clock=clock)
 
 
 def _on_globe(lat_e7: int, lon_e7: int) -> bool:
@@ -323,6 +340,7 @@ def _finite(*values: float) -> bool:
 
 
 _HANDLERS: dict[type[messages.Message], Callable[..., VehicleState]] = {
+    messages.SystemTime: _system_time,
     messages.GlobalPositionInt: _position,
     messages.Attitude: _attitude,
     messages.GimbalDeviceAttitudeStatus: _gimbal,

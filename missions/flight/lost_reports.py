@@ -8,11 +8,16 @@ from __future__ import annotations
 
 import itertools
 
+import numpy as np
+
 from missions.flight.record import FlightRecord, TakenPhoto
 
 FIRST_NUMBER = {"camera-feedback": 1, "image-captured": 0}
 """Sources that come over the radio, each photo once, and the number of a camera's first photo there (MAVLink: the index
 in CAMERA_IMAGE_CAPTURED counts from 0). Other numbers (of files, of log entries) may have gaps of their own."""
+
+UNHEARD_S = 2.0
+"""An aircraft at 5 m/s is 10 m further on by then, and may have been at a view meanwhile."""
 
 
 def n_lost_between(record: FlightRecord, first: int, last: int) -> int:
@@ -35,6 +40,14 @@ def n_lost_between(record: FlightRecord, first: int, last: int) -> int:
         return 0
     told = {photo.index for photo in record.photos[first:last] if before.index < photo.index < after.index}
     return max(0, after.index - before.index - 1 - len(told))
+
+
+def is_unheard_between(record: FlightRecord, first: int, last: int) -> bool:
+    """Whether the track has a pause between two photos, so that it does not say where the aircraft was meanwhile."""
+    start_s, end_s = record.photos[first].time_s, record.photos[last].time_s
+    time_s = record.track.time_s
+    heard_s = [start_s, *time_s[(time_s > start_s) & (time_s < end_s)], end_s]
+    return bool(np.max(np.diff(heard_s)) > UNHEARD_S)
 
 
 def n_lost_before(record: FlightRecord, photo: int) -> int:

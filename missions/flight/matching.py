@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.flight.lost_reports import n_lost, n_lost_after, n_lost_before, n_lost_between
+from missions.flight.lost_reports import is_unheard_between, n_lost, n_lost_after, n_lost_before, n_lost_between
 from missions.flight.outcome import Reason
 from missions.flight.record import FlightRecord, TakenPhoto
 from planning.frames import heading_difference_rad
@@ -231,22 +231,25 @@ def _with_lost_reports(found: list[ViewMatch], records: Sequence[FlightRecord], 
 
     Between two photos of views, before the first and after the last one, they are known where the camera counted as
     many as there are views without any photo; where it counted fewer or more, which of them were photographed is not
-    known. A sortie that was flown in several pieces has no one beginning and end.
+    known. Where the track has a pause, because the link was lost, views that it passes by count, too. A sortie that was
+    flown in several pieces has no one beginning and end.
     """
     told = [(view, match.photo) for view, match in enumerate(found) if match.photo is not None]
-    stretches = [
-        (range(before + 1, after), n_lost_between(records[first.record], first.photo, last.photo))
-        for (before, first), (after, last) in itertools.pairwise(told)
-        if first.record == last.record and first.photo <= last.photo
-    ]
+    passed = {Reason.NO_PHOTO}
+    stretches: list[tuple[range, int, set[Reason]]] = []
+    for (before, first), (after, last) in itertools.pairwise(told):
+        if first.record == last.record and first.photo <= last.photo:
+            ends = records[first.record], first.photo, last.photo
+            reasons = passed | ({Reason.NOT_REACHED} if is_unheard_between(*ends) else set())
+            stretches.append((range(before + 1, after), n_lost_between(*ends), reasons))
     if len(own) == 1 and told:
         (first_view, first), (last_view, last) = told[0], told[-1]
-        stretches.append((range(first_view), n_lost_before(records[own[0]], first.photo)))
-        stretches.append((range(last_view + 1, len(found)), n_lost_after(records[own[0]], last.photo)))
+        stretches.append((range(first_view), n_lost_before(records[own[0]], first.photo), passed))
+        stretches.append((range(last_view + 1, len(found)), n_lost_after(records[own[0]], last.photo), passed))
     elif len(own) == 1:
-        stretches.append((range(len(found)), n_lost(records[own[0]])))
-    for views, n_photos in stretches:
-        silent = [view for view in views if found[view].reason is Reason.NO_PHOTO]
+        stretches.append((range(len(found)), n_lost(records[own[0]]), passed))
+    for views, n_photos, reasons in stretches:
+        silent = [view for view in views if found[view].reason in reasons]
         if n_photos == len(silent):
             for view in silent:
                 found[view] = replace(found[view], reason=Reason.REPORT_LOST)

@@ -3,7 +3,11 @@
 import pytest
 
 from groundstation.services.flight_report import report_files
+from groundstation.vehicle.duration import items_duration_s
+from groundstation.vehicle.orders import sortie_orders
+from missions.build import missions_from_plan
 from missions.flight.flight_file import read_flight
+from missions.mavlink.autopilots import Autopilot
 from planning.plan_file import read_plan
 from planning.site_file import read_site
 from tests.cli.conftest import BAD_CONTENTS
@@ -46,6 +50,28 @@ def test_every_kind_of_log_gives_the_report_and_the_flight(report, pane, tmp_pat
     assert flight.report.summary.n_taken == 6
     assert flight.report.summary.least_distance_m > 9.0
     assert flight.site_sha256 == read_site(pane / "site.json").sha256
+
+
+@pytest.mark.parametrize(
+    ("name", "autopilot"),
+    [("f.tlog", Autopilot.ARDUPILOT), ("f.BIN", Autopilot.ARDUPILOT), ("f.ulg", Autopilot.PX4)],
+)
+def test_the_duration_is_compared_with_that_of_the_autopilots_items(report, pane, tmp_path, name, autopilot):
+    plan, model = read_plan(pane / "plan.json"), read_site(pane / "site.json")
+    log = save(tmp_path / name, LOGS[name.replace("f.", "flight.")](flown_as_planned(plan), model.site))
+    (sortie,) = report("--log", log, "--json").json["sorties"]
+    (mission,) = missions_from_plan(plan, model.site.origin, model.site.home_enu_m)
+    expected_s = items_duration_s(sortie_orders(plan, model, mission), autopilot)
+    assert sortie["duration_predicted_s"] == pytest.approx(expected_s, abs=0.1)
+    own_s = plan.sorties[0].duration_s - plan.rules.takeoff_landing_s
+    assert expected_s > own_s + 1.0
+
+
+def test_the_duration_of_a_dji_flight_is_compared_with_the_plans_own(report, pane, photos):
+    plan = read_plan(pane / "plan.json")
+    own_s = plan.sorties[0].duration_s - plan.rules.takeoff_landing_s
+    (sortie,) = report("--photos", photos, "--json").json["sorties"]
+    assert sortie["duration_predicted_s"] == pytest.approx(own_s, abs=0.1)
 
 
 def test_several_logs_are_one_flight(report, pane, tmp_path):

@@ -20,6 +20,7 @@ from groundstation.services.live_events import (
 )
 from groundstation.services.live_flight import LiveFlight
 from groundstation.services.live_sortie import prepare_sortie
+from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.run_records import Phase
 from missions.flight.flight_file import read_flight
 from missions.flight.logs.read import read_log
@@ -78,6 +79,24 @@ def test_a_sortie_is_flown_from_connecting_to_the_report(flight, tmp_path, autop
     (log,) = (tmp_path / "flights").glob("*.tlog")
     (logged,) = read_log(log, planned()[0].site).records
     assert len(logged.photos) == len(photos)
+
+
+def test_the_report_compares_with_how_long_the_items_take(flight):
+    live, follower = flight()
+    fly(live, follower)
+    (outcome,) = follower.until_ended().report.sorties
+    expected_s = items_duration_s(sortie().orders, Autopilot.ARDUPILOT)
+    assert outcome.duration_predicted_s == pytest.approx(expected_s)
+    assert outcome.duration_flown_s == pytest.approx(expected_s, rel=0.1)
+
+
+@pytest.mark.parametrize(("speed_up", "delay_s"), [(1.0, 10.0), (5.0, 50.0), (40.0, 127.0)])
+def test_a_faster_vehicle_waits_longer_for_the_order_after_arming(speed_up, delay_s):
+    """At most what ArduPilot takes: ten of its seconds are a quarter of one at forty times real time."""
+    model, plan = planned()
+    opened = Simulation(plan, model, speed_up=speed_up).open(sortie().orders, time.perf_counter, lambda *_frame: None)
+    assert opened.simulated.parameters["DISARM_DELAY"] == delay_s
+    opened.link.close()
 
 
 def test_views_come_at_most_ten_times_a_second(flight):

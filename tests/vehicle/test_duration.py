@@ -1,11 +1,13 @@
 """How long ArduPilot takes: against legs that a real ArduCopter flew, and against the simulated vehicle."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from groundstation.services.flying import FlightWish, fly_plan
+from groundstation.vehicle.duration import timed_by_items
 from groundstation.vehicle.setup import leg_late_s
 from missions.mavlink.autopilots import Autopilot
 from planning.catalogue import profile
@@ -49,3 +51,12 @@ def test_the_simulated_vehicle_takes_what_its_items_are_reckoned_to(profile_id):
     (sortie,) = flown.sorties
     seconds = flown.flight.report.sorties[0].duration_flown_s
     assert math.isclose(seconds, sortie.expected_s, rel_tol=0.04)
+
+
+def test_a_plan_timed_by_its_items_keeps_its_other_sorties():
+    plan = plan_flight(single_panel(), PlanRequest(n_views=8, time_budget_s=2.0)).plan
+    twice = replace(plan, sorties=plan.sorties * 2)
+    timed = timed_by_items(twice, {2: 100.0})
+    assert timed.sorties[0] == plan.sorties[0]
+    assert timed.sorties[1].duration_s == 100.0 + plan.rules.takeoff_landing_s
+    assert replace(timed, sorties=twice.sorties) == twice

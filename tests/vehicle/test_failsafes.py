@@ -133,6 +133,70 @@ def test_what_happens_at_the_geofence_is_told_where_there_is_one(planned, autopi
     assert found(replace(orders, fences=()), autopilot, "fence-action", **changes) is None
 
 
+def room_m(orders, autopilot):
+    """How high and how far from home the sortie goes."""
+    x, y, z = (orders.surroundings[autopilot].path_enu_m - np.array(orders.home_enu_m)).T
+    return {"fence-height": float(z.max()), "fence-radius": float(np.hypot(x, y).max())}
+
+
+LIMITS = [
+    (ARDUPILOT, "fence-height", "FENCE_ALT_MAX", {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 1.0}),
+    (ARDUPILOT, "fence-radius", "FENCE_RADIUS", {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 2.0}),
+    (PX4, "fence-height", "GF_MAX_VER_DIST", {}),
+    (PX4, "fence-radius", "GF_MAX_HOR_DIST", {}),
+]
+
+
+@pytest.mark.parametrize(("autopilot", "code", "name", "changes"), LIMITS)
+@pytest.mark.parametrize(
+    ("more_m", "verdict"), [(-0.1, Verdict.BAD), (0.1, Verdict.WARN), (1.9, Verdict.WARN), (2.1, Verdict.OK)]
+)
+def test_a_sortie_beyond_the_vehicles_own_limits_stays_on_the_ground(
+    planned, autopilot, code, name, changes, more_m, verdict
+):
+    orders = orders_of(planned)
+    limit_m = room_m(orders, autopilot)[code] + more_m
+    check = found(orders, autopilot, code, **changes, **{name: limit_m})
+    assert (check.verdict, check.value) == (verdict, pytest.approx(more_m))
+    assert name in check.text
+    other = {"fence-height": "fence-radius", "fence-radius": "fence-height"}[code]
+    assert found(orders, autopilot, other, **changes, **{name: limit_m}) is None
+
+
+@pytest.mark.parametrize(("autopilot", "code", "name", "changes"), LIMITS)
+def test_limits_that_are_switched_off_say_nothing_and_those_that_only_tell_ground_nothing(
+    planned, autopilot, code, name, changes
+):
+    orders = orders_of(planned)
+    action = "FENCE_ACTION" if autopilot is ARDUPILOT else "GF_ACTION"
+    off = {"FENCE_ENABLE": 0.0} if autopilot is ARDUPILOT else {name: 0.0}
+    assert found(orders, autopilot, code, **{**changes, name: 1.0, **off}) is None
+    assert found(orders, autopilot, code, **changes, **{name: 1.0, action: 0.0}).verdict is Verdict.WARN
+
+
+def test_the_fences_margin_is_the_vehicles_own(planned):
+    orders = orders_of(planned)
+    fence = {"FENCE_ENABLE": 1.0, "FENCE_ALT_MAX": room_m(orders, ARDUPILOT)["fence-height"] + 4.0}
+    assert found(orders, ARDUPILOT, "fence-height", **fence).verdict is Verdict.OK
+    assert found(orders, ARDUPILOT, "fence-height", **fence, FENCE_MARGIN=5.0).verdict is Verdict.WARN
+
+
+def test_ardupilot_returns_no_higher_than_its_fence_lets_it(planned):
+    fence = {"FENCE_ENABLE": 1.0, "FENCE_ALT_MAX": 40.0}
+    way = return_of(ARDUPILOT, values(ARDUPILOT, **fence), orders_of(planned))
+    assert (way.height_m, way.height_name) == (38.0, "FENCE_ALT_MAX")
+    way = return_of(ARDUPILOT, values(ARDUPILOT, **fence, FENCE_TYPE=6.0), orders_of(planned))
+    assert (way.height_m, way.height_name) == (50.0, "RTL_ALT")
+
+
+def test_a_sortie_above_the_height_fence_does_not_take_off(planned):
+    orders = orders_of(planned)
+    toy = toy_at_home(orders)
+    toy.parameters |= {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 1.0, "FENCE_ALT_MAX": 3.0, "FENCE_ACTION": 1.0}
+    _, outcome = fly(orders, toy)
+    assert "raise FENCE_ALT_MAX" in str(outcome.error)
+
+
 def test_several_parameters_are_read_at_once_and_unknown_ones_are_given_up():
     reads = ParameterReads(("A", "B", "C"), ARDUPILOT, VEHICLE)
     assert [message.param_id for message in reads.start(0.0)] == ["A", "B", "C"]

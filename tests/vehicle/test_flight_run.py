@@ -67,6 +67,15 @@ def test_a_sortie_is_flown_and_recorded(orders, autopilot):
     assert run.on_board.fence is True
 
 
+def test_notes_say_when_since_the_run_began_whatever_the_clock_says(orders):
+    toy = toy_at_home(orders)
+    toy.now_s = 50_000.0
+    _, outcome = fly(orders, toy)
+    times_s = [note.time_s for note in outcome.notes]
+    assert times_s == sorted(times_s)
+    assert 0.0 <= times_s[0] < times_s[-1] == pytest.approx(toy.now_s - 50_000.0, abs=1.0)
+
+
 def test_ardupilot_is_started_as_it_wants_it(orders):
     toy = toy_at_home(orders)
     fly(orders, toy)

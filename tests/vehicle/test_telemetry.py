@@ -29,6 +29,7 @@ from missions.mavlink.messages import (
     Received,
     Statustext,
     SysStatus,
+    SystemTime,
     Wind,
     WindCov,
 )
@@ -261,6 +262,29 @@ def test_a_photo_without_recent_gimbal_angles_has_none():
     state = heard(gimbal, state=connected(), time_s=10.0)
     (photo,) = heard(feedback(1, (1.0, 2.0, 3.0)), state=state, time_s=20.0).photos
     assert (photo.heading_deg, photo.gimbal_pitch_deg) == (None, None)
+
+
+UNIX_LESS_BOOT_S = 1_790_000_000.0
+
+
+@pytest.mark.parametrize("is_told", [True, False], ids=["by SYSTEM_TIME", "by a photo before"])
+def test_the_first_message_after_a_link_loss_may_be_a_photo_and_is_not_dated_before_the_gap(is_told):
+    unix_usec = round((UNIX_LESS_BOOT_S + 30.0) * 1e6)
+    state = heard(Attitude(30_000, 0.0, 0.0, 1.0), state=connected(), time_s=10.0)
+    place = GlobalPositionInt(30_000, *e7(HOME), 0, 0, 500, 0, 0, 0)
+    state = heard(place, SystemTime(unix_usec, 30_000) if is_told else feedback(1, HOME, unix_usec), state=state)
+    another_clock = heard(SystemTime(unix_usec, 1), state=state, source=Address(1, 191))
+    state = heard(feedback(2, HOME, unix_usec + 45_000_000), state=another_clock, time_s=55.0)
+    photo = state.photos[-1]
+    assert (photo.index, photo.time_s) == (2, pytest.approx(75.0))
+    assert photo.speed_m_s is None
+
+
+def test_a_vehicle_that_was_restarted_tells_its_clock_anew():
+    unix_usec = round((UNIX_LESS_BOOT_S + 30.0) * 1e6)
+    state = heard(SystemTime(unix_usec, 30_000), Attitude(1_000, 0.0, 0.0, 1.0), state=connected())
+    (photo,) = heard(feedback(1, HOME, unix_usec + 4_000_000), state=state, time_s=12.0).photos
+    assert photo.time_s == 1.0
 
 
 def test_a_photo_that_is_reported_twice_counts_once_and_one_of_a_restarted_camera_counts():

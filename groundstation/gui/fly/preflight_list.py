@@ -100,4 +100,6 @@ class PreflightList(QWidget):
             "link-loss": self.tr("Link lost"),
             "return": self.tr("Return"),
             "fence-action": self.tr("At the geofence"),
+            "fence-height": self.tr("Height limit"),
+            "fence-radius": self.tr("Circle around home"),
         }

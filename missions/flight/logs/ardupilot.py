@@ -19,6 +19,7 @@ from missions.flight.logs.dataflash import (
 )
 from missions.flight.logs.raw import NOT_KNOWN, RawLog, RawPhoto, Row
 from missions.flight.record import FlightEvent
+from missions.mavlink.autopilots import Autopilot
 from planning.progress import QUIET, Monitor
 
 WANTED = frozenset(
@@ -33,7 +34,7 @@ HAS_FIX = 3
 
 def read_dataflash(content: bytes, monitor: Monitor = QUIET) -> RawLog:
     """Everything a dataflash log says of the vehicle."""
-    log = RawLog("ArduPilot, dataflash log")
+    log = RawLog("ArduPilot, dataflash log", autopilot=Autopilot.ARDUPILOT)
     is_binary = looks_binary(content[:2])
     tables, n_lost = (binary_tables if is_binary else text_tables)(content, WANTED, monitor)
     if n_lost > (512 if is_binary else 0):  # a page of memory may end a binary log

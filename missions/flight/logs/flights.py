@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from missions.flight.logs.raw import Floats, RawLog, RawPhoto, Row, camera_angles_rad, table
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
+from missions.mavlink.autopilots import Autopilot
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.frames import wrap_heading_deg, wrap_heading_rad
@@ -50,10 +51,11 @@ Photos, too, are told of a little later than they are taken."""
 
 @dataclass(frozen=True, slots=True)
 class LogFlights:
-    """The flights of a log, in order, and what the pilot should know about them."""
+    """The flights of a log, in order, what the pilot should know about them, and whose they are if that is known."""
 
     records: tuple[FlightRecord, ...]
     findings: tuple[Finding, ...]
+    autopilot: Autopilot | None = None
 
 
 def flights_of(log: RawLog, site: Site, label: str, heights: HeightSource = "takeoff") -> LogFlights:
@@ -82,7 +84,7 @@ def flights_of(log: RawLog, site: Site, label: str, heights: HeightSource = "tak
             records.append(record)
     if not records:
         raise InputError(f"{label}: the aircraft did not fly while this log was written; take the log of the flight")
-    return LogFlights(tuple(records), tuple(findings))
+    return LogFlights(tuple(records), tuple(findings), log.autopilot)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

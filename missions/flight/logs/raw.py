@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from missions.flight.record import FlightEvent
+from missions.mavlink.autopilots import Autopilot
 from planning.findings import Finding, Severity
 
 Floats = NDArray[np.float64]
@@ -59,6 +60,8 @@ class RawLog:
 
     Parameters
     ----------
+    autopilot
+        That flew the items of a mission; None where the log does not say, or it is none that is known.
     positions
         Rows of time, latitude and longitude (degrees), altitude above mean sea level, height above home (metres).
     velocities
@@ -93,6 +96,7 @@ class RawLog:
     photos: list[RawPhoto] = field(default_factory=list)
     triggers: list[RawPhoto] = field(default_factory=list)
     counted: list[tuple[float, int]] = field(default_factory=list)
+    autopilot: Autopilot | None = None
     events: list[FlightEvent] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from missions.flight.logs.photo_clock import PhotoClock
 from missions.flight.logs.raw import NOT_KNOWN, RawLog, RawPhoto
 from missions.flight.record import FlightEvent
 from missions.mavlink import messages
@@ -61,9 +62,9 @@ class TelemetryReader:
         self._source = source
         self._boot_s: float | None = None
         self._base_s = 0.0
-        self._received_s = 0.0
+        self._received_s = self._silent_s = 0.0
         self._is_own = self._is_camera_on_time = False
-        self._unix_less_boot_s: float | None = None
+        self._photo_clock = PhotoClock()
         self._home_amsl_m: float | None = None
         self._captured: dict[tuple[int, int, int], RawPhoto] = {}
         self._fed_back: dict[tuple[int, int, int], RawPhoto] = {}
@@ -102,6 +103,7 @@ class TelemetryReader:
         self._is_own = source == self._source
         if self._is_own and not isinstance(message, messages.CameraImageCaptured):
             self._tell_time(getattr(message, "time_boot_ms", 0), received.time_s)
+        self._silent_s = received.time_s - self._received_s
         if self.now_s is not None:
             handler(message, self.now_s)
 
@@ -113,6 +115,7 @@ class TelemetryReader:
         """Everything that was told so far; of two kinds of messages about photos, the one of which there are more."""
         photos = max(self._captured, self._fed_back, key=len)
         self._log.photos = list(photos.values())
+        self._log.autopilot = next((each for each in Autopilot if facts(each).firmware_type == self.autopilot), None)
         return self._log
 
     def _tell_time(self, time_boot_ms: int, received_s: float) -> None:
@@ -120,7 +123,7 @@ class TelemetryReader:
             boot_s = time_boot_ms / 1e3
             if self._boot_s is not None and boot_s < self._boot_s - REBOOT_S:
                 self._base_s += self._boot_s + min(max(0.0, received_s - self._received_s), MAX_PAUSE_S) - boot_s
-                self._unix_less_boot_s, self._is_camera_on_time = None, False
+                self._photo_clock, self._is_camera_on_time = PhotoClock(), False
                 self._log.events.append(FlightEvent(self._base_s + boot_s, "reboot", "the time since boot began again"))
             self._boot_s, self._received_s = boot_s, received_s
             self.now_s = self._base_s + boot_s
@@ -131,8 +134,8 @@ class TelemetryReader:
         self._log.mode(now_s, _mode_name(message))
 
     def _system_time(self, message: messages.SystemTime, now_s: float) -> None:
-        if message.time_unix_usec > 0:
-            self._unix_less_boot_s = message.time_unix_usec / 1e6 - now_s
+        if self._is_own:
+            self._photo_clock = self._photo_clock.told(message.time_unix_usec, now_s)
 
     def _battery(self, message: messages.SysStatus | messages.BatteryStatus, now_s: float) -> None:
         if 0 <= message.battery_remaining <= 100:
@@ -177,12 +180,10 @@ class TelemetryReader:
 
     def _camera_feedback(self, message: messages.CameraFeedback, now_s: float) -> None:
         """The angles in it are the vehicle's: they count for nothing."""
-        unix_s, time_s = message.time_usec / 1e6, now_s
-        if self._unix_less_boot_s is not None:
-            time_s = self._nearby_s(unix_s - self._unix_less_boot_s, now_s)
+        self._photo_clock = self._photo_clock.heard(message.time_usec, now_s, self._silent_s)
         photo = RawPhoto(
             message.img_idx,
-            time_s,
+            self._photo_clock.taken_s(message.time_usec, now_s, self._silent_s),
             message.lat / 1e7,
             message.lng / 1e7,
             message.alt_msl,
@@ -220,10 +221,6 @@ class TelemetryReader:
         self._is_camera_on_time = self._is_camera_on_time or abs(shutter_s - now_s) < REBOOT_S
         is_known = self._is_own or self._is_camera_on_time
         return shutter_s if is_known and self._base_s < shutter_s < now_s + REBOOT_S else now_s
-
-    def _nearby_s(self, shutter_s: float, now_s: float) -> float:
-        """When a photo was taken: by the camera's clock where that fits, or else when the message came."""
-        return shutter_s if abs(shutter_s - now_s) < REBOOT_S else now_s
 
 
 def _mode_name(heartbeat: messages.Heartbeat) -> str:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from missions.flight.logs.raw import RawLog, RawPhoto, Row
 from missions.flight.record import FlightEvent
+from missions.mavlink.autopilots import Autopilot
 from planning.errors import InputError
 from planning.progress import QUIET, Monitor
 
@@ -76,7 +77,7 @@ def read_ulog(content: bytes, label: str, monitor: Monitor = QUIET) -> RawLog:
     from pyulog import core
 
     monitor.report("reading the log", 0, 1)
-    log = RawLog("PX4, ULog")
+    log = RawLog("PX4, ULog", autopilot=Autopilot.PX4)
     try:
         # pyulog prints what it finds wrong; the standard output belongs to --json.
         with contextlib.redirect_stdout(io.StringIO()):

@@ -196,6 +196,26 @@ def test_noise_and_lost_photos_never_tie_a_view_to_another_ones_photo(seed: int,
             assert kept[match.photo.photo].index == original.index
 
 
+def unheard(record: FlightRecord, first: int, last: int) -> FlightRecord:
+    """A flight of which nothing was heard from behind one photo to shortly before another."""
+    track, photos = record.track, record.photos
+    keep = (track.time_s <= photos[first].time_s + 0.5) | (track.time_s >= photos[last].time_s - 0.5)
+    names = Track.__dataclass_fields__
+    heard = Track(**{name: getattr(track, name)[keep] for name in names})
+    return replace(record, track=heard, photos=photos[: first + 1] + photos[last:])
+
+
+def test_photos_taken_while_the_link_was_lost_are_told_as_lost_where_the_camera_counted_them() -> None:
+    silent = unheard(FLOWN[0], 1, 4)
+    matching = match_flight(PLAN, (silent, FLOWN[1]))
+    assert reasons(matching)[:6] == ["taken"] * 2 + ["report-lost"] * 2 + ["taken"] * 2
+    fewer = with_photos(silent, lambda p: (*p[:2], *(replace(photo, index=photo.index - 1) for photo in p[2:])))
+    assert "report-lost" not in reasons(match_flight(PLAN, (fewer, FLOWN[1])))
+    there = replace(FLOWN[0].track, position_enu_m=FLOWN[0].track.position_enu_m + np.array([0.0, 0.0, 30.0]))
+    elsewhere = match_flight(PLAN, (replace(silent, track=there), FLOWN[1]))
+    assert reasons(elsewhere)[:6] == ["taken"] * 2 + ["not-reached"] * 2 + ["taken"] * 2
+
+
 @pytest.mark.parametrize("source", ["camera-feedback", "image-captured"])
 def test_a_gap_in_the_cameras_count_tells_photos_whose_report_was_lost(source: str) -> None:
     heard = with_photos(FLOWN[0], lambda p: tuple(replace(photo, source=source) for photo in (*p[:2], *p[4:])))

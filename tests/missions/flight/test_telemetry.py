@@ -196,6 +196,38 @@ def test_a_report_that_was_asked_for_again_counts_from_when_it_was_taken_by_the_
     assert photo.time_s == pytest.approx(time_s)
 
 
+UNIX_LESS_BOOT_S = 1_790_000_000.0
+
+
+def fed_back(taken_s: float, index: int) -> CameraFeedback:
+    """A photo of `taken_s` seconds into the flight, with its UNIX time."""
+    time_usec = round((UNIX_LESS_BOOT_S + 10.0 + taken_s) * 1e6)
+    return CameraFeedback(time_usec, 1, 0, index, LAT_E7, LON_E7, 62.0, 20.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("speed_up", [1.0, 10.0])
+@pytest.mark.parametrize("is_told", [True, False], ids=["by SYSTEM_TIME", "by a photo before"])
+def test_the_first_message_after_a_link_loss_may_be_a_photo_and_is_not_dated_before_the_gap(
+    is_told: bool, speed_up: float
+) -> None:
+    sent = [each for each in flight() if not 10.0 < each[0] < 55.5]
+    if is_told:
+        told = SystemTime(round((UNIX_LESS_BOOT_S + 15.0) * 1e6), 15_000)
+        sent += [(5.0, AUTOPILOT, told), (6.0, CAMERA, SystemTime(1_000_000_000_000_000, 1))]
+    else:
+        sent.append((9.1, AUTOPILOT, fed_back(9.0, 1)))
+    sent.append((55.2, AUTOPILOT, fed_back(55.0, 2)))
+    faster = [(time_s / speed_up, source, message) for time_s, source, message in sent]
+    assert record(faster).photos[-1].time_s == pytest.approx(55.0, abs=0.2)
+
+
+@pytest.mark.parametrize("off_s", [-6.0, 6.0, 3600.0])
+def test_a_photo_whose_clock_is_wrong_counts_from_when_it_was_told_of(off_s: float) -> None:
+    told = SystemTime(round((UNIX_LESS_BOOT_S + 15.0) * 1e6), 15_000)
+    sent = [*flight(), (5.0, AUTOPILOT, told), (30.2, AUTOPILOT, fed_back(30.0 + off_s, 1))]
+    assert record(sent).photos[0].time_s == pytest.approx(30.0)
+
+
 @pytest.mark.parametrize("from_ground_mm", [-1000, 3000])
 def test_a_captured_images_height_above_the_ground_below_is_not_taken_for_that_above_home(from_ground_mm: int) -> None:
     message = replace(captured(40.0), relative_alt=from_ground_mm)  # type: ignore[call-arg]
