@@ -46,11 +46,20 @@ def write_flight(folder, views):
         at = min(i, len(views) - 1)
         picture = moved(facade(at, (496, 660)), 11) if i == 5 else facade(at, (496, 660))
         properties = {
-            "GimbalYawDegree": f"{view.heading_deg:+.2f}", "GimbalPitchDegree": f"{view.gimbal_pitch_deg:+.2f}",
-            "GimbalRollDegree": "+0.00", "FlightYawDegree": "+20.0", "AbsoluteAltitude": f"{height[at]:+.3f}",
-            "AltitudeType": "RtkAlt", "RtkFlag": "50", "RtkStdLon": "0.01", "RtkStdLat": "0.01", "RtkStdHgt": "0.02",
-            "DewarpData": f"2024-05-01;{F_PX[0]},{F_PX[1]},0,0,0,0,0,0,0", "DewarpFlag": "0", "ImageSource": "WideCamera",
-        }  # fmt: skip
+            "GimbalYawDegree": f"{view.heading_deg:+.2f}",
+            "GimbalPitchDegree": f"{view.gimbal_pitch_deg:+.2f}",
+            "GimbalRollDegree": "+0.00",
+            "FlightYawDegree": "+20.0",
+            "AbsoluteAltitude": f"{height[at]:+.3f}",
+            "AltitudeType": "RtkAlt",
+            "RtkFlag": "50",
+            "RtkStdLon": "0.01",
+            "RtkStdLat": "0.01",
+            "RtkStdHgt": "0.02",
+            "DewarpData": f"2024-05-01;{F_PX[0]},{F_PX[1]},0,0,0,0,0,0,0",
+            "DewarpFlag": "0",
+            "ImageSource": "WideCamera",
+        }
         exif = exif_part(
             {0x010F: "DJI", 0x0110: "M3E"},
             {0x9003: f"2024:05:01 10:00:{i:02d}", 0x829A: 0.001, 0x920A: 12.29, 0xA405: 24},
