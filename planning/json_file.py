@@ -148,12 +148,7 @@ def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
     InputError
         There is no such folder, a folder has that name, file or folder is write-protected, or it is one of `sources`.
     """
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: cannot be written: there is no folder '{path.parent}'; make it first")
-    if path.is_dir():
-        raise InputError(f"{path}: cannot be written: this is a folder; name a file in it")
-    if path.exists() and not os.access(path, os.W_OK):
-        raise InputError(f"{path}: cannot be written: the file is write-protected; name another one")
+    _check_place(path)
     folder = path.resolve().parent
     # Files are made anew in their folder; devices and pipes are written into.
     if (path.is_file() or not path.exists()) and not os.access(folder, os.W_OK | os.X_OK):
@@ -163,6 +158,15 @@ def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
     for source in sources:
         if path.exists() and source.exists() and path.samefile(source):
             raise InputError(f"{path}: would replace {source}, which it is made from; name another file")
+
+
+def _check_place(path: Path) -> None:
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: cannot be written: there is no folder '{path.parent}'; make it first")
+    if path.is_dir():
+        raise InputError(f"{path}: cannot be written: this is a folder; name a file in it")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise InputError(f"{path}: cannot be written: the file is write-protected; name another one")
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -175,7 +179,7 @@ def write_atomically(path: Path, content: bytes) -> None:
     InputError
         The folder is missing or cannot be written, or the disk is full.
     """
-    check_output(path)
+    _check_place(path)
     try:
         if path.exists() and not path.is_file():
             path.write_bytes(content)

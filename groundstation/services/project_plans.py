@@ -127,7 +127,8 @@ def add_plans(document: Document, paths: Sequence[Path]) -> tuple[Document, tupl
         if same is not None:
             raise InputError(f"{path}: the project holds this plan already, as '{same.title}'; leave it out")
         site = document.site
-        if site is not None and not is_planned_on(plan.site_sha256, site):
+        is_ours = site is not None and bool(site.sha256) and is_planned_on(plan.site_sha256, site)
+        if site is not None and plan.site_sha256 and not is_ours:
             text = f"{path}: this plan was made for another state of the site, or for another site ('{plan.site}')"
             notes.append(Finding(Severity.WARNING, "site-changed", text))
         title = title_of(path.name)

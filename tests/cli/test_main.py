@@ -171,7 +171,7 @@ def test_closed_streams_do_no_harm(pane):
 
 @pytest.mark.skipif(os.name == "nt", reason="sends SIGINT as a POSIX terminal does")
 def test_ctrl_c_in_the_middle_of_a_plan_leaves_no_file_and_no_traceback(tmp_path):
-    site = write_scene("library", tmp_path)
+    site = write_scene("tower", tmp_path)
     before = set(tmp_path.iterdir())
     command = [sys.executable, "app.py", "plan", str(site), "-o", str(tmp_path / "plan.json"), "--time-budget", "100"]
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
