@@ -174,7 +174,12 @@ def test_ctrl_c_in_the_middle_of_a_plan_leaves_no_file_and_no_traceback(tmp_path
     site = write_scene("tower", tmp_path)
     before = set(tmp_path.iterdir())
     command = [sys.executable, "app.py", "plan", str(site), "-o", str(tmp_path / "plan.json"), "--time-budget", "100"]
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+
+    def as_in_a_terminal():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # shells start jobs in the background with it ignored
+
+    with subprocess.Popen(command, cwd=ROOT, preexec_fn=as_in_a_terminal, **pipes) as running:
         with pytest.raises(subprocess.TimeoutExpired):
             running.wait(2.0)
         started = time.perf_counter()
