@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.progress import QUIET, Monitor
+from planning.site_import.facades import facade_name
 from reconstruction.rectify.warp import warp
 from reconstruction.segmentation.facades import views_without_pose
 from reconstruction.segmentation.fuse import fused
@@ -63,7 +64,7 @@ def segment_image(
     facades = []
     for number, view in enumerate(views):
         monitor.report("find facades", number, len(views))
-        facades.append(segment_view(checked, view, parameters, monitor, _letters(number)))
+        facades.append(segment_view(checked, view, parameters, monitor, facade_name(number)))
     return Segmentation(name, width, height, tuple(facades))
 
 
@@ -181,13 +182,3 @@ def _corners(left: GridLine, right: GridLine, below: GridLine, above: GridLine) 
     x0, x1 = left.position_px + left.width_px / 2, right.position_px - right.width_px / 2
     y0, y1 = above.position_px + above.width_px / 2, below.position_px - below.width_px / 2
     return np.array([[x0, y1], [x1, y1], [x1, y0], [x0, y0]])
-
-
-def _letters(number: int) -> str:
-    """A, B, ... Z, AA, AB, ..."""
-    name = ""
-    number += 1
-    while number:
-        number, digit = divmod(number - 1, 26)
-        name = chr(ord("A") + digit) + name
-    return name
