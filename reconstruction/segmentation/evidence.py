@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.segmentation.peaks import local_maxima
+from reconstruction.segmentation.stillness import Stillness
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,9 @@ N_SEEN = 16
 
 CLUTTER_MARGIN = 0.25
 """Clutter piles up more in some columns than in the usual one: by so much, as a share of `least_seen`."""
+
+ENOUGH = 12.0
+"""Nats of both edges of a profile together from which on its stillness does not count."""
 
 FINE = 2
 """Bins per pixel of the histogram that candidates are the peaks of: the edges of thin profiles are 2 to 3 px apart."""
@@ -72,6 +76,8 @@ class Evidence:
         Independent observations along a line.
     least_seen
         Probability with which a witness sees the worst edge of the grid.
+    stillness
+        Of what lies between edges, where it is to count.
     """
 
     support: Array
@@ -79,9 +85,16 @@ class Evidence:
     clutter: float
     witnesses: float
     least_seen: float
+    stillness: Stillness | None = None
 
     @classmethod
-    def of(cls, support: Array, n_panes: int | None = None, least_seen: float = LEAST_SEEN) -> Evidence:
+    def of(
+        cls,
+        support: Array,
+        n_panes: int | None = None,
+        least_seen: float = LEAST_SEEN,
+        stillness: Stillness | None = None,
+    ) -> Evidence:
         """From the support of bins of 1 / FINE pixels.
 
         Parameters
@@ -90,16 +103,18 @@ class Evidence:
             Along a line, where it is known.
         least_seen
             Probability with which a witness sees the worst edge of the grid.
+        stillness
+            Of what lies between edges, where it is to count.
         """
         witnesses = WITNESSES[1] if n_panes is None else float(np.clip(1.5 * n_panes, *WITNESSES))
         if support.size == 0:
-            return cls(support, np.empty(0), 0.05, witnesses, least_seen)
+            return cls(support, np.empty(0), 0.05, witnesses, least_seen, stillness)
         padded = np.pad(support, 1)
         positions, _ = local_maxima(0.25 * padded[:-2] + 0.5 * support + 0.25 * padded[2:], PROMINENCE)
         found = _at(support, positions / FINE)
         keep = found >= LEAST_SUPPORT
         clutter = float(np.clip(np.quantile(support, 0.6) + CLUTTER_MARGIN * least_seen, 0.03, 0.4))
-        return cls(support, positions[keep] / FINE, clutter, witnesses, least_seen)
+        return cls(support, positions[keep] / FINE, clutter, witnesses, least_seen, stillness)
 
     def gains(self, places_px: Array) -> Array:
         """Gain of an edge at each place, shape (n,), nats; at least `UNSEEN`.
@@ -113,6 +128,21 @@ class Evidence:
         likelihoods = self.witnesses * (given_edge - given_clutter[:, None])
         gain = np.logaddexp.reduce(likelihoods, axis=1) - np.log(N_SEEN)
         return np.asarray(np.maximum(gain, UNSEEN))
+
+    def profile_gains(self, first_px: Array, last_px: Array) -> Array:
+        """Gain of a profile between each two edges for being still, each shape (n,); shape (n,), nats.
+
+        It makes up for edges that are badly seen, up to `ENOUGH` with theirs: where they are well seen it tells nothing
+        new, and a wall beside the glass is still, too. None where an edge is only expected: there is something still
+        between mirrored windows as well.
+        """
+        gains = np.zeros(first_px.shape)
+        seen = np.isin(first_px, self.places_px) & np.isin(last_px, self.places_px)
+        if self.stillness is not None and seen.any():
+            first, last = first_px[seen], last_px[seen]
+            still = self.witnesses * self.stillness.per_witness(first, last)
+            gains[seen] = np.clip(ENOUGH - self.gains(first) - self.gains(last), 0.0, still)
+        return gains
 
     def _is_beside(self, places_px: Array) -> NDArray[np.bool_]:
         if self.places_px.size == 0:

@@ -25,6 +25,7 @@ from reconstruction.segmentation.record import GridLine
 from reconstruction.segmentation.segments import find_segments
 from reconstruction.segmentation.similarity import Rows
 from reconstruction.segmentation.spacing import Frame, SizeLimits, most_probable_frames
+from reconstruction.segmentation.stillness import Stillness, spread_in_bands
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
@@ -58,18 +59,21 @@ class Axis:
         Of the picture seen along this direction, shape (h, w).
     coverage
         Shape (n_bands, w): share of a band's rows with an edge within a pixel of a column.
+    spread
+        Shape (n_bands, w): standard deviation of the brightness of a band's rows, column by column.
     picture
         Shape (h, w).
     """
 
     edges: EdgeMap
     coverage: Array
+    spread: Array
     picture: Picture
 
     @classmethod
     def of(cls, picture: Picture, edges: EdgeMap, n_bands: int) -> Axis:
         """Of a grey picture, shape (h, w), and its vertical edges."""
-        return cls(edges, coverage_of_edges(edges, n_bands), picture)
+        return cls(edges, coverage_of_edges(edges, n_bands), spread_in_bands(picture), picture)
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,11 +194,19 @@ def find_lines(
         prior = support.reshape(-1, FINE).max(axis=1)
         alike = posterior(Rows.of(axis.picture[rows].T, parameters.n_samples), prior, parameters.beta)
         support = np.maximum(support, np.repeat(alike * prior.max(initial=0.0), FINE))
-    evidence = Evidence.of(support, n_panes, parameters.least_seen)
+    stillness = Stillness.of(axis.spread[_bands(axis, rows)])
+    evidence = Evidence.of(support, n_panes, parameters.least_seen, stillness)
     limits = SizeLimits(
         parameters.min_panel_px, parameters.max_frame_px, parameters.max_frame_share, float(axis.picture.shape[1])
     )
     return _measured_lines(axis, most_probable_frames(evidence, limits, parameters.use_spacing, crossed), rows)
+
+
+def _bands(axis: Axis, rows: slice) -> slice:
+    """Bands whose middles lie within the rows; the nearest one where there is none."""
+    per_row = len(axis.spread) / axis.picture.shape[0]
+    start = min(int(rows.start * per_row + 0.5), len(axis.spread) - 1)
+    return slice(start, max(start + 1, int(rows.stop * per_row + 0.5)))
 
 
 def _measured_lines(axis: Axis, frames: tuple[Frame, ...], rows: slice) -> tuple[GridLine, ...]:

@@ -122,7 +122,7 @@ def most_probable_frames(
         At least two, or none where nothing is more probable than an empty facade.
     """
     if not use_spacing:
-        fixed = _Costs.of(evidence.places_px, limits, *_no_sizes(limits), crossed)
+        fixed = _Costs.of(evidence.places_px, evidence, limits, *_no_sizes(limits), crossed)
         gains = evidence.gains(evidence.places_px)
         return _as_frames(_best_set(gains, fixed), evidence.places_px, gains, fixed)
     results = [_settled(evidence, limits, crossed, caution) for caution in CAUTION]
@@ -146,7 +146,7 @@ def _settled(
     places, best = evidence.places_px, np.empty((0, 2))
     for done in range(ROUNDS):
         gains = evidence.gains(places) - (caution if done == 0 else 0.0)
-        costs = _Costs.of(places, limits, panels, widths, crossed)
+        costs = _Costs.of(places, evidence, limits, panels, widths, crossed)
         pairs = _best_set(gains, costs)
         if not pairs:
             return 0.0, ()
@@ -160,13 +160,14 @@ def _settled(
         limits = replace(limits, max_frame_px=min(limits.max_frame_px, widest))
         places = _with_expected(evidence.places_px, best, panels, widths, limits.length_px)
     gains = evidence.gains(places)
-    pairs = _best_set(gains, costs := _Costs.of(places, limits, panels, widths, crossed))
+    pairs = _best_set(gains, costs := _Costs.of(places, evidence, limits, panels, widths, crossed))
     if not pairs:
         return 0.0, ()
     best = places[np.array(pairs)]
     edges = np.unique(np.array(pairs))
     sizes, thick = best[1:, 0] - best[:-1, 1], best[:, 1] - best[:, 0]
-    score = float(gains[edges].sum()) + _log_sequence(sizes, panels.broad) + _log_sequence(thick, widths.broad)
+    still = float(costs.still[tuple(np.array(pairs[1:-1], int).reshape(-1, 2).T)].sum())
+    score = still + float(gains[edges].sum()) + _log_sequence(sizes, panels.broad) + _log_sequence(thick, widths.broad)
     return score, _as_frames(pairs, places, gains, costs)
 
 
@@ -199,71 +200,94 @@ def _with_expected(places: Array, frames: Array, panels: Sizes, widths: Sizes, l
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Costs:
-    """Log densities between each two candidates, shape (n, n), upper triangle, and of a joint without width."""
+    """Between each two candidates, shape (n, n), upper triangle: log densities of sizes, and gains of stillness.
+
+    The diagonal of `frame` is that of a joint without width. Only profiles with glass on both sides gain by `still`.
+    """
 
     panel: Array
     frame: Array
-    joint: float
+    still: Array
 
     @classmethod
-    def of(cls, places_px: Array, limits: SizeLimits, panels: Sizes, widths: Sizes, crossed: Array | None) -> _Costs:
+    def of(
+        cls,
+        places_px: Array,
+        evidence: Evidence,
+        limits: SizeLimits,
+        panels: Sizes,
+        widths: Sizes,
+        crossed: Array | None,
+    ) -> _Costs:
         gap = places_px[None, :] - places_px[:, None]
         panel = np.where(gap >= limits.min_panel_px, panels.log_density(gap), -np.inf)
         frame = np.where((gap >= APART_PX) & (gap <= limits.max_frame_px), widths.log_density(gap), -np.inf)
         if crossed is not None:
             frame = np.where(_mean_between(crossed, places_px) > MOST_CROSSED, -np.inf, frame)
-        return cls(panel, frame, float(widths.log_density(np.zeros(1))[0]))
+        np.fill_diagonal(frame, widths.log_density(np.zeros(1))[0])
+        still = np.zeros_like(gap)
+        first, last = np.nonzero(np.isfinite(frame))
+        still[first, last] = evidence.profile_gains(places_px[first], places_px[last])
+        return cls(panel, frame, still)
 
     def mirrored(self) -> _Costs:
         """Of the same walk from the other end."""
-        return _Costs(self.panel[::-1, ::-1].T, self.frame[::-1, ::-1].T, self.joint)
+        return _Costs(*(costs[::-1, ::-1].T for costs in (self.panel, self.frame, self.still)))
 
 
 def _best_set(gains: Array, costs: _Costs) -> list[tuple[int, int]]:
     """Frames (first, last) of the best set by Viterbi's recursion; empty where no set beats the empty facade.
 
     `closed[j]`: best walk whose last panel ends at edge j; `first[j]`: one of a first frame only, a panel may begin at
-    j; `opened[j]`: a panel may begin at j after others.
+    j; `opened[j]`: a panel may begin at j after others; `ended[j]`: the last frame ends at j.
     """
     n = gains.size
     first, first_from = np.empty(n), np.empty(n, int)
     closed, closed_from = np.full(n, -np.inf), np.full(n, -1)
     opened, opened_from = np.full(n, -np.inf), np.full(n, -1)
+    ended, ended_from = np.full(n, -np.inf), np.full(n, -1)
     for j in range(n):
-        frame = np.append(costs.frame[:j, j] + gains[:j] + gains[j], gains[j] + costs.joint)
-        first_from[j] = int(np.argmax(frame))
-        first[j] = frame[first_from[j]]
+        first[j], first_from[j] = _best(_framed(gains, costs, gains, j))
         if j == 0:
             continue
-        panel = np.maximum(first[:j], opened[:j]) + costs.panel[:j, j] + gains[j]
-        closed_from[j] = int(np.argmax(panel))
-        closed[j] = panel[closed_from[j]]
-        frame = np.append(costs.frame[:j, j] + closed[:j] + gains[j], closed[j] + costs.joint)
-        opened_from[j] = int(np.argmax(frame))
-        opened[j] = frame[opened_from[j]]
-    j = int(np.argmax(opened)) if n else -1
-    if n == 0 or not opened[j] > 0.0:
+        closed[j], closed_from[j] = _best(np.maximum(first[:j], opened[:j]) + costs.panel[:j, j] + gains[j])
+        last = _framed(gains, costs, closed, j)
+        ended[j], ended_from[j] = _best(last)
+        opened[j], opened_from[j] = _best(last + costs.still[: j + 1, j])
+    j = int(np.argmax(ended)) if n else -1
+    if n == 0 or not ended[j] > 0.0:
         return []
-    frames = []
+    frames = [(int(ended_from[j]), j)]
     while True:
+        j = int(closed_from[frames[-1][0]])
+        if first[j] >= opened[j]:
+            return [(int(first_from[j]), j), *reversed(frames)]
         frames.append((int(opened_from[j]), j))
-        i = int(closed_from[opened_from[j]])
-        if first[i] >= opened[i]:
-            return [(int(first_from[i]), i), *reversed(frames)]
-        j = i
+
+
+def _framed(gains: Array, costs: _Costs, before: Array, j: int) -> Array:
+    """Of walks up to each edge with a frame from there to edge j, shape (j + 1,); the last one is a joint at j."""
+    return np.append(costs.frame[:j, j] + before[:j] + gains[j], before[j] + costs.frame[j, j])
+
+
+def _best(walks: Array) -> tuple[float, int]:
+    at = int(np.argmax(walks))
+    return float(walks[at]), at
 
 
 def _sums(gains: Array, costs: _Costs) -> tuple[Array, Array, float]:
     """As `_best_set`, with sums over all walks in place of the best: log of `closed`, of `first` + `opened`, of all."""
     n = gains.size
-    closed, first, opened = (np.full(n, -np.inf) for _ in range(3))
+    closed, first, opened, ended = (np.full(n, -np.inf) for _ in range(4))
     for j in range(n):
-        first[j] = np.logaddexp.reduce(np.append(costs.frame[:j, j] + gains[:j] + gains[j], gains[j] + costs.joint))
+        first[j] = np.logaddexp.reduce(_framed(gains, costs, gains, j))
         if j == 0:
             continue
         closed[j] = gains[j] + np.logaddexp.reduce(np.logaddexp(first[:j], opened[:j]) + costs.panel[:j, j])
-        opened[j] = np.logaddexp.reduce(np.append(costs.frame[:j, j] + closed[:j] + gains[j], closed[j] + costs.joint))
-    everything = np.logaddexp(0.0, np.logaddexp.reduce(opened, initial=-np.inf))
+        last = _framed(gains, costs, closed, j)
+        ended[j] = np.logaddexp.reduce(last)
+        opened[j] = np.logaddexp.reduce(last + costs.still[: j + 1, j])
+    everything = np.logaddexp(0.0, np.logaddexp.reduce(ended, initial=-np.inf))
     return closed, np.logaddexp(first, opened), float(everything)
 
 
@@ -285,6 +309,6 @@ def _as_frames(pairs: list[tuple[int, int]], places: Array, gains: Array, costs:
     sure = [min(float(ends[first]), float(begins[last])) for first, last in pairs]
     sure[0], sure[-1] = float(begins[pairs[0][1]]), float(ends[pairs[-1][0]])
     return tuple(
-        Frame(float(places[i]), float(places[j]), p, bool(max(gains[i], gains[j]) <= 0.0))
+        Frame(float(places[i]), float(places[j]), p, bool(max(gains[i], gains[j]) + costs.still[i, j] <= 0.0))
         for (i, j), p in zip(pairs, sure, strict=True)
     )
