@@ -133,15 +133,16 @@ class Evidence:
         """Gain of a profile between each two edges for being still, each shape (n,); shape (n,), nats.
 
         It makes up for edges that are badly seen, up to `ENOUGH` with theirs: where they are well seen it tells nothing
-        new, and a wall beside the glass is still, too. None where an edge is only expected: there is something still
-        between mirrored windows as well.
+        new, and a wall beside the glass is still, too. A loss where more is mirrored between the edges than beside
+        them. None where an edge is only expected: there is something still between mirrored windows as well.
         """
         gains = np.zeros(first_px.shape)
         seen = np.isin(first_px, self.places_px) & np.isin(last_px, self.places_px)
         if self.stillness is not None and seen.any():
             first, last = first_px[seen], last_px[seen]
             still = self.witnesses * self.stillness.per_witness(first, last)
-            gains[seen] = np.clip(ENOUGH - self.gains(first) - self.gains(last), 0.0, still)
+            wanted = np.maximum(ENOUGH - self.gains(first) - self.gains(last), 0.0)
+            gains[seen] = np.minimum(still, wanted)
         return gains
 
     def _is_beside(self, places_px: Array) -> NDArray[np.bool_]:

@@ -99,6 +99,16 @@ class Axes:
             across = edges_of_segments(segments[:, [1, 0, 3, 2]], height, width, LINE_TILT_DEG)
         return cls(Axis.of(grey, down, parameters.n_bands), Axis.of(turned, across, parameters.n_bands))
 
+    def gathering(self) -> float:
+        """How much edges gather on lines of the picture: the sum of squares of their histograms.
+
+        It is largest where the grid stands straight; what is mirrored is displaced from pane to pane however one turns.
+        """
+        return sum(
+            float((support_of(edge_histogram(axis.edges, slice(None), FINE)) ** 2).sum())
+            for axis in (self.down, self.across)
+        )
+
 
 def find_grid(
     axes: Axes, parameters: SegmentationParameters, monitor: Monitor = QUIET

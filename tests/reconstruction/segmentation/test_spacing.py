@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -140,7 +141,8 @@ def walks(n: int) -> list[list[tuple[int, int]]]:
 def weight(walk: list[tuple[int, int]], gains: Array, costs: _Costs) -> float:
     """Logarithm of a set's probability against that of the empty facade, by its definition."""
     total = float(sum(gains[i] for i in {i for pair in walk for i in pair}))
-    total += float(sum(costs.joint if i == j else costs.frame[i, j] for i, j in walk))
+    total += float(sum(costs.frame[i, j] for i, j in walk))
+    total += float(sum(costs.still[i, j] for i, j in walk[1:-1]))
     return total + float(sum(costs.panel[a[1], b[0]] for a, b in itertools.pairwise(walk)))
 
 
@@ -151,7 +153,10 @@ def test_dynamic_program_equals_trying_every_set(seed: int) -> None:
     places = np.sort(rng.uniform(0.0, 120.0, 5))
     gains = rng.normal(4.0, 4.0, 5)
     empty = np.empty(0)
-    costs = _Costs.of(places, LIMITS, Sizes(empty, empty, 0.02), Sizes(empty, empty, 0.05), None)
+    sizes = Sizes(empty, empty, 0.02), Sizes(empty, empty, 0.05)
+    costs = replace(
+        _Costs.of(places, Evidence.of(np.zeros(0)), LIMITS, *sizes, None), still=np.triu(rng.normal(0.0, 4.0, (5, 5)))
+    )
     weights = {tuple(walk): weight(walk, gains, costs) for walk in walks(5)}
     best = max(weights, key=lambda walk: weights[walk])
     found = _best_set(gains, costs)
