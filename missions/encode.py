@@ -15,7 +15,8 @@ from planning.errors import MissionError
 from planning.findings import Finding, Severity
 from planning.frames import Vec3
 from planning.plan import Plan
-from planning.site import Origin, SiteModel, panel_corners
+from planning.rally import clear_height_z_m
+from planning.site import Origin, SiteModel
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +112,7 @@ def return_height(missions: Sequence[Mission], options: ExportOptions) -> tuple[
         text = "the return height clears the path only, because the site was not given; check that it clears everything"
         return path_m, [Finding(Severity.WARNING, "return-height", text, "", path_m, None, "m")]
     home_z = options.site.site.home_enu_m[2]
-    meshes = (options.site.building, *options.site.obstacles)
-    tops = [float(mesh.vertices_enu_m[:, 2].max()) for mesh in meshes if len(mesh.vertices_enu_m)]
-    top_m = max([float(panel_corners(options.site.site)[..., 2].max()), *tops]) - home_z
+    top_m = clear_height_z_m(options.site, 0.0) - home_z
     if options.rth_height_m is None:
         return math.ceil(max(path_m, top_m + CLEARANCE_M)), []
     if options.rth_height_m < top_m:

@@ -17,6 +17,7 @@ import numpy as np
 from missions.build import COLUMN_RADIUS_M
 from missions.legs import distance_m
 from missions.model import Finish, HeightReference, ReadMission, ReadPhoto
+from planning.belonging import MAX_DISTANCE_M
 from planning.catalogue import DEFAULT_PROFILE, profile
 from planning.errors import InputError
 from planning.findings import Finding, Severity
@@ -25,9 +26,6 @@ from planning.mesh import MAX_COORDINATE_M
 from planning.plan import Aircraft, FlightRules, Sortie, Viewpoint
 from planning.site import Origin
 from planning.sortie_timing import sortie_flight_path, stopping_duration_s
-
-MAX_DISTANCE_M = 5000.0
-"""A mission that never comes this close to home belongs to another site."""
 
 TAKEOFF_MOVED_M = 20.0
 """A take-off point of the file this far from the site's home is worth a warning; a launch area is smaller."""

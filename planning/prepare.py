@@ -20,7 +20,7 @@ from planning.reach_kernel import UNREACHABLE
 from planning.reachability import MAX_CELLS, MAX_POSITIONS, find_reachable
 from planning.request import Precision
 from planning.routing.roadmap import build_roadmap
-from planning.site import SiteModel, panel_corners
+from planning.site import SiteModel, panel_corners, require_panels
 from planning.space import FreeSpace, free_space
 
 N_PLACES = 3000
@@ -88,7 +88,14 @@ def is_same_place(first: SiteModel, second: SiteModel) -> bool:
 def coverage_model(
     site_model: SiteModel, space: FreeSpace, camera: Camera, constraints: Constraints, precision: Precision = "f32"
 ) -> CoverageModel:
-    """Coverage model for constraints whose occlusion is decided (`on` or `off`)."""
+    """Coverage model for constraints whose occlusion is decided (`on` or `off`).
+
+    Raises
+    ------
+    InputError
+        The site has no panels.
+    """
+    require_panels(site_model.site)
     if constraints.occlusion == "auto":
         raise ValueError("occlusion is not decided yet")
     return CoverageModel(
@@ -103,7 +110,14 @@ def coverage_model(
 
 
 def decide_occlusion(site_model: SiteModel, space: FreeSpace, wish: Wish, seed: int = 0) -> Decision:
-    """Whether occlusion is taken into account on this site, and why."""
+    """Whether occlusion is taken into account on this site, and why.
+
+    Raises
+    ------
+    InputError
+        The site has no panels.
+    """
+    require_panels(site_model.site)
     frames = panel_frames(panel_corners(site_model.site))
     places = spread_positions(space, frames, N_PLACES, np.random.default_rng(seed))
     return decide(Occlusion(), OcclusionScene(frames, space.solids.bvh.corners, places), wish)
@@ -125,9 +139,12 @@ def prepare(
 
     Raises
     ------
+    InputError
+        The site has no panels.
     InfeasibleError
         Home cannot be used, the airspace is empty, or no allowed viewpoint sees any panel.
     """
+    require_panels(site_model.site)
     monitor.report("reading the site", 0, 1)
     space = free_space(site_model, constraints.min_distance_m)
     decision = decide_occlusion(site_model, space, wish_of(constraints), seed)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.errors import InputError
 from planning.frames import Vec3
 from planning.mesh import MAX_COORDINATE_M, TriangleMesh, box_mesh, extrude
 
@@ -199,7 +200,10 @@ class RallyPoint:
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """The content of `site.json`: everything about a place but the meshes, which it names by path."""
+    """The content of `site.json`: everything about a place but the meshes, which it names by path.
+
+    A site without panels has a building mesh: the coarse model on which photos of a first flight show them.
+    """
 
     name: str
     origin: Origin
@@ -215,8 +219,11 @@ class Site:
         if self.format != SITE_FORMAT:
             raise ValueError(f"format: expected '{SITE_FORMAT}', got '{self.format}'")
         check_point(self.home_enu_m, "home_enu_m")
-        if not any(facade.panels for facade in self.facades):
-            raise ValueError("facades: expected at least one panel, got none")
+        if self.building_mesh is None and self.n_panels == 0:
+            raise ValueError(
+                "facades: expected at least one panel, or a building_mesh on which panels can be found, got neither; "
+                "add panels, or name the mesh of the building"
+            )
         seen: set[str] = set()
         for facade in self.facades:
             for panel in facade.panels:
@@ -260,8 +267,23 @@ class SiteModel:
 
 
 def panel_corners(site: Site) -> NDArray[np.float64]:
-    """Corners of all panels, shape (m, 4, 3), ENU metres, in the order of `site.panels`."""
-    return np.array([panel.corners_enu_m for panel in site.panels], dtype=np.float64)
+    """Corners of all panels, shape (m, 4, 3), ENU metres, in the order of `site.panels`; m is 0 without panels."""
+    return np.array([panel.corners_enu_m for panel in site.panels], dtype=np.float64).reshape(-1, 4, 3)
+
+
+def require_panels(site: Site) -> None:
+    """Refuse a site without panels: for whatever counts what is seen of them.
+
+    Raises
+    ------
+    InputError
+        The site has none; the message says where they come from.
+    """
+    if site.n_panels == 0:
+        raise InputError(
+            f"site '{site.name}' has no panels yet: find them in photos ('panels' or the Photos tab), or draw them on "
+            "the building (the Site tab, or 'site import' with --panel-grid)"
+        )
 
 
 def panel_triangles(corners_enu_m: NDArray[np.float64]) -> NDArray[np.float64]:

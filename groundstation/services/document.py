@@ -14,6 +14,7 @@ from pathlib import Path
 from planning.plan import Plan, Sortie, Viewpoint
 from planning.request import PlanRequest
 from planning.site import SiteModel
+from reconstruction.panels.accuracy import FoundFacades
 
 
 class ItemKind(StrEnum):
@@ -83,6 +84,8 @@ class Document:
         What the plan form says.
     site_source
         File that the site was read from; None where it comes from none, as after an import.
+    found_facades
+        How good the panels are that were found in photos; None where none were.
     """
 
     site: SiteModel | None = None
@@ -90,6 +93,7 @@ class Document:
     current_plan_id: str = ""
     request: PlanRequest = PlanRequest()
     site_source: Path | None = None
+    found_facades: FoundFacades | None = None
 
     def __post_init__(self) -> None:
         ids = [entry.id for entry in self.plans]

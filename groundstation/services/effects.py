@@ -50,7 +50,12 @@ class SceneEffects:
 
 
 def scene_effects(site_model: SiteModel, request: PlanRequest) -> SceneEffects:
-    """What the scene calls for, measured on it; what was wished overrules the decision, not the measurement."""
+    """What the scene calls for, measured on it; what was wished overrules the decision, not the measurement.
+
+    A site without panels calls for nothing.
+    """
+    if site_model.site.n_panels == 0:
+        return SceneEffects(site_model, request, ())
     constraints = request.constraints
     wishes: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
     wish = wishes[constraints.occlusion]

@@ -39,7 +39,7 @@ from planning.findings import Finding
 from planning.json_file import check_output
 from planning.plan import Plan
 from planning.progress import QUIET, Monitor
-from planning.site import SiteModel
+from planning.site import SiteModel, require_panels
 from planning.site_file import is_planned_on
 
 SIMULATED = "sim"
@@ -195,13 +195,14 @@ def fly_plan(
 
 
 def check_site(plan: Plan, site_model: SiteModel) -> None:
-    """Refuse a plan that was made for another site.
+    """Refuse a plan that was made for another site, and a site without panels.
 
     Raises
     ------
     InputError
-        It says so itself, by its checksum or its origin.
+        The plan says so itself, by its checksum or its origin; or the site has no panels.
     """
+    require_panels(site_model.site)
     is_other = not is_planned_on(plan.site_sha256, site_model)
     if is_other or (plan.origin is not None and plan.origin != site_model.site.origin):
         raise InputError(

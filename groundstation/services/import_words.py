@@ -9,8 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from planning.site_import.source import HOW_TO_GET_PANELS
-
 FIELDS = {
     "--airspace-margin": "airspace_margin_m",
     "--axis-order": "axis_order",
@@ -31,14 +29,9 @@ FIELDS = {
     "--rows": "n_rows",
     "--units": "unit",
     "--up": "up",
+    "--without-panels": "panels_required",
 }
 """Options of `site import` by the field of `ImportOptions` or `PanelGrid` that they set."""
-
-HOW_TO_PICK_PANELS = (
-    "panels come from the windows of a city model (level of detail 3), from IfcWindow and glazed IfcPlate of a BIM "
-    "model, or from you: pick a rectangle on a wall with --panel-grid"
-)
-"""What `HOW_TO_GET_PANELS` says, where there is a picture to point at."""
 
 HEIGHT_HINT = " (--height-reference orthometric for sea level)"
 """Of no use in the window, where the origin's height can be given in either reference."""
@@ -65,7 +58,7 @@ def in_window_words(text: str, labels: Mapping[str, str], quoted: str = "â€œ{0}â
         label = labels.get(FIELDS.get(found["option"], ""))
         return found[0] if label is None else quoted.format(label)
 
-    text = text.replace(HOW_TO_GET_PANELS, HOW_TO_PICK_PANELS).replace(HEIGHT_HINT, "")
+    text = text.replace(HEIGHT_HINT, "")
     # The three options of a grid are one step in the window.
     text = re.sub(r"--panel-grid '[^']*' --rows \w+ --columns \w+", "--panel-grid", text)
     return _OPTION.sub(replaced, text)

@@ -30,7 +30,7 @@ def remove_item(model: SiteModel, item: Item) -> SiteModel:
     Raises
     ------
     InputError
-        The site would be left without panels.
+        The site would be left without panels and building.
     ValueError
         The site has no such thing, or it is of a kind that cannot be removed.
     """

@@ -82,11 +82,13 @@ def with_facades(model: SiteModel, facades: Iterable[Facade]) -> SiteModel:
     Raises
     ------
     InputError
-        No panel is left.
+        No panel is left, and there is no building on which others could be found.
     """
     kept = tuple(facades)
-    if not any(facade.panels for facade in kept):
-        raise InputError("panels: a site needs at least one panel; add the new ones first, then remove these")
+    if model.site.building_mesh is None and not any(facade.panels for facade in kept):
+        raise InputError(
+            "panels: a site without a building needs at least one panel; add the new ones first, then remove these"
+        )
     with input_checked():
         site = replace(model.site, facades=kept)
     return with_site(model, site)

@@ -45,7 +45,13 @@ def site_findings(
         space = unchecked_space(model, min_distance_m)
     monitor.report("checking the site", 1, 2)
     found += [finding for finding in rally_findings(model, space) if finding.severity is not Severity.OK]
-    return (*found, *_heights(model), *_without_effect(model), *_facades_in_reach(model, space))
+    return (*found, *_no_panels(model), *_heights(model), *_without_effect(model), *_facades_in_reach(model, space))
+
+
+def _no_panels(model: SiteModel) -> Iterator[Finding]:
+    if model.site.n_panels == 0:
+        text = "there are no panels yet: find them in photos (Photos tab), or draw a panel grid on the building"
+        yield Finding(Severity.WARNING, "no-panels", text, "building")
 
 
 def _heights(model: SiteModel) -> Iterator[Finding]:

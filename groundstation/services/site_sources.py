@@ -14,15 +14,13 @@ from planning.frames import Vec3
 from planning.mesh import MAX_COORDINATE_M
 from planning.progress import QUIET, Monitor
 from planning.scenes import SCENES
-from planning.site import Airspace, Facade, Panel, Site, SiteModel, panel_corners
+from planning.site import Airspace, Site, SiteModel, panel_corners
 from planning.site_file import site_sha256
 from planning.site_import.importer import CITYGML_SUFFIXES, CITYJSON_SUFFIXES, assemble, read_source
 from planning.site_import.options import ImportOptions, PanelGrid
 from planning.site_import.polygons import quad_areas
 from planning.site_import.source import SourceModel
-
-STAND_IN_M = 0.02
-"""Side of the pane that stands for panels not known yet."""
+from reconstruction.panels.accuracy import FoundFacades
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,9 +30,9 @@ class ImportPreview:
     Parameters
     ----------
     source
-        What was read, also where no panels are known yet.
+        What was read.
     model
-        The site it would become, with its checksum; None where it cannot become one yet.
+        The site it would become, with its checksum, perhaps without panels; None where it cannot become one yet.
     problem
         Why not; empty where it can.
     notes
@@ -104,14 +102,15 @@ def open_site(path: Path, monitor: Monitor = QUIET) -> SiteModel:
 
 
 def preview_import(path: Path, options: ImportOptions, monitor: Monitor = QUIET) -> ImportPreview:
-    """Import into memory, to be looked at; a file whose panels are not known yet is read all the same.
+    """Import into memory, to be looked at; where no panels are known yet, a note says so.
 
     Raises
     ------
     InputError
         The file cannot be read with these options, or nobody says where it is.
     """
-    source = read_source(path, replace(options, panels_required=False), monitor)
+    options = replace(options, panels_required=False)
+    source = read_source(path, options, monitor)
     try:
         imported = assemble(path, source, options, monitor)
     except InputError as error:
@@ -146,7 +145,7 @@ def site_summary(model: SiteModel) -> SiteSummary:
     """A site in numbers."""
     corners = panel_corners(model.site)
     points = np.concatenate([corners.reshape(-1, 3), model.building.vertices_enu_m])
-    areas = np.split(quad_areas(corners), np.cumsum([len(facade.panels) for facade in model.site.facades])[:-1])
+    areas = np.split(quad_areas(corners), np.cumsum([len(facade.panels) for facade in model.site.facades]))[:-1]
     east, north, up = np.ptp(points, axis=0).tolist()
     return SiteSummary(
         (east, north, up),
@@ -158,18 +157,21 @@ def site_summary(model: SiteModel) -> SiteSummary:
     )
 
 
-def with_new_site(document: Document, model: SiteModel) -> Document:
-    """The document with another site, and without the plans, which were made for the one before."""
-    return Document(site=model, request=document.request)
+def with_new_site(document: Document, model: SiteModel, facades: FoundFacades | None = None) -> Document:
+    """The document with another site, and without the plans, which were made for the one before.
+
+    Parameters
+    ----------
+    facades
+        How good its panels are, where they were found in photos.
+    """
+    return Document(site=model, request=document.request, found_facades=facades)
 
 
 def shown_site(preview: ImportPreview) -> SiteModel | None:
-    """A site to draw: the one the import brings, or the bare building where no panels are known yet.
+    """A site to draw: the one the import brings, or the bare building where it cannot become one yet.
 
     None for buildings far too large, as when millimetres are read as metres.
-
-    Views draw sites, and a site has at least one panel: in the bare building a pane of 2 cm, in the ground below its
-    middle, stands for it. It is drawn and never kept.
     """
     if preview.model is not None:
         return preview.model
@@ -179,18 +181,15 @@ def shown_site(preview: ImportPreview) -> SiteModel | None:
     margin = preview.options.airspace_margin_m
     if max(np.abs(low).max(), np.abs(high).max()) + margin > MAX_COORDINATE_M:
         return None
-    x, y = (0.5 * (low + high)[:2]).tolist()
-    z = source.placement.ground_z_m - STAND_IN_M
-    panel = Panel(
-        "no-panel", ((x, y, z), (x + STAND_IN_M, y, z), (x + STAND_IN_M, y, z + STAND_IN_M), (x, y, z + STAND_IN_M))
-    )
+    x = 0.5 * float(low[0] + high[0])
     x0, y0, z0 = (low - margin).tolist()
     x1, y1, z1 = (high + margin).tolist()
     site = Site(
         name=preview.path.stem,
         origin=source.placement.origin,
-        facades=(Facade("no-facade", (panel,)),),
+        facades=(),
         airspace=Airspace((x0, y0, z0 + margin), (x1, y1, z1), source.placement.ground_z_m),
         home_enu_m=(x, y0 + 0.5 * margin, source.placement.ground_z_m),
+        building_mesh="building.ply",
     )
     return SiteModel(site, source.building)

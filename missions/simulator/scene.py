@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from planning.frames import Vec3
 from planning.geometry.bvh import build_bvh, nearest_d2
 from planning.plan import Aircraft, Camera, FlightRules, Plan, Sortie, viewpoint_arrays
-from planning.site import SiteModel, panel_corners, panel_triangles
+from planning.site import SiteModel, panel_corners, panel_triangles, require_panels
 from planning.timing import photo_stop_s
 
 Floats = NDArray[np.float64]
@@ -145,7 +145,14 @@ class FlightScene:
 def flight_scene(
     plan: Plan, site_model: SiteModel, conditions: Conditions, sortie: Sortie | None = None
 ) -> FlightScene:
-    """Scene of one sortie, or of all of a plan."""
+    """Scene of one sortie, or of all of a plan.
+
+    Raises
+    ------
+    InputError
+        The site has no panels, so that there is no glass to photograph.
+    """
+    require_panels(site_model.site)
     wanted = set(sortie.viewpoint_ids) if sortie is not None else None
     views = viewpoint_arrays(tuple(v for v in plan.viewpoints if wanted is None or v.id in wanted))
     if sortie is not None and sortie.viewpoint_ids:

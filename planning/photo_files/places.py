@@ -9,6 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.belonging import HEIGHT_DIFFERENCE_M, MAX_DISTANCE_M
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.frames import Vec3
@@ -20,13 +21,6 @@ Floats = NDArray[np.float64]
 PhotoHeights = Literal["auto", "takeoff", "absolute"]
 """What heights are counted from: the site's home and the height above take-off; the absolute height, as the receiver
 measured it; or the better one: absolute where every position is fixed by RTK, else above take-off."""
-
-MAX_DISTANCE_M = 5000.0
-"""Photos taken further from the site's origin are of another place."""
-
-HEIGHT_DIFFERENCE_M = 2.0
-"""Worth a word if both ways to count heights differ by more: receivers and barometers wander by less in a flight."""
-
 
 DISAGREEMENT_M = 0.5
 """Worth a word if the two positions in a file are further apart: they should be the same, and differ by rounding."""

@@ -46,8 +46,8 @@ def import_site(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
     Raises
     ------
     InputError
-        The file is missing, of another kind or broken, its place on earth is not known, it has no windows and no panel
-        grid is stated, or a wish cannot be met; the message says what to do.
+        The file is missing, of another kind or broken, its place on earth is not known, panels are required and there
+        are none, or a wish cannot be met; the message says what to do.
     """
     return assemble(path, read_source(path, options, monitor), options, monitor)
 
@@ -58,7 +58,7 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
     Raises
     ------
     InputError
-        There are no panels, stray points, or a wish cannot be met.
+        Panels are required and there are none, there are stray points, or a wish cannot be met.
     """
     _check_extent(path, source)
     panes = panes_outdoors(source, monitor)
@@ -67,7 +67,13 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
     if len(corners) == 0:
         n = len(source.windows)
         found = f"no window of {n} is a pane that faces the open" if n else "there are no windows"
-        raise InputError(f"{path}: {found}; {HOW_TO_GET_PANELS}")
+        if options.panels_required:
+            raise InputError(f"{path}: {found}; {HOW_TO_GET_PANELS}")
+        bare = (
+            f"{found}, so the site has no panels yet: find them in photos ('panels' or the Photos tab), or draw them "
+            "on the building (the Site tab, or --panel-grid)"
+        )
+        return site_of_facades(path, source, (), options, (*source.notes, *panes.notes, bare, *_solid_notes(source)))
     ids = [*panes.source_ids, *[None] * (len(corners) - len(panes.corners))]
     monitor.report("grouping facades", 0, 1)
     groups = group_facades(corners)
@@ -80,7 +86,7 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
 def site_of_facades(
     path: Path, source: SourceModel, facades: tuple[Facade, ...], options: ImportOptions, notes: tuple[str, ...] = ()
 ) -> ImportedSite:
-    """Site of a source model with facades that are known, the largest first: adds airspace, home and meshes.
+    """Site of a source model with facades, the largest first, or without: adds airspace, home and meshes.
 
     Parameters
     ----------
@@ -88,10 +94,10 @@ def site_of_facades(
         Of the source, for its name.
     """
     by_facade = [np.array([panel.corners_enu_m for panel in facade.panels], float) for facade in facades]
-    corners = np.concatenate(by_facade)
+    points = [corners.reshape(-1, 3) for corners in (source.building.corners_enu_m, *by_facade)]
     around = surroundings(
-        by_facade[0],
-        np.concatenate([source.building.corners_enu_m.reshape(-1, 3), corners.reshape(-1, 3)]),
+        by_facade[0] if by_facade else np.zeros((0, 4, 3)),
+        np.concatenate(points),
         source.neighbours.corners_enu_m,
         source.placement.ground_z_m,
         options,

@@ -19,18 +19,20 @@ COARSE_M = 0.01
 
 
 def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> SourceModel:
-    """Building from a mesh file; it has no windows, so panels come from the grid the user states.
+    """Building from a mesh file; it has no windows, so panels come from the grid the user states, or later.
 
     Raises
     ------
     InputError
-        The file cannot be read or has no triangles, no panel grid is given, or the place is not known.
+        The file cannot be read or has no triangles, no panel grid is given though panels are
+        required, or the place is not known.
     """
     if options.panels_required and not options.panel_grids:
         raise InputError(
             f"{path}: a mesh does not tell windows from walls; state where the panels are, for example "
             "--panel-grid '0,0,0 36,0,0 0,0,42' --rows 14 --columns 20 (lower left, lower right and upper left corner "
-            "of a facade, seen from outside)"
+            "of a facade, seen from outside), or import the building alone with --without-panels and find them in "
+            "photos with 'panels'"
         )
     monitor.report("reading the mesh", 0, 1)
     mesh = read_mesh(path, max_coordinate_m=math.inf)

@@ -65,7 +65,7 @@ class ImportOptions:
     deflection_m
         Largest distance between a curved IFC surface and its triangles: smaller is truer and slower.
     panels_required
-        Refuse a file that has no windows while no grid is stated. Without, it is read for looking at.
+        Refuse a file that has no windows while no grid is stated. Without, it becomes a site without panels.
     """
 
     name: str | None = None

@@ -16,7 +16,8 @@ Array = NDArray[np.float64]
 HOW_TO_GET_PANELS = (
     "panels come from the windows of a city model (level of detail 3), from IfcWindow and glazed IfcPlate of a BIM "
     "model, or from you: --panel-grid 'E,N,U E,N,U E,N,U' (lower left, lower right and upper left corner of a facade "
-    "seen from outside, in the file's coordinates) --rows N --columns N"
+    "seen from outside, in the file's coordinates) --rows N --columns N; or import the building alone with "
+    "--without-panels, and find them in photos with 'panels'"
 )
 """What to do about a file without windows."""
 

@@ -47,12 +47,12 @@ class Surroundings(NamedTuple):
 def surroundings(
     panels: Array, building: Array, neighbours: Array, ground_z_m: float, options: ImportOptions
 ) -> Surroundings:
-    """Airspace around the building, and a home in front of its first facade.
+    """Airspace around the building, and a home in front of its first facade, or beside it where there is none yet.
 
     Parameters
     ----------
     panels
-        Corners of the panels of the largest facade, shape (m, 4, 3), m > 0.
+        Corners of the panels of the largest facade, shape (m, 4, 3).
     building
         Points of the building and of all panels, shape (n, 3).
     neighbours
@@ -87,7 +87,8 @@ def surroundings(
         return Surroundings(airspace, options.home_enu_m, tuple(notes))
     home, clearance_m = _home(panels, building, neighbours, airspace)
     notes.append(
-        f"home: {home[0]:g}, {home[1]:g}, {home[2]:g} m, on the ground in front of the largest facade, "
+        f"home: {home[0]:g}, {home[1]:g}, {home[2]:g} m, on the ground "
+        f"{'in front of the largest facade' if len(panels) else 'beside the building'}, "
         f"{clearance_m:.0f} m from the nearest wall (--home)"
     )
     if clearance_m < HOME_CLEARANCE_M:
@@ -99,13 +100,17 @@ def surroundings(
 
 
 def _rounded(value: float) -> float:
-    return round(float(value), 3)
+    return round(float(value), 3) + 0.0  # 0 and never -0
 
 
 def _home(panels: Array, building: Array, neighbours: Array, airspace: Airspace) -> tuple[Vec3, float]:
-    """The clear place most nearly straight in front of the facade, and its clearance; else the clearest place."""
+    """The clear place most nearly straight in front of the facade, and its clearance; else the clearest place.
+
+    Without a facade, straight in front is south of the building's middle.
+    """
     import shapely
 
+    middle = 0.5 * (building.min(axis=0) + building.max(axis=0)) if len(panels) == 0 else panels.mean(axis=(0, 1))
     outwards = np.cross(panels[:, 2] - panels[:, 0], panels[:, 3] - panels[:, 1]).sum(axis=0)[:2]
     ahead = float(np.arctan2(outwards[1], outwards[0])) if np.linalg.norm(outwards) > 1e-6 else -0.5 * np.pi
     low, high = np.array(airspace.min_enu_m[:2]) + 1.0, np.array(airspace.max_enu_m[:2]) - 1.0
@@ -114,7 +119,7 @@ def _home(panels: Array, building: Array, neighbours: Array, airspace: Airspace)
     bearings = ahead + 2.0 * np.pi * np.array(turns) / N_BEARINGS
     steps = np.arange(HOME_CLEARANCE_M, float(np.linalg.norm(high - low)), HOME_STEP_M)
     rays = np.stack([np.cos(bearings), np.sin(bearings)], axis=-1)[:, None] * steps[None, :, None]
-    places = (panels.reshape(-1, 3).mean(axis=0)[:2] + rays).reshape(-1, 2)
+    places = (middle[:2] + rays).reshape(-1, 2)
     places = places[np.all((places > low) & (places < high), axis=1)]
     if len(places) == 0:
         raise InputError(NO_HOME)

@@ -14,6 +14,7 @@ from groundstation.cli.options import number
 from planning.errors import InputError
 
 if TYPE_CHECKING:
+    from planning.site import Site
     from planning.site_import.options import ImportOptions, PanelGrid
 
 Number3 = tuple[float, float, float]
@@ -26,6 +27,7 @@ EPILOG = """examples:
   site import block.gml -o block.site.json --building BLDG_0003
   site import tower.obj -o tower.site.json --origin 22.3372,114.2636,62 \\
       --panel-grid '-18,0,0 18,0,0 -18,0,42' --rows 14 --columns 20 --gap 0.1
+  site import coarse.obj -o tower.site.json --origin 22.3372,114.2636,62 --without-panels
 """
 
 
@@ -36,7 +38,8 @@ def add_parser(subparsers: Any) -> None:
     command = actions.add_parser(
         "import",
         help="import IFC, CityGML, CityJSON, OBJ, PLY, GLB or STL",
-        description="Make a site from a building model. Windows become panels; a mesh needs --panel-grid.",
+        description="Make a site from a building model. Windows become panels; a mesh needs --panel-grid, or\n"
+        "--without-panels where photos will show them.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -88,6 +91,11 @@ def _add_panels(command: argparse.ArgumentParser) -> None:
     grid("--columns", type=int, action="append", metavar="N", help="panels side by side, likewise")
     grid("--gap", type=number, default=0.0, metavar="M", help="width of the mullions between panels (default 0)")
     grid("--grid-tolerance", type=number, default=2.0, metavar="M", help="allowed distance from the mesh (default 2 m)")
+    grid(
+        "--without-panels",
+        action="store_true",
+        help="make a site also where there is no panel yet; 'panels' finds them in photos",
+    )
 
 
 def add_flight(command: argparse.ArgumentParser) -> None:
@@ -115,7 +123,7 @@ def _triple(text: str) -> tuple[Number3, Number3, Number3]:
 
 def run(options: argparse.Namespace) -> int:
     """Import a site; returns the exit status."""
-    from groundstation.cli.console import counted, named_like, print_json, print_next, run_job
+    from groundstation.cli.console import print_json, run_job
     from groundstation.services.given_files import FileKind, expecting
     from groundstation.services.project_file import check_not_index
     from planning.json_file import check_output
@@ -125,19 +133,23 @@ def run(options: argparse.Namespace) -> int:
     check_not_index(options.out)
     check_output(options.out, [options.file])
     started = time.perf_counter()
-    wishes = replace(import_options(options), panel_grids=_grids(options), grid_tolerance_m=options.grid_tolerance)
+    wishes = replace(
+        import_options(options),
+        panel_grids=_grids(options),
+        grid_tolerance_m=options.grid_tolerance,
+        panels_required=not options.without_panels,
+    )
     with expecting(FileKind.BUILDING, options.file):
         imported = run_job("site import", lambda context: import_site(options.file, wishes, context))
     model = write_imported_site(options.out, imported, options.file)
     seconds = time.perf_counter() - started
     site = model.site
-    facades = [{"id": facade.id, "panels": len(facade.panels)} for facade in site.facades]
     if options.json:
         content = {
             "site": str(options.out),
             "name": site.name,
             "panels": site.n_panels,
-            "facades": facades,
+            "facades": [{"id": facade.id, "panels": len(facade.panels)} for facade in site.facades],
             "building_mesh": site.building_mesh,
             "triangles": len(model.building.triangles),
             "origin": {
@@ -152,18 +164,31 @@ def run(options: argparse.Namespace) -> int:
         }
         print_json(content)
         return 0
-    listed = ", ".join(f"{facade['id']} {facade['panels']}" for facade in facades[:MAX_LISTED])
-    more = f", {len(facades) - MAX_LISTED} smaller ones" if len(facades) > MAX_LISTED else ""
-    origin = site.origin
-    print(
-        f"{options.out}: site '{site.name}', {counted(site.n_panels, 'panel')} on {counted(len(facades), 'facade')}: "
-        f"{listed}{more}"
-    )
-    print(f"origin {origin.lat_deg:.7f}, {origin.lon_deg:.7f}, {origin.ellipsoid_height_m:.2f} m above the ellipsoid")
+    _print_site(site, options.out)
     for note in imported.notes:
         print(f"note: {note}", file=sys.stderr)
-    print_next("plan", options.out, "-o", named_like(options.out, ".plan.json"))
+    _print_next_step(site, options.out)
     return 0
+
+
+def _print_site(site: Site, out: Path) -> None:
+    from groundstation.cli.console import counted
+
+    origin, n_facades = site.origin, len(site.facades)
+    listed = ", ".join(f"{facade.id} {len(facade.panels)}" for facade in site.facades[:MAX_LISTED])
+    more = f", {n_facades - MAX_LISTED} smaller ones" if n_facades > MAX_LISTED else ""
+    on_facades = f"{counted(site.n_panels, 'panel')} on {counted(n_facades, 'facade')}: {listed}{more}"
+    print(f"{out}: site '{site.name}', {on_facades if site.n_panels else 'the building without panels'}")
+    print(f"origin {origin.lat_deg:.7f}, {origin.lon_deg:.7f}, {origin.ellipsoid_height_m:.2f} m above the ellipsoid")
+
+
+def _print_next_step(site: Site, out: Path) -> None:
+    from groundstation.cli.console import named_like, print_next
+
+    if site.n_panels:
+        print_next("plan", out, "-o", named_like(out, ".plan.json"))
+    else:
+        print_next("panels", "PHOTOS", out, "-o", named_like(out, ".panels.site.json"))
 
 
 def import_options(options: argparse.Namespace) -> ImportOptions:

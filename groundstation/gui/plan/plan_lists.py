@@ -79,8 +79,8 @@ class PlanLists(QTabWidget):
         plans.openWanted.connect(self._ask_plan)
         plans.compareWanted.connect(self.compare)
         desk.inHandChanged.connect(lambda _in_hand: self._fill_page())
-        workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
-        workspace.selectionChanged.connect(lambda _item: self._show_selection())
+        workspace.documentChanged.connect(self._document_changed)
+        workspace.selectionChanged.connect(self._show_selection)
 
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
@@ -93,6 +93,9 @@ class PlanLists(QTabWidget):
         self._fill_page()
 
     # What changes
+
+    def _document_changed(self, _before: Document, after: Document) -> None:
+        self._show_document(after)
 
     def _show_document(self, document: Document) -> None:
         self.plans.set_document(document)
@@ -124,7 +127,7 @@ class PlanLists(QTabWidget):
             self.waypoints.set_panels_covered(_panels_covered(in_hand))
         self._show_selection()
 
-    def _show_selection(self) -> None:
+    def _show_selection(self, _item: Item | None = None) -> None:
         if self.waypoints.isVisible():
             self.waypoints.set_selection(self._workspace.selection)
 

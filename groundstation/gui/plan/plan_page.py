@@ -110,7 +110,7 @@ class PlanPage(QObject):
         workspace.bridge.improved.connect(self._improved)
         workspace.bridge.bounded.connect(self._bounded)
         workspace.jobsChanged.connect(desk.job_ended)
-        workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
+        workspace.documentChanged.connect(self._document_changed)
         workspace.selectionChanged.connect(self._show_selection)
         workspace.unitsChanged.connect(self._show_units)
 
@@ -132,15 +132,25 @@ class PlanPage(QObject):
 
     # What changes
 
+    def _document_changed(self, _before: Document, after: Document) -> None:
+        self._show_document(after)
+
     def _show_document(self, document: Document) -> None:
         if self.form.value() != document.request:
             self.form.setValue(document.request)
-        can_plan = document.site is not None and not self.desk.is_planning
+        has_panels = document.site is not None and document.site.site.n_panels > 0
+        can_plan = has_panels and not self.desk.is_planning
         self._plan_button.setEnabled(can_plan)
         self._plan_action.setEnabled(can_plan)
         entry = document.current
         if document.site is None:
             self._say_verdict(self.tr("Open or import a site first, on the Site tab."), "muted")
+            self._result.clear()
+        elif entry is None and not has_panels:
+            self._say_verdict(
+                self.tr("No panels yet: find them in photos (Photos tab), or draw them on the building (Site tab)."),
+                "muted",
+            )
             self._result.clear()
         elif entry is None:
             words = self.tr("Planning ...") if self.desk.is_planning else self.tr("No plan yet.")

@@ -46,7 +46,7 @@ class ViewpointPage(QWidget):
         self._move.toggled.connect(self._move_toggled)
         desk.inHandChanged.connect(lambda _in_hand: self._say_of_viewpoint())
         desk.refused.connect(self._refused)
-        workspace.documentChanged.connect(lambda _before, after: self._show_document(after))
+        workspace.documentChanged.connect(self._document_changed)
         workspace.selectionChanged.connect(self._show_selection)
         workspace.unitsChanged.connect(self.set_units)
         self._stage.with_scene(
@@ -71,6 +71,9 @@ class ViewpointPage(QWidget):
     def set_units(self, units: UnitSystem) -> None:
         """Show lengths in other units."""
         self.editor.set_units(units)
+
+    def _document_changed(self, _before: Document, after: Document) -> None:
+        self._show_document(after)
 
     def _show_document(self, document: Document) -> None:
         if document.current is not None:

@@ -37,6 +37,10 @@ def place_text(origin: Origin, units: UnitSystem) -> str:
 
 
 def _panels_text(summary: SiteSummary, units: UnitSystem) -> str:
+    if summary.n_panels == 0:
+        return QCoreApplication.translate(
+            "ImportTexts", "No panels yet: find them in photos after the import, or pick a panel grid here."
+        )
     listed = ", ".join(f"{facade.id} {facade.n_panels}" for facade in summary.facades[:MAX_LISTED])
     if len(summary.facades) > MAX_LISTED:
         more = QCoreApplication.translate("ImportTexts", "{0} smaller ones")

@@ -16,11 +16,12 @@ from groundstation.services.document import Item
 from groundstation.services.item_edits import remove_item, rename_item
 from groundstation.services.panel_edits import flip_facade
 from groundstation.services.site_edits import move_rally_point, set_box, set_zone
-from groundstation.services.units import UnitSystem, area_unit, length_unit
+from groundstation.services.units import UnitSystem, area_unit, length_unit, sampling_unit
 from planning.coverage.sections import panel_frames
 from planning.frames import Vec3
 from planning.site import Facade, SiteModel
 from planning.site_import.polygons import quad_areas
+from reconstruction.panels.accuracy import FoundFacades
 
 
 class ItemPage(Page):
@@ -76,6 +77,9 @@ class FacadePage(ItemPage):
         """Show a facade."""
         super().show_item(model, item)
         facade = next(found for found in model.site.facades if found.id == item.id)
+        if not facade.panels:
+            self._facts.setText(self.tr("No panels"))
+            return
         corners = _corners(facade)
         self._facts.setText(
             self.tr("Panels: {0}, {1} of glass\nFaces: {2}").format(
@@ -98,6 +102,7 @@ class PanelPage(ItemPage):
 
     def __init__(self, units: UnitSystem, parent: QWidget | None = None) -> None:
         super().__init__(self.tr("Panel"), units, parent)
+        self._found: FoundFacades | None = None
         self._facts = QLabel()
         self._facts.setWordWrap(True)
         self.add(self._facts)
@@ -117,7 +122,21 @@ class PanelPage(ItemPage):
         )
         if panel.source_id is not None:
             text += "\n" + self.tr("In the imported file: {0}").format(panel.source_id)
+        accuracy = None if self._found is None else self._found.of(panel)
+        if accuracy is not None:
+            fine = sampling_unit(self._units)
+            text += "\n" + self.tr("Found in photos: corners \u00b1 {0:.3g} {1}, confidence {2:.0f} %").format(
+                fine.shown(accuracy.corner_sigma_m), fine.symbol, 100.0 * accuracy.confidence
+            )
         self._facts.setText(text)
+
+    def set_found(self, found: FoundFacades | None) -> None:
+        """How good the panels are that were found in photos; `show_item` follows."""
+        self._found = found
+
+    def text(self) -> str:
+        """What is said of the panel."""
+        return self._facts.text()
 
 
 class ObstaclePage(ItemPage):

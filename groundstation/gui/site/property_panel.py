@@ -59,6 +59,8 @@ class PropertyPanel(QWidget):
         shown = item if item is not None and item.kind in PAGES else SITE
         page = self._page(shown.kind)
         page.show_error("")
+        if isinstance(page, PanelPage):
+            page.set_found(self._workspace.document.found_facades)
         page.show_item(model, shown)
         for other in self._pages.values():
             other.setVisible(other is page)

@@ -10,11 +10,13 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QFileDialog, QMenu, QWidget
 
 from groundstation.gui.workspace import Workspace
+from groundstation.services.project_facades import facades_beside
 from groundstation.services.site_sources import bundled_site, open_site, with_new_site
 from planning.findings import Severity
 from planning.scenes import SCENES
 from planning.site import SiteModel
 from planning.site_import.importer import SUFFIXES
+from reconstruction.panels.accuracy import FoundFacades
 
 if TYPE_CHECKING:
     from groundstation.gui.site.import_dialog import ImportDialog
@@ -50,7 +52,11 @@ class SiteOpener(QObject):
     def open_site(self, path: Path) -> None:
         """Open a site file."""
         label = self.tr("Open {0}").format(path.name)
-        self._workspace.start(label, lambda context: open_site(path, context), lambda model: self._take(label, model))
+        self._workspace.start(
+            label,
+            lambda context: (open_site(path, context), facades_beside(path)),
+            lambda found: self._take(label, *found),
+        )
 
     def open_bundled(self, name: str) -> None:
         """Open one of the sites that come with the program."""
@@ -85,9 +91,9 @@ class SiteOpener(QObject):
             menu.addAction(action)
         return menu
 
-    def _take(self, label: str, model: SiteModel) -> None:
+    def _take(self, label: str, model: SiteModel, facades: FoundFacades | None = None) -> None:
         before = self._workspace.document
-        self._workspace.change(label, with_new_site(before, model))
+        self._workspace.change(label, with_new_site(before, model, facades))
         self._workspace.select(None)
         site = model.site
         self._workspace.say(

@@ -331,7 +331,7 @@ class ScenePicture(QWidget):
         return facade_colours(site.facade) if covered is None else covered
 
     def _paint_panels(self) -> None:
-        if self._site is not None:
+        if self._site is not None and len(self._site.frames):
             self._canvas.recolour(Layer.PANELS, shaded(self._panel_colours(self._site), self._site.frames.normals))
         self._show_legend()
 
@@ -387,8 +387,8 @@ class ScenePicture(QWidget):
         return np.concatenate(parts) if parts else None
 
     def _front(self) -> Array:
-        """Outward direction of the facade with most panels."""
-        if self._site is None:
+        """Outward direction of the facade with most panels; south where there is none."""
+        if self._site is None or len(self._site.frames) == 0:
             return np.array([0.0, -1.0, 0.0])
         largest = np.bincount(self._site.facade).argmax()
         normal = self._site.frames.normals[self._site.facade == largest].sum(axis=0)

@@ -74,7 +74,7 @@ def site_scene(model: SiteModel, look: Colours) -> SiteScene:
     """Everything of a site but its panels' colours."""
     site = model.site
     frames = panel_frames(panel_corners(site))
-    facade = np.repeat(np.arange(len(site.facades)), [len(found.panels) for found in site.facades])
+    facade = np.repeat(np.arange(len(site.facades)), np.array([len(found.panels) for found in site.facades], np.int64))
     drawables = {
         Layer.GROUND: (_ground(model, look),),
         Layer.BUILDING: _solid(model.building, BUILDING),

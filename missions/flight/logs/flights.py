@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from missions.flight.logs.raw import Floats, RawLog, RawPhoto, Row, camera_angles_rad, table
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.mavlink.autopilots import Autopilot
+from planning.belonging import HEIGHT_DIFFERENCE_M, MAX_DISTANCE_M
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.frames import wrap_heading_deg, wrap_heading_rad
@@ -25,9 +26,6 @@ from planning.site import Site
 HeightSource = Literal["takeoff", "sea-level"]
 """What heights are counted from: `takeoff` is the site's home, plus what the autopilot says to be above its own home,
 as missions are flown; `sea-level` is the altitude as it stands, which is as good as the receiver and the geoid."""
-
-MAX_DISTANCE_M = 5000.0
-"""A log that never comes this close to the site belongs to another one."""
 
 GAP_S = 2.0
 """Values are not carried over longer pauses: an aircraft at 5 m/s is 10 m further on."""
@@ -40,9 +38,6 @@ ON_GROUND_M = 2.0
 
 LIFTED_M = 0.5
 """Height above where it stood from which an aircraft flies; barometers wander by some decimetres."""
-
-HEIGHT_DIFFERENCE_M = 2.0
-"""Worth a word if the two ways to count heights differ by more: a receiver without RTK is good to about 2 m."""
 
 ARMED_LATE_S = 2.0
 """Motors may have been armed this much earlier than a log says: heartbeats, which tell of it, come once a second.

@@ -1,0 +1,161 @@
+"""A coarse model without panels in the real window: imported, kept, shown everywhere, filled from photos, planned."""
+
+import gc
+from dataclasses import replace
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from groundstation.gui.stage import StagePage
+from groundstation.gui.view3d.layers import Layer
+from groundstation.services.document import Document, Item, ItemKind, PlanEntry
+from groundstation.services.project import open_project
+from planning.findings import Severity
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.scenes import roof
+from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
+
+TABS = ("site", "plan", "mission", "fly", "photos")
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory):
+    """A folder of photos and a coarse model, and what they show."""
+    folder = tmp_path_factory.mktemp("flight")
+    made = made_photos(0.0, (0.0, 12.0))
+    write_flight(folder / "photos", made)
+    write_model(folder / "coarse.ply", made[0].case.wall)
+    return folder, made
+
+
+class Window:
+    """The whole program, and hands to work it."""
+
+    def __init__(self, application, worker):
+        from groundstation.gui.desk import Desk
+
+        self.application, self.answers = application, Answers()
+        self.desk = Desk(application, self.answers, worker)
+        self.desk.show()
+        self.window, self.workspace = self.desk.window, self.desk.workspace
+        self.window.setGeometry(0, 0, 1280, 720)
+        self.messages = []
+        self.workspace.messageShown.connect(self.messages.append)
+        turn_until(application, lambda: self.window.stage.scene() is not None)
+
+    @property
+    def site(self):
+        return self.workspace.document.site.site
+
+    def idle(self):
+        turn_until_idle(self.application, self.desk)
+
+    def show(self, tab):
+        self.window.show_tab(tab)
+        self.idle()
+        return self.window.tab(tab)
+
+    def look_everywhere(self):
+        """Every tab, and every way to look at the site."""
+        for page in StagePage:
+            self.window.stage.show_page(page)
+            for name in TABS:
+                self.show(name)
+                self.window.grab()
+
+    def errors(self):
+        return [message.text for message in self.messages if message.severity is Severity.ERROR]
+
+    def close(self):
+        self.window.close()
+        self.desk.close()
+        gc.collect()
+
+
+@pytest.fixture
+def opened(application, worker, tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
+    window = Window(application, worker)
+    yield window
+    window.close()
+
+
+def bare_roof():
+    model = roof()
+    return replace(model, site=replace(model.site, facades=()))
+
+
+def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, flight, tmp_path):
+    folder, made = flight
+    dialog = opened.show("site").left.opener.import_site(folder / "coarse.ply")
+    opened.idle()
+    dialog.form.origin_box().setValue(ORIGIN)
+    dialog.form._origin_edited(None)
+    dialog.preview()
+    opened.idle()
+    assert dialog.can_import(), dialog.error()
+    assert "No panels yet" in dialog._summary.text()
+    dialog.accept()
+    opened.idle()
+    assert opened.site.n_panels == 0
+    assert len(opened.window.stage.scene()._site.drawables[Layer.BUILDING]) == 1
+    plan = opened.show("plan")
+    assert "No panels yet: find them in photos (Photos tab), or draw them" in plan.verdict()
+    assert not plan._plan_button.isEnabled()
+    opened.desk.save_in(tmp_path / "project")
+    opened.idle()
+    assert open_project(tmp_path / "project").document.site.site == opened.site
+    photos = opened.show("photos")
+    photos.questions = Answers(folder=folder / "photos")
+    QTest.mouseClick(photos.choose, Qt.MouseButton.LeftButton)
+    opened.idle()
+    assert "2 photos, 2 of them usable. The site has no panels yet" in photos.coverage.text()
+    QTest.mouseClick(photos.find, Qt.MouseButton.LeftButton)
+    opened.idle()
+    assert photos.use.isEnabled(), opened.errors()
+    QTest.mouseClick(photos.use, Qt.MouseButton.LeftButton)
+    opened.idle()
+    assert opened.site.n_panels == len(made[0].panels)
+    opened.workspace.amend(replace(opened.workspace.document, request=PlanRequest(n_views=6, time_budget_s=2.0)))
+    plan = opened.show("plan")
+    QTest.mouseClick(plan._plan_button, Qt.MouseButton.LeftButton)
+    opened.idle()
+    assert opened.workspace.document.current.plan.coverage.covered > 0
+    assert opened.errors() == []
+
+
+def test_every_tab_shows_a_site_without_panels(opened):
+    model = roof()
+    emptied = tuple(replace(facade, panels=()) for facade in model.site.facades)
+    opened.workspace.session.open(Document(replace(model, site=replace(model.site, facades=emptied))), None)
+    opened.show("site")
+    opened.workspace.jump_to(Item(ItemKind.FACADE, "A"))
+    opened.idle()
+    opened.workspace.session.open(Document(bare_roof()), None)
+    opened.look_everywhere()
+    opened.workspace.jump_to(Item(ItemKind.BUILDING))
+    opened.idle()
+    assert opened.errors() == []
+    findings = opened.show("site").detail.findings
+    opened.idle()
+    assert [finding.code for finding in findings.findings()] == ["no-panels"]
+
+
+def test_a_plan_stays_when_the_panels_go_and_says_what_it_lacks(opened):
+    model = roof()
+    entry = PlanEntry("plan-1", "First", plan_flight(model, PlanRequest(n_views=4, time_budget_s=2.0)).plan)
+    opened.workspace.session.open(Document(model).with_plan(entry), None)
+    opened.show("plan")
+    opened.workspace.select(Item(ItemKind.PANEL, "A-0003"))
+    opened.workspace.change("Remove A", replace(opened.workspace.document, site=bare_roof()))
+    opened.look_everywhere()
+    assert "This plan cannot be judged. site 'roof' has no panels yet" in opened.show("plan").verdict()
+    opened.workspace.session.undo()
+    opened.idle()
+    assert "covered" in opened.show("plan").verdict()
+    assert opened.errors() != []
+    for text in opened.errors():
+        assert "site 'roof' has no panels yet" in text
