@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -11,10 +12,11 @@ import numpy as np
 from planning.frames import aim
 from reconstruction.cameras import Array, Intrinsics, Pose, PosedPhoto
 from reconstruction.made_facades.layout import draw_up
-from reconstruction.made_facades.record import Case, Disturbances, Layout, Top, Widths
+from reconstruction.made_facades.record import Case, Disturbances, Layout, Opposite, Top, Widths
 from reconstruction.made_facades.wall import Wall
 
-Shape = Literal["planar", "curved"]
+Shape = Literal["planar", "curved", "irregular"]
+SHAPES: tuple[Shape, ...] = ("planar", "curved", "irregular")
 
 WIDE_FOCAL_RATIO = 12.29 / 17.3
 """Focal length of the DJI M3E's wide camera as a share of the picture's width."""
@@ -129,9 +131,56 @@ def case_name(shape: Shape, seed: int) -> str:
     return f"{shape}-{seed:03d}"
 
 
+def with_inclined_lines(layout: Layout, seed: int, rng: np.random.Generator) -> Layout:
+    """The layout with inclined lines of one of six kinds, by the seed.
+
+    A gable, a sloped upper edge, large braces both ways, diagonals of all cells one way, a diagrid on the cells' nodes,
+    and a single large diagonal.
+    """
+    kind = seed % 6
+    if kind < 2:
+        n_sloped = int(rng.integers(2, max(3, layout.n_rows - 2)))
+        top: Top = "gable" if kind == 0 else "sloped"
+        return replace(layout, top=top, n_sloped_rows=n_sloped)
+    if kind in (3, 4):
+        layout = replace(layout, widths="uniform", spandrel_height_m=0.0)
+    rows = layout.n_rows * (2 if layout.spandrel_height_m > 0.0 else 1)
+    columns = layout.n_columns
+    if kind == 2:
+        bay = int(rng.integers(3, 7))
+        starts = range(0, columns - bay + 1, bay)
+        braces = [(0, c, rows, c + bay) for c in starts] + [(rows, c, 0, c + bay) for c in starts]
+    elif kind == 3:
+        braces = _diagonals(rows, columns, 1, 1)
+    elif kind == 4:
+        braces = _diagonals(rows, columns, 2, 1) + [(rows - a, b, rows - c, d) for a, b, c, d in
+                                                    _diagonals(rows, columns, 2, 1)]  # fmt: skip
+    else:
+        braces = [(0, 0, rows, columns)] if rng.random() < 0.5 else [(rows, 1, 0, columns - 2)]
+    return replace(layout, braces=tuple(braces), brace_width_m=rng.uniform(0.06, 0.12))
+
+
+def _diagonals(rows: int, columns: int, step: int, rise: int) -> list[tuple[int, int, int, int]]:
+    """Lines from node to node through the whole grid, `rise` rows a column, `step` columns apart."""
+    found = []
+    for start in range(-(rows // rise // step) * step, columns, step):
+        first = max(0, start)
+        last = min(columns, start + rows // rise)
+        if last > first:
+            found.append(((first - start) * rise, first, (last - start) * rise, last))
+    return found
+
+
+def _opposite(shape: Shape, share: float) -> Opposite:
+    """A bright grid in one case of five; of the irregular ones, as many with inclined roof edges."""
+    if share < 0.2:
+        return "grid"
+    return "roofs" if shape == "irregular" and share < 0.4 else "skyline"
+
+
 def random_case(shape: Shape, seed: int, intrinsics: Intrinsics | None = None) -> Case:
     """A facade with strong reflections and all disturbances, its layout and camera chosen by `seed`."""
-    rng = np.random.default_rng([seed, shape == "curved"])
+    rng = np.random.default_rng([seed, SHAPES.index(shape)])
     widths: tuple[Widths, ...] = ("uniform", "alternating", "random")
     tops: tuple[Top, ...] = ("straight",)
     layout = Layout(
@@ -148,17 +197,20 @@ def random_case(shape: Shape, seed: int, intrinsics: Intrinsics | None = None) -
         missing_panels=float(rng.choice([0.0, 0.03])),
         top=tops[0],
     )
+    if shape == "irregular":
+        layout = with_inclined_lines(layout, seed, rng)
+    is_curved = shape == "curved" or (shape == "irregular" and seed % 3 == 2)
     width_m = layout.panel_width_m * layout.n_columns
     wall = Wall(
         outward_heading_deg=rng.uniform(-180.0, 180.0),
         # An arc of 40 to 90 degrees: 30 m of facade on a radius of 20 to 45 m.
-        curvature_per_m=math.radians(rng.uniform(40.0, 90.0)) / width_m if shape == "curved" else 0.0,
+        curvature_per_m=math.radians(rng.uniform(40.0, 90.0)) / width_m if is_curved else 0.0,
     )
     dark, glass = rng.random() < 0.5, rng.uniform(0.6, 1.3)
     frame = rng.uniform(35.0, 75.0) if dark else rng.uniform(170.0, 225.0)
     disturbances = Disturbances(
         reflection=rng.uniform(0.35, 0.6),
-        opposite="grid" if rng.random() < 0.2 else "skyline",
+        opposite=_opposite(shape, rng.random()),
         street_m=rng.uniform(20.0, 45.0),
         tilt_deg=rng.uniform(0.15, 0.5),
         pillow_deg=rng.uniform(0.0, 0.4),
@@ -175,7 +227,7 @@ def random_case(shape: Shape, seed: int, intrinsics: Intrinsics | None = None) -
         layout,
         intrinsics or wide_camera(),
         seed=seed,
-        oblique_deg=rng.uniform(-25.0, 25.0) if shape == "planar" else rng.uniform(-8.0, 8.0),
+        oblique_deg=rng.uniform(-8.0, 8.0) if is_curved else rng.uniform(-25.0, 25.0),
         from_below_deg=rng.uniform(-8.0, 15.0),
         roll_deg=rng.uniform(-1.5, 1.5),
         fill=rng.uniform(0.78, 0.92),

@@ -12,8 +12,12 @@ from reconstruction.cameras import Array, PosedPhoto
 from reconstruction.made_facades.wall import Wall
 
 Widths = Literal["uniform", "alternating", "random"]
-Top = Literal["straight", "sloped", "triangles"]
-Opposite = Literal["skyline", "grid"]
+Top = Literal["straight", "sloped", "triangles", "gable"]
+Opposite = Literal["skyline", "grid", "roofs"]
+
+BraceEnds = tuple[float, float, float, float]
+"""Row and column of one end, row and column of the other, in lines of the grid from below and from the left. Columns
+may lie between lines: then both ends are on lines of rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +41,14 @@ class Layout:
     missing_panels
         Share of the cells that hold something else: a louvre, a solid wall.
     top
-        Upper edge: straight; rising from left to right over the highest row; or teeth, each panel of the highest row a
-        triangle.
+        Upper edge: straight; rising from left to right over the highest rows; teeth, each panel of the highest row a
+        triangle; or a gable that falls from the middle to both sides over the highest rows.
+    n_sloped_rows
+        Rows, spandrels counted, that a sloped edge or a gable cuts through.
+    braces
+        Inclined profiles through the grid, which cut the panels that they cross.
+    brace_width_m
+        Of those profiles, across their own direction.
     """
 
     n_rows: int = 8
@@ -54,6 +64,9 @@ class Layout:
     n_missing_mullions: int = 0
     missing_panels: float = 0.0
     top: Top = "straight"
+    n_sloped_rows: int = 1
+    braces: tuple[BraceEnds, ...] = ()
+    brace_width_m: float = 0.08
 
     def __post_init__(self) -> None:
         if self.n_rows < 1 or self.n_columns < 1:
@@ -64,6 +77,10 @@ class Layout:
         if max(self.mullion_width_m / 0.6, self.transom_width_m) >= min(sizes):
             raise ValueError("expected profiles narrower than the panels")
         _check_shares(missing_profiles=self.missing_profiles, missing_panels=self.missing_panels)
+        if not 1 <= self.n_sloped_rows <= self.n_rows:
+            raise ValueError(f"n_sloped_rows: expected 1 to {self.n_rows}, got {self.n_sloped_rows}")
+        if self.braces and self.brace_width_m <= 0.0:
+            raise ValueError(f"brace_width_m: expected more than 0, got {self.brace_width_m}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +93,8 @@ class Disturbances:
         Share of the light that glass mirrors at normal incidence (coated solar glass: 0.3 to 0.6); more at grazing
         angles (Schlick). 0: nothing is mirrored at any angle.
     opposite
-        What stands across the street and is mirrored: a skyline, or a bright grid whose image looks like frames.
+        What stands across the street and is mirrored: a skyline, a bright grid whose image looks like frames, or houses
+        with inclined roof edges.
     street_m
         Distance to it.
     tilt_deg

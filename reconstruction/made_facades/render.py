@@ -52,7 +52,7 @@ def make_facade(case: Case, monitor: Monitor = QUIET) -> MadeFacade:
         panels=_true_panels(case, grid),
         columns_m=grid.columns_m,
         rows_m=grid.rows_m,
-        missing=tuple((int(row), int(column)) for row, column in np.argwhere(grid.panel_numbers == 0)),
+        missing=tuple((int(row), int(column)) for row, column in np.argwhere((grid.panel_numbers == 0).all(axis=2))),
         photo=replace(case.truth, pose=_turned(case.truth.pose, case.disturbances.yaw_error_deg)),
     )
 
@@ -102,8 +102,8 @@ def _developed(picture: NDArray[np.float32], disturbances: Disturbances, rng: np
 
 def _true_panels(case: Case, grid: Grid) -> tuple[TruePanel, ...]:
     panels = []
-    for row, column in np.argwhere(grid.panel_numbers > 0):
-        corners = grid.corners(row, column)
+    for row, column, part in np.argwhere(grid.panel_numbers > 0):
+        corners = grid.corners(row, column, part)
         corners_enu_m = case.wall.points_enu_m(corners[:, 0], corners[:, 1])
         panels.append(TruePanel(int(row), int(column), corners_enu_m, case.truth.pixels(corners_enu_m)))
     return tuple(panels)

@@ -40,7 +40,7 @@ FLATTEST = -0.02
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panes:
-    """What differs from pane to pane; all of shape (n_rows, n_columns)."""
+    """What differs from pane to pane; all of shape (n_rows, n_columns, n_parts)."""
 
     tilt_s_rad: Array32
     tilt_h_rad: Array32
@@ -50,6 +50,9 @@ class Panes:
 
 Directions = tuple[Array32, Array32, Array32]
 """Of rays, wall frame, any length."""
+
+Cells = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
+"""Row, column, and part of the cell, of each sample."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +86,7 @@ class Scene:
         dx, dy, dz = (m[i, 0] * x_px + m[i, 1] * y_px + m[i, 2] for i in range(3))
         directions = (dx, dy, dz)
         t, s, h = first_hits(self.origin, dx, dy, dz, self.case.wall.curvature_per_m)
-        kind, row, column = self._kinds(directions, s, h)
+        kind, cell = self._kinds(directions, s, h)
         colours = np.empty((len(x_px), 3), np.float32)
         keys = kind.astype(np.int32)
         self._paint_solid(colours, kind, s, h)
@@ -94,27 +97,27 @@ class Scene:
         is_glass = kind == GLASS
         if is_glass.any():
             picked = Sight(*(value[is_glass] for value in (dx, dy, dz, t, s, h)))
-            colours[is_glass], in_blind = self._glass(picked, row[is_glass], column[is_glass])
-            number = self.grid.panel_numbers[row[is_glass], column[is_glass]]
+            row, column, part = (index[is_glass] for index in cell)
+            colours[is_glass], in_blind = self._glass(picked, row, column, part)
+            number = self.grid.panel_numbers[row, column, part]
             keys[is_glass] += PANEL_KEY * number + BLIND_KEY * in_blind
         return colours, keys
 
-    def _kinds(
-        self, directions: Directions, s: Array32, h: Array32
-    ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-        """What is hit, and the cell behind it."""
+    def _kinds(self, directions: Directions, s: Array32, h: Array32) -> tuple[NDArray[np.int64], Cells]:
+        """What is hit, and the part of a cell behind it."""
         grid = self.grid
-        row, column, is_open = self._cell(s, h)
-        kind = np.where(grid.panel_numbers[row, column] > 0, GLASS, INFILL)
+        (row, column, part), is_open = self._cell(s, h)
+        kind = np.where(grid.panel_numbers[row, column, part] > 0, GLASS, INFILL)
         kind[~is_open] = FRAME
         depth = self.case.layout.frame_depth_m
         if depth > 0.0:
             front_s, front_h = self._in_front(directions, s, h, np.float32(depth))
-            front_row, front_column, front_open = self._cell(front_s, front_h)
+            (front_row, front_column, front_part), front_open = self._cell(front_s, front_h)
             over_mullion = (front_column != column) & (
                 grid.half_mullions_m[row, np.maximum(front_column, column)] > 0.0
             )
-            hides = (kind == FRAME) | over_mullion | (front_row != row)
+            over_brace = (front_column == column) & (front_part != part)
+            hides = (kind == FRAME) | over_mullion | (front_row != row) | over_brace
             kind[hides] = FRAME_SIDE
             kind[~front_open & self._in_outline(front_s, front_h, 0.0)] = FRAME
             is_outside = ~self._in_outline(s, h, 0.0) & ~self._in_outline(front_s, front_h, 0.0)
@@ -123,12 +126,12 @@ class Scene:
         kind[is_outside] = MASONRY
         kind[is_outside & ~self._in_outline(s, h, BORDER_M)] = BEHIND
         kind[np.isnan(s)] = BEHIND
-        return kind, row, column
+        return kind, (row, column, part)
 
-    def _cell(self, s: Array32, h: Array32) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
-        """Row and column of the nearest cell, and whether no profile stands there."""
+    def _cell(self, s: Array32, h: Array32) -> tuple[Cells, NDArray[np.bool_]]:
+        """The part of the nearest cell, and whether no profile stands there."""
         grid = self.grid
-        n_rows, n_columns = grid.panel_numbers.shape
+        n_rows, n_columns = grid.panel_numbers.shape[:2]
         column = np.clip(np.searchsorted(grid.columns_m, s, "right") - 1, 0, n_columns - 1)
         row = np.clip(np.searchsorted(grid.rows_m, h, "right") - 1, 0, n_rows - 1)
         half = grid.half_transom_m
@@ -136,7 +139,15 @@ class Scene:
         is_open &= s < (grid.columns_m[column + 1] - grid.half_mullions_m[row, column + 1])
         is_open &= (h > grid.rows_m[row] + half) & (h < grid.rows_m[row + 1] - half)
         is_open &= (self._top(s) - h) > half * self._slant(column)
-        return row, column, is_open
+        part = np.zeros_like(row)
+        for bit in range(grid.cell_braces.shape[2]):
+            index = grid.cell_braces[row, column, bit]
+            for number in np.unique(index[index >= 0]):
+                here, brace = np.nonzero(index == number)[0], grid.braces[number]
+                signed = brace.signed_m(s[here], h[here])
+                part[here] |= (signed > 0.0).astype(np.int64) << bit
+                is_open[here] &= np.abs(signed) > brace.half_m
+        return (row, column, part), is_open
 
     def _top(self, s: Array32) -> Array32:
         return np.interp(s, self.grid.columns_m, self.grid.tops_m).astype(np.float32)
@@ -188,15 +199,15 @@ class Scene:
         return np.where(h < np.float32(0.55) * height - np.float32(0.7) * s, 1 - shadow, np.float32(1.0))
 
     def _glass(
-        self, sight: Sight, row: NDArray[np.int64], column: NDArray[np.int64]
+        self, sight: Sight, row: NDArray[np.int64], column: NDArray[np.int64], part: NDArray[np.int64]
     ) -> tuple[Array32, NDArray[np.bool_]]:
         """Colours of panes and whether a blind is seen behind them."""
         grid, panes = self.grid, self.panes
         dx, dy, dz, s, h = sight.dx, sight.dy, sight.dz, sight.s, sight.h
         across = ((s - grid.columns_m[column]) / np.diff(grid.columns_m)[column]).astype(np.float32)
         up = ((h - grid.rows_m[row]) / np.diff(grid.rows_m)[row]).astype(np.float32)
-        in_blind = 1 - up < panes.blind_share[row, column]
-        brightness = panes.brightness[row, column]
+        in_blind = 1 - up < panes.blind_share[row, column, part]
+        brightness = panes.brightness[row, column, part]
         inside = np.array(self.case.glass_bgr, np.float32) * brightness[:, None]
         inside[in_blind] = np.array([190.0, 200.0, 205.0], np.float32) * brightness[in_blind, None]
         inside *= self._light(s, h)[:, None]
@@ -206,8 +217,8 @@ class Scene:
         pillow = np.float32(math.radians(2.0 * disturbances.pillow_deg))
         nx, ny, nz = self._normals(
             column,
-            panes.tilt_s_rad[row, column] + pillow * (across - np.float32(0.5)),
-            panes.tilt_h_rad[row, column] + pillow * (up - np.float32(0.5)),
+            panes.tilt_s_rad[row, column, part] + pillow * (across - np.float32(0.5)),
+            panes.tilt_h_rad[row, column, part] + pillow * (up - np.float32(0.5)),
         )
         along_normal = (dx * nx + dy * ny + dz * nz) / (nx * nx + ny * ny + nz * nz)
         rx, ry, rz = (d - 2 * along_normal * n for d, n in ((dx, nx), (dy, ny), (dz, nz)))

@@ -65,11 +65,29 @@ def paint_grid(rng: np.random.Generator, ground_m: float, spacing_m: tuple[float
     return Backdrop(picture)
 
 
+def paint_roofs(rng: np.random.Generator, ground_m: float) -> Backdrop:
+    """A row of tall gabled houses: long straight edges, inclined alike, between dark roofs and the sky."""
+    picture = _sky_and_ground(rng, ground_m)
+    pitch, x = rng.uniform(0.5, 1.2), -HALF_WIDTH_M
+    while x < HALF_WIDTH_M:
+        width, eaves = rng.uniform(14.0, 30.0), ground_m + rng.uniform(8.0, 25.0)
+        a, b = _columns(x, x + width)
+        _, low = _rows(eaves, ground_m)
+        high, _ = _rows(eaves, ground_m)
+        picture[high:low, a:b] = rng.uniform(110.0, 220.0)
+        top, _ = _rows(eaves + 0.5 * pitch * width, ground_m)
+        cv2.fillPoly(picture, [np.array([(a, high), (b, high), ((a + b) // 2, top)], np.int32)], (58, 60, 78))
+        x += width
+    return Backdrop(picture)
+
+
 def backdrop_across(
     opposite: Opposite, rng: np.random.Generator, ground_m: float, spacing_m: tuple[float, float]
 ) -> Backdrop:
     """What is mirrored."""
-    return paint_grid(rng, ground_m, spacing_m) if opposite == "grid" else paint(rng, ground_m)
+    if opposite == "grid":
+        return paint_grid(rng, ground_m, spacing_m)
+    return paint_roofs(rng, ground_m) if opposite == "roofs" else paint(rng, ground_m)
 
 
 def _columns(left_m: float, right_m: float) -> tuple[int, int]:

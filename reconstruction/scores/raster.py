@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.jit import kernel
+from reconstruction.segmentation.cells import cuts_of
+from reconstruction.segmentation.cutting import cut_pieces
 from reconstruction.segmentation.record import FacadeGrid, GridLine, Segmentation
 
 Array = NDArray[np.float64]
@@ -72,16 +74,19 @@ def found_region(found: Segmentation) -> Mask:
 
 
 def _cells(facade: FacadeGrid) -> list[Array]:
-    cells = []
+    cells, cuts = [], cuts_of(facade.inclined)
     for panel in facade.panels:
         from_top = len(facade.rows) - 2 - panel.row
-        if len(panel.corners_px) != 4 or from_top < 0 or panel.column > len(facade.columns) - 2:
+        is_cell = len(panel.corners_px) == 4 or panel.part > 0
+        if not is_cell or from_top < 0 or panel.column > len(facade.columns) - 2:
             # A panel that is not a cell of the grid; its frames are not known.
             cells.append(panel.corners_px)
             continue
         top, bottom = _outer(facade.rows[from_top], facade.rows[from_top + 1])
         left, right = _outer(facade.columns[panel.column], facade.columns[panel.column + 1])
-        cells.append(facade.rectification.to_photo(_outline(left, right, top, bottom)))
+        outline = _outline(left, right, top, bottom)
+        pieces = cut_pieces(outline, cuts, is_outer=True) if panel.part else [outline]
+        cells += [facade.rectification.to_photo(piece) for piece in pieces]
     return cells
 
 

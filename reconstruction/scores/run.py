@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +13,17 @@ from numpy.typing import NDArray
 
 from planning.errors import InfeasibleError
 from planning.progress import QUIET, Clock, Monitor
+from reconstruction.panels.register import registered
+from reconstruction.rectify.curvature import ViewKind, decide_view, drawn_view
+from reconstruction.rectify.view import SurfaceView
 from reconstruction.scores.baselines import mask_folder
 from reconstruction.scores.metrics import PhotoScores, SetScores, score_overlaps, summarise
 from reconstruction.scores.overlaps import pixel_overlaps
 from reconstruction.scores.raster import found_index, found_region
 from reconstruction.scores.sets import PhotoSet, ScoredPhoto
 from reconstruction.segmentation.parameters import SegmentationParameters
-from reconstruction.segmentation.segment import segment_image
+from reconstruction.segmentation.record import Rectification, Segmentation
+from reconstruction.segmentation.segment import segment_image, segment_views
 
 Mask = NDArray[np.bool_]
 
@@ -63,6 +68,48 @@ def own_method(parameters: SegmentationParameters | None = None, clock: Clock = 
         started = clock()
         found = segment_image(photo.image, photo.views, parameters, monitor, photo.name)
         seconds = clock() - started
+        return Answer(found_index(found), found_region(found), seconds)
+
+    return answer
+
+
+def viewed_method(kind: ViewKind, parameters: SegmentationParameters, clock: Clock = time.perf_counter) -> Method:
+    """The same on photos that are rectified in another way; what cannot be rectified so shows no panels."""
+
+    def answer(photo: ScoredPhoto, monitor: Monitor) -> Answer:
+        started = clock()
+        found = segment_image(photo.image, viewed(photo, kind), parameters, monitor, photo.name)
+        return Answer(found_index(found), found_region(found), clock() - started)
+
+    return answer
+
+
+def viewed(photo: ScoredPhoto, kind: ViewKind) -> tuple[Rectification, ...]:
+    """A photo's views of known surfaces, drawn in another way."""
+    views = []
+    for view in photo.views or ():
+        if isinstance(view, SurfaceView):
+            with suppress(InfeasibleError):
+                views.append(drawn_view(view, kind, decide_view([view], kind)))
+    return tuple(views)
+
+
+def together_method(n_views: int, parameters: SegmentationParameters, clock: Clock = time.perf_counter) -> Method:
+    """The same in a photo and `n_views` - 1 beside it, brought onto one another and searched at once."""
+
+    def answer(photo: ScoredPhoto, monitor: Monitor) -> Answer:
+        (view,) = photo.views or ()
+        if not isinstance(view, SurfaceView):
+            raise TypeError(f"expected a view of a surface, got {type(view).__name__}")
+        beside = photo.beside[: n_views - 1]
+        images, views = [photo.image, *(image for image, _ in beside)], [view, *(other for _, other in beside)]
+        started = clock()
+        scale = min(1.0, parameters.long_side_px / max(view.width_px, view.height_px))
+        placed = registered(images, [replace(one, px_per_m=one.px_per_m * scale) for one in views], parameters.seed)
+        grids = segment_views(images, [one.view for one in placed], parameters, monitor, "A")
+        seconds = clock() - started
+        height, width = photo.image.shape[:2]
+        found = Segmentation(photo.name, width, height, grids[:1])
         return Answer(found_index(found), found_region(found), seconds)
 
     return answer

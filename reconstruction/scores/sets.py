@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from planning.errors import InputError
 from reconstruction.cameras import Intrinsics
-from reconstruction.made_facades.cases import Shape, case_name, random_case
+from reconstruction.made_facades.cases import Shape, case_name, photo_of, random_case
 from reconstruction.made_facades.record import Case, MadeFacade
 from reconstruction.made_facades.render import make_facade
 from reconstruction.made_facades.scene import BASE_ABOVE_GROUND_M, BORDER_M
+from reconstruction.panels.adjustment import moved_pose
 from reconstruction.rectify.surface import FacadeSurface
-from reconstruction.rectify.view import surface_view
+from reconstruction.rectify.view import SurfaceView, surface_view
 from reconstruction.scores.annotated import READERS, RECTIFIED_SETS, SHOWABLE_SETS, AnnotatedPhoto
 from reconstruction.scores.overlaps import MOST_PANELS
 from reconstruction.scores.pictures import pictures_in, read_labels, read_picture
@@ -25,9 +26,15 @@ from reconstruction.segmentation.views import WholePicture
 
 Mask = NDArray[np.bool_]
 
-MADE_SETS: dict[str, Shape] = {"made-planar": "planar", "made-curved": "curved"}
+MADE_SETS: dict[str, Shape] = {"made-planar": "planar", "made-curved": "curved", "made-irregular": "irregular"}
 EXTENT_MARGIN_M = 2.0
 """What a coarse model of a glass building may be wrong by at its edges."""
+
+BESIDE_DEG = ((12.0, 3.0), (-12.0, 6.0), (20.0, -3.0), (-20.0, 9.0), (6.0, 12.0))
+"""Directions that more photos of a facade are taken from: to the right of its normal, and from below."""
+
+STATED_POSE = np.diag([0.03**2] * 3 + [np.radians(0.3) ** 2] * 3)
+"""Covariance of the errors of their stated poses, position (m) and turn (rad)."""
 
 SET_NAMES = (*MADE_SETS, *READERS, "folder")
 
@@ -49,6 +56,8 @@ class ScoredPhoto:
         fronto-parallel; None where nothing is known.
     may_be_shown
         Whether the photo's licence lets it appear in pictures of results.
+    beside
+        More photos of the same facade, each with its view of what the photo itself shows.
     """
 
     name: str
@@ -57,6 +66,7 @@ class ScoredPhoto:
     region: Mask | None = None
     views: tuple[Rectification, ...] | None = None
     may_be_shown: bool = True
+    beside: tuple[tuple[NDArray[np.uint8], SurfaceView], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,14 +84,27 @@ class PhotoSet:
 
 
 def made_set(
-    name: str, n_seeds: int, intrinsics: Intrinsics | None = None, extent_margin_m: float | None = EXTENT_MARGIN_M
+    name: str,
+    n_seeds: int,
+    intrinsics: Intrinsics | None = None,
+    extent_margin_m: float | None = EXTENT_MARGIN_M,
+    n_beside: int = 0,
 ) -> PhotoSet:
-    """Made facades with strong reflections: `made-planar` or `made-curved`, seeds 0 to `n_seeds` - 1; see `scored`."""
+    """Made facades with strong reflections: one of `MADE_SETS`, seeds 0 to `n_seeds` - 1; see `scored`.
+
+    Parameters
+    ----------
+    n_beside
+        More photos of each facade, from other places, with poses as good as RTK and a gimbal's angles are.
+    """
     shape = MADE_SETS[name]
 
     def photos() -> Iterator[ScoredPhoto]:
         for seed in range(n_seeds):
-            yield scored(make_facade(random_case(shape, seed, intrinsics)), extent_margin_m)
+            case = random_case(shape, seed, intrinsics)
+            photo = scored(make_facade(case), extent_margin_m)
+            (view,) = photo.views or ()
+            yield replace(photo, beside=tuple(_beside(case, view, number) for number in range(n_beside)))
 
     return PhotoSet(name, tuple(case_name(shape, seed) for seed in range(n_seeds)), photos)
 
@@ -102,6 +125,19 @@ def scored(made: MadeFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) ->
         high = np.array([made.columns_m[-1] + beside, made.rows_m[-1] + beside])
     view = surface_view(made.photo, surface_of(made.case), low, high)
     return ScoredPhoto(made.photo.name, made.image, made.index, made.facade, (view,))
+
+
+def _beside(case: Case, view: Rectification, number: int) -> tuple[NDArray[np.uint8], SurfaceView]:
+    """Another photo of a made facade and its view of the window that `view` shows."""
+    if not isinstance(view, SurfaceView):
+        raise TypeError(f"expected a view of a surface, got {type(view).__name__}")
+    aside, above = BESIDE_DEG[number % len(BESIDE_DEG)]
+    lens = case.truth.intrinsics
+    camera = photo_of(case.wall, case.layout, lens, seed=case.seed, oblique_deg=aside, from_below_deg=above)
+    made = make_facade(replace(case, truth=camera))
+    off = np.random.default_rng([case.seed, number]).multivariate_normal(np.zeros(6), STATED_POSE)
+    stated = replace(moved_pose(camera.pose, off), covariance=STATED_POSE)
+    return made.image, replace(view, photo=replace(made.photo, pose=stated))
 
 
 def surface_of(case: Case) -> FacadeSurface:

@@ -9,13 +9,24 @@ from typing import Any
 from planning.progress import QUIET, Monitor, QualityPoint
 from planning.tradeoff.curves import Curve, falling
 from planning.tradeoff.picture import GapAxis, Line, Panel
+from reconstruction.rectify.curvature import VIEW_KINDS, ViewKind
+from reconstruction.rectify.polynomial import PolynomialView
 from reconstruction.scores.metrics import PhotoScores, SetScores, summarise
-from reconstruction.scores.run import own_method, score_answer
+from reconstruction.scores.run import (
+    Method,
+    own_method,
+    score_answer,
+    together_method,
+    viewed,
+    viewed_method,
+)
 from reconstruction.scores.sets import PhotoSet
-from reconstruction.segmentation.parameters import DETECTORS, SegmentationParameters
+from reconstruction.segmentation.parameters import DETECTORS, Detector, SegmentationParameters
 
-KNOBS = {"long_side_px": "image size", "n_samples": "samples", "detector": "detector"}
-"""Settings that trade quality for time, as the user knows them."""
+SAMPLES_NAME = "samples of a row"
+"""Turned with the posterior on (Eqs. 5 to 8): without it no rows are compared."""
+
+VIEWS_NAME, RECTIFIED_NAME = "views together", "rectified"
 
 MIOU_AXIS = GapAxis(
     label="individual mIoU",
@@ -28,11 +39,23 @@ MIOU_AXIS = GapAxis(
 
 @dataclass(frozen=True, slots=True)
 class SegmentVariants:
-    """Values of each knob; all others stay as they are."""
+    """Values of each knob; all others stay as they are.
+
+    Parameters
+    ----------
+    samples
+        Of a row or column that are compared, with the posterior on; 0 for all.
+    n_views
+        Photos of a facade that are searched together; they must be in the set.
+    view_kinds
+        Ways to rectify, for sets whose surfaces are known.
+    """
 
     long_sides_px: tuple[int, ...] = (400, 800, 1200, 1600)
     samples: tuple[int, ...] = (32, 128, 512, 0)
-    detectors: tuple[str, ...] = ()
+    detectors: tuple[Detector, ...] = ()
+    n_views: tuple[int, ...] = ()
+    view_kinds: tuple[ViewKind, ...] = ()
 
     def __post_init__(self) -> None:
         unknown = [name for name in self.detectors if name not in DETECTORS]
@@ -42,16 +65,30 @@ class SegmentVariants:
             raise ValueError(f"--sizes: expected 16 or more, got {min(self.long_sides_px)}")
         if any(number < 0 for number in self.samples):
             raise ValueError(f"--samples: expected 0 (all) or more, got {min(self.samples)}")
+        if any(number < 1 for number in self.n_views):
+            raise ValueError(f"--views: expected 1 or more, got {min(self.n_views)}")
+        kinds = [kind for kind in self.view_kinds if kind not in VIEW_KINDS]
+        if kinds:
+            raise ValueError(f"--rectified-by: expected {', '.join(VIEW_KINDS)}, got {kinds[0]}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SettingScores:
-    """One setting of one knob and what came of it. The knob is empty for the settings that the others start from."""
+    """One setting of one knob and what came of it.
+
+    Parameters
+    ----------
+    knob
+        Empty for the settings that the others start from.
+    view_error_px
+        Largest error of the map into the photo that the rectification makes; None where it makes none.
+    """
 
     knob: str
     value: str
     parameters: SegmentationParameters
     scores: SetScores
+    view_error_px: float | None = None
 
     @property
     def gap(self) -> float:
@@ -79,32 +116,53 @@ def run_variants(
     """
     settings = _settings(base, variants)
     done: list[list[PhotoScores]] = [[] for _ in settings]
+    off_px: list[list[float]] = [[] for _ in settings]
     total = photos.n_photos * len(settings)
     for number, photo in enumerate(photos.photos()):
-        for which, (_, _, parameters) in enumerate(settings):
+        for which, setting in enumerate(settings):
             monitor.report("comparing settings", number * len(settings) + which, total)
-            method = own_method(parameters)
-            if number == which == 0:
+            if number == 0:
                 # Compiling is in no setting's time.
-                method(photo, QUIET)
-            answer = method(photo, QUIET)
+                setting.method(photo, QUIET)
+            answer = setting.method(photo, QUIET)
             done[which].append(score_answer(photo, answer))
+            if setting.kind == "polynomial":
+                views = viewed(photo, setting.kind)
+                off_px[which] += [
+                    one.photo_from_rectified.residual_px for one in views if isinstance(one, PolynomialView)
+                ]
     return tuple(
-        SettingScores(knob, value, parameters, summarise(scores))
-        for (knob, value, parameters), scores in zip(settings, done, strict=True)
+        SettingScores(one.knob, one.value, one.parameters, summarise(scores), max(off, default=None))
+        for one, scores, off in zip(settings, done, off_px, strict=True)
     )
 
 
-def _settings(base: SegmentationParameters, variants: SegmentVariants) -> list[tuple[str, str, SegmentationParameters]]:
-    values: dict[str, Sequence[Any]] = {
-        "long_side_px": variants.long_sides_px,
-        "n_samples": variants.samples,
-        "detector": variants.detectors,
-    }
-    settings = [("", "", base)]
-    for name, knob in KNOBS.items():
-        settings += [(knob, str(value), replace(base, **{name: value})) for value in values[name]]
-    return settings
+@dataclass(frozen=True, slots=True, eq=False)
+class _Setting:
+    knob: str
+    value: str
+    parameters: SegmentationParameters
+    method: Method
+    kind: ViewKind = "auto"
+
+
+def _settings(base: SegmentationParameters, variants: SegmentVariants) -> list[_Setting]:
+    changed = [
+        *(("image size", str(size), replace(base, long_side_px=size)) for size in variants.long_sides_px),
+        *(
+            (SAMPLES_NAME, str(number), replace(base, n_samples=number, use_posterior=True))
+            for number in variants.samples
+        ),
+        *(("detector", name, replace(base, detector=name)) for name in variants.detectors),
+    ]
+    return [
+        *(
+            _Setting(knob, value, parameters, own_method(parameters))
+            for knob, value, parameters in [("", "", base), *changed]
+        ),
+        *(_Setting(VIEWS_NAME, str(n), base, together_method(n, base)) for n in variants.n_views),
+        *(_Setting(RECTIFIED_NAME, kind, base, viewed_method(kind, base), kind) for kind in variants.view_kinds),
+    ]
 
 
 def variant_rows(runs: Sequence[SettingScores]) -> list[dict[str, Any]]:
@@ -122,6 +180,7 @@ def variant_rows(runs: Sequence[SettingScores]) -> list[dict[str, Any]]:
                 "coverage_p5": round(scores.coverage[5], 5),
                 "missed": scores.n_missed,
                 "photos": len(scores.photos),
+                "view_error_px": None if run.view_error_px is None else round(run.view_error_px, 3),
             }
         )
     return rows

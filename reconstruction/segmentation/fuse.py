@@ -1,11 +1,10 @@
-"""One picture of a facade from several photos: reflections differ from view to view, frames do not.
+"""Several views of one facade searched as one: reflections differ from view to view, frames do not.
 
-The median of what several rectified views show at a pixel keeps what most of them agree on. A frame is there in every
-view; a mirror image lies somewhere else in each. Views differ in exposure, so each is first brought to the brightness
-of the first one by a gain and an offset that most pixels agree on.
-
-What it is for: facades whose frames are hardly seen in one photo (docs/segmentation.md has the figures). Where one
-photo shows the grid, its edges are sharper than those of several laid on one another.
+Every row of the edges is taken from another view in turn, of those that show the place. Support along a line is a share
+of its rows, so that a frame, which all views have in the same place, keeps its support, and a mirror image, which lies
+elsewhere in each, is left with the share of one view. The median of the pictures themselves does less: where mirror
+images of several views cross, it makes edges that no view has, and faint frames do not come out any clearer
+(docs/segmentation.md has the figures).
 """
 
 from __future__ import annotations
@@ -16,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
-from planning.jit import chunks, run_chunks
+from reconstruction.segmentation.edges import EdgeMap
+from reconstruction.segmentation.grid import Axes, Axis
+from reconstruction.segmentation.parameters import SegmentationParameters
 
 Grey = NDArray[np.uint8]
-
-ROWS_AT_ONCE = 256
-"""Bounds the memory of the median: a dozen views of 4000 columns take 48 MB."""
+Mask = NDArray[np.bool_]
 
 LEAST_OVERLAP = 400
 """Pixels in common that the brightness of two views can be compared by."""
@@ -30,8 +29,8 @@ USUAL_RANGE = (0.4, 2.5)
 """Gains outside this are no exposure: the views show different things, and brightness is left alone."""
 
 
-def fused(pictures: Sequence[Grey], valid: Sequence[NDArray[np.bool_]]) -> tuple[Grey, NDArray[np.bool_]]:
-    """Median over views, and where any of them shows something.
+def fused(pictures: Sequence[Grey], valid: Sequence[Mask], parameters: SegmentationParameters) -> Axes:
+    """Edges of several views as of one picture.
 
     Parameters
     ----------
@@ -53,42 +52,41 @@ def fused(pictures: Sequence[Grey], valid: Sequence[NDArray[np.bool_]]) -> tuple
             f"fusing views: expected rectified views of one size with a mask each, found sizes {sorted(shapes)}; "
             "rectify them all onto the same window of the facade"
         )
-    if len(pictures) == 1:
-        return pictures[0], valid[0]
-    levels = [_level(picture, mask, pictures[0], valid[0]) for picture, mask in zip(pictures, valid, strict=True)]
-    height, width = pictures[0].shape
-    result = np.zeros((height, width), np.uint8)
-
-    def work(start: int, stop: int) -> None:
-        stack = np.stack(
-            [
-                np.where(mask[start:stop], gain * picture[start:stop].astype(np.float32) + offset, np.nan)
-                for picture, mask, (gain, offset) in zip(pictures, valid, levels, strict=True)
-            ]
-        ).astype(np.float32)
-        result[start:stop] = np.clip(np.rint(_median_of_known(stack)), 0, 255).astype(np.uint8)
-
-    run_chunks(work, chunks(height, ROWS_AT_ONCE))
-    return result, np.any(valid, axis=0)
+    first, first_mask = pictures[0], valid[0]
+    views = [
+        Axes.of(_levelled(picture, mask, first, first_mask), mask, parameters)
+        for picture, mask in zip(pictures, valid, strict=True)
+    ]
+    shown, turned = np.stack(valid), np.stack([mask.T for mask in valid])
+    down = _in_turn([view.down for view in views], shown, parameters.n_bands)
+    return Axes(down, _in_turn([view.across for view in views], turned, parameters.n_bands))
 
 
-def _median_of_known(stack: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Median over the first axis without the NaN, 0 where there is nothing else."""
-    ordered = np.sort(stack, axis=0)  # NaN go last
-    known = np.isfinite(ordered).sum(axis=0)
-    low, high = np.maximum(known - 1, 0) // 2, known // 2
-    high = np.minimum(high, np.maximum(known - 1, 0))
-    pair = np.take_along_axis(ordered, np.stack([low, high]), axis=0)
-    return np.asarray(np.where(known > 0, 0.5 * (pair[0] + pair[1]), 0.0), np.float32)
+def _in_turn(axes: Sequence[Axis], shown: Mask, n_bands: int) -> Axis:
+    """One axis whose rows are of all axes in turn; `shown` is where each of them shows something, shape (n, h, w)."""
+    so_far = shown.cumsum(axis=0, dtype=np.uint8)
+    turn = np.arange(shown.shape[1])[:, None] % np.maximum(so_far[-1], 1)
+    which = (so_far > turn).argmax(axis=0)[None]
+
+    is_edge, offset_px, picture = (
+        np.take_along_axis(np.stack(layers), which, axis=0)[0]
+        for layers in (
+            [axis.edges.is_edge for axis in axes],
+            [axis.edges.offset_px for axis in axes],
+            [axis.picture for axis in axes],
+        )
+    )
+    return Axis.of(picture, EdgeMap(is_edge, offset_px), n_bands)
 
 
-def _level(picture: Grey, mask: NDArray[np.bool_], first: Grey, first_mask: NDArray[np.bool_]) -> tuple[float, float]:
-    """Gain and offset that bring a view's quartiles to those of the first one, over what both show."""
+def _levelled(picture: Grey, mask: Mask, first: Grey, first_mask: Mask) -> Grey:
+    """A view with the quartiles of the first one, over what both show: exposures differ."""
     both = mask & first_mask
     if both.sum() < LEAST_OVERLAP:
-        return 1.0, 0.0
+        return picture
     a, b = np.quantile(picture[both], [0.25, 0.5, 0.75]), np.quantile(first[both], [0.25, 0.5, 0.75])
     gain = float((b[2] - b[0]) / (a[2] - a[0])) if a[2] > a[0] else 1.0
     if not USUAL_RANGE[0] <= gain <= USUAL_RANGE[1]:
-        return 1.0, 0.0
-    return gain, float(b[1] - gain * a[1])
+        return picture
+    levelled = gain * (picture.astype(np.float32) - a[1]) + b[1]
+    return np.asarray(np.clip(np.rint(levelled), 0, 255), np.uint8)

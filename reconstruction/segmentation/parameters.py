@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal
 
+from planning.effects import Wish
 from planning.errors import InputError
 from planning.json_file import read_toml, to_record
 
@@ -52,6 +53,8 @@ class SegmentationParameters:
         Prefer spacings that repeat, infer lines that are missing from them and drop those that do not fit.
     find_extent
         Look for the first and last line; off where the picture shows nothing but the facade.
+    inclined
+        Look for inclined lines, which cut panels: where the picture shows edges enough for one, always, or never.
     seed
         Of everything random.
     """
@@ -72,6 +75,7 @@ class SegmentationParameters:
     use_posterior: bool = False
     use_spacing: bool = True
     find_extent: bool = True
+    inclined: Wish = "auto"
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -82,6 +86,8 @@ class SegmentationParameters:
             raise ValueError(f"n_samples: expected 0 (all) or more, got {self.n_samples}")
         if self.detector not in DETECTORS:
             raise ValueError(f"detector: expected one of {', '.join(DETECTORS)}, got {self.detector}")
+        if self.inclined not in ("auto", "on", "off"):
+            raise ValueError(f"inclined: expected auto, on or off, got {self.inclined}")
         for name in ("min_segment_px", "beta", "min_panel_px", "max_frame_px", "max_frame_share", "max_tilt_deg"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name}: expected more than 0, got {getattr(self, name)}")

@@ -8,6 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.effects import Decision
+
 Array = NDArray[np.float64]
 
 
@@ -58,6 +60,33 @@ class GridLine:
     is_inferred: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class InclinedLine:
+    """A straight profile that runs neither along rows nor along columns, in the rectified view.
+
+    Parameters
+    ----------
+    first_px, last_px
+        Ends of its middle, (x, y). It crosses every cell of the grid between them from border to border.
+    width_px
+        From edge to edge; panels end at its edges.
+    sigma_px
+        Standard deviation of its middle, across it.
+    confidence
+        From 0 to 1: how sure it is that there is a line.
+    open_side
+        On which side there are panels: 0 on both; along a gable only to the right of a walk from first to last (1), as
+        the picture shows it, or only to the left (-1).
+    """
+
+    first_px: tuple[float, float]
+    last_px: tuple[float, float]
+    width_px: float = 0.0
+    sigma_px: float = 1.0
+    confidence: float = 1.0
+    open_side: int = 0
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FoundPanel:
     """A panel in a photo.
@@ -71,6 +100,8 @@ class FoundPanel:
         which is counter-clockwise as seen from outside, the order of a site's panels.
     confidence
         The least of its lines.
+    part
+        0 for a whole cell; parts of a cell that inclined lines cut count from 1.
     """
 
     id: str
@@ -78,6 +109,7 @@ class FoundPanel:
     column: int
     corners_px: Array
     confidence: float
+    part: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,6 +124,10 @@ class FacadeGrid:
         Vertical lines from left to right.
     missing
         Cells (row, column) of the grid that are no panels.
+    inclined
+        Profiles that cut cells of the grid.
+    decision
+        Why inclined lines were looked for, or not; None where there is no grid.
     """
 
     id: str
@@ -100,6 +136,8 @@ class FacadeGrid:
     columns: tuple[GridLine, ...]
     panels: tuple[FoundPanel, ...]
     missing: tuple[tuple[int, int], ...] = ()
+    inclined: tuple[InclinedLine, ...] = ()
+    decision: Decision | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

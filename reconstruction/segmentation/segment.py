@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 from planning.progress import QUIET, Monitor
 from planning.site_import.facades import facade_name
 from reconstruction.rectify.warp import warp
+from reconstruction.segmentation.cells import facade_grid
 from reconstruction.segmentation.facades import views_without_pose
 from reconstruction.segmentation.fuse import fused
 from reconstruction.segmentation.grid import Axes, find_grid
+from reconstruction.segmentation.outline import arranged
 from reconstruction.segmentation.parameters import SegmentationParameters
 from reconstruction.segmentation.pictures import checked_image, grey
-from reconstruction.segmentation.record import FacadeGrid, FoundPanel, GridLine, Rectification, Segmentation
+from reconstruction.segmentation.record import FacadeGrid, Rectification, Segmentation
 from reconstruction.segmentation.refine import refined_lines
+from reconstruction.segmentation.refine_inclined import refined_inclined
 from reconstruction.segmentation.straighten import straightening, straightening_of_grid
 from reconstruction.segmentation.views import CorrectedView, WholePicture, scaled_view
 
@@ -94,22 +97,31 @@ def segment_view(
     scale = min(1.0, parameters.long_side_px / max(view.width_px, view.height_px))
     small = scaled_view(view, scale)
     picture, valid = _seen(image, small)
+    axes = Axes.of(picture, valid, parameters)
     if parameters.straighten:
         monitor.report("straighten", 0, 1)
         bend = straightening(picture, parameters.max_tilt_deg, parameters.seed)
-        small, picture, valid = _bent(image, small, picture, valid, bend)
-    axes = Axes.of(picture, valid, parameters)
+        bent = _bent(image, small, picture, valid, bend)
+        bent_axes = axes if bend is None else Axes.of(bent[1], bent[2], parameters)
+        if bent_axes.gathering() > axes.gathering():
+            (small, picture, valid), axes = bent, bent_axes
     rows, columns = find_grid(axes, parameters, monitor)
     if parameters.straighten and rows and columns:
         last = straightening_of_grid(axes.down.edges, axes.across.edges, rows, columns)
         if last is not None:
             small, picture, valid = _bent(image, small, picture, valid, last)
-            rows, columns = find_grid(Axes.of(picture, valid, parameters), parameters, monitor)
+            axes = Axes.of(picture, valid, parameters)
+            rows, columns = find_grid(axes, parameters, monitor)
+    arrangement = arranged(axes, rows, columns, parameters)
+    rows, columns = arrangement.rows, arrangement.columns
     finer = min(1.0, parameters.refined_long_side_px / max(view.width_px, view.height_px)) / scale
     if finer > LEAST_FINER and rows and columns:
         small = scaled_view(small, finer)
         rows, columns = refined_lines(image, small, finer, rows, columns, monitor)
-    return facade_grid(facade_id, small, rows, columns)
+    else:
+        finer = 1.0
+    inclined = refined_inclined(image, small, finer, arrangement.inclined)
+    return replace(facade_grid(facade_id, small, rows, columns, inclined), decision=arrangement.decision)
 
 
 def segment_views(
@@ -118,24 +130,36 @@ def segment_views(
     parameters: SegmentationParameters,
     monitor: Monitor,
     facade_id: str,
-) -> FacadeGrid:
+) -> tuple[FacadeGrid, ...]:
     """Find the panels of one facade in several photos at once, through views of the same window of it.
 
-    The grid is that of all views; its rectification and corners are those of the first one. Poses must agree to a pixel
-    of the rectified pictures, for the frames to lie on one another; nothing is straightened.
+    The lines are those of all views together, once for each of them, so that every photo has the corners in its own
+    pixels. The views must agree to a pixel of the rectified pictures (`reconstruction.panels.register`); they are
+    straightened as one.
 
     Raises
     ------
     InputError
-        The views are not of one size.
+        There are no views, or they are not of one size.
     """
-    scale = min(1.0, parameters.long_side_px / max(max(view.width_px, view.height_px) for view in views))
-    small = [scaled_view(view, scale) for view in views]
-    seen = [warp(image, view) for image, view in zip(images, small, strict=True)]
+    scale = min(1.0, parameters.long_side_px / max((max(v.width_px, v.height_px) for v in views), default=1))
+    small: list[Rectification] = [scaled_view(view, scale) for view in views]
+    axes = _fused_axes(images, small, parameters)
     monitor.report("fuse views", 0, 1)
-    picture, valid = fused([grey(picture) for picture, _ in seen], [mask for _, mask in seen])
-    rows, columns = find_grid(Axes.of(picture, None if valid.all() else valid, parameters), parameters, monitor)
-    return facade_grid(facade_id, small[0], rows, columns)
+    rows, columns = find_grid(axes, parameters, monitor)
+    if parameters.straighten and rows and columns:
+        last = straightening_of_grid(axes.down.edges, axes.across.edges, rows, columns)
+        if last is not None:
+            small = [CorrectedView(view, last, view.width_px, view.height_px) for view in small]
+            rows, columns = find_grid(_fused_axes(images, small, parameters), parameters, monitor)
+    return tuple(facade_grid(facade_id, view, rows, columns) for view in small)
+
+
+def _fused_axes(
+    images: Sequence[NDArray[np.uint8]], views: Sequence[Rectification], parameters: SegmentationParameters
+) -> Axes:
+    seen = [warp(image, view) for image, view in zip(images, views, strict=True)]
+    return fused([grey(picture) for picture, _ in seen], [mask for _, mask in seen], parameters)
 
 
 Seen = tuple[Rectification, NDArray[np.uint8], NDArray[np.bool_] | None]
@@ -159,26 +183,3 @@ def _seen(image: NDArray[np.uint8], view: Rectification) -> tuple[NDArray[np.uin
     """Grey rectified picture and where it shows the photo (None: everywhere)."""
     picture, valid = warp(image, view)
     return grey(picture), None if valid.all() else valid
-
-
-def facade_grid(
-    facade_id: str, view: Rectification, rows: tuple[GridLine, ...], columns: tuple[GridLine, ...]
-) -> FacadeGrid:
-    """Panels between lines; cells that the view cannot take back into the photo are missing."""
-    panels, missing = [], []
-    for from_top, (above, below) in enumerate(pairwise(rows)):
-        row = len(rows) - 2 - from_top
-        for column, (left, right) in enumerate(pairwise(columns)):
-            corners = view.to_photo(_corners(left, right, below, above))
-            if not np.isfinite(corners).all():
-                missing.append((row, column))
-                continue
-            confidence = min(line.confidence for line in (above, below, left, right))
-            panels.append(FoundPanel(f"{facade_id}-r{row}c{column}", row, column, corners, confidence))
-    return FacadeGrid(facade_id, view, rows, columns, tuple(panels), tuple(missing))
-
-
-def _corners(left: GridLine, right: GridLine, below: GridLine, above: GridLine) -> Array:
-    x0, x1 = left.position_px + left.width_px / 2, right.position_px - right.width_px / 2
-    y0, y1 = above.position_px + above.width_px / 2, below.position_px - below.width_px / 2
-    return np.array([[x0, y1], [x1, y1], [x1, y0], [x0, y0]])

@@ -13,11 +13,12 @@ if TYPE_CHECKING:
     from groundstation.services.segmentation import ScoreRequest
     from reconstruction.scores.metrics import SetScores, Spread
 
-SETS = ("made-planar", "made-curved", "cmp", "ecp", "offices", "folder")
+SETS = ("made-planar", "made-curved", "made-irregular", "cmp", "ecp", "offices", "folder")
 
 MIN_WIDTH_PX, MAX_WIDTH_PX = 160, 16_000
 
-EPILOG = """Sets: made-planar and made-curved are rendered facades with strong reflections, one for each seed.
+EPILOG = """Sets: made-planar and made-curved are rendered facades with strong reflections, one for each seed;
+made-irregular has inclined lines besides, which cut panels into triangles and trapezoids.
 cmp, ecp and offices are photos of real facades with annotated windows, in the folder --data. folder is your own:
 photos in --images, and in --truth index images of the same names (PNG, 8 or 16 bit: 0 no panel, else its number).
 

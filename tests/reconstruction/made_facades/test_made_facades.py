@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reconstruction.made_facades.cases import STRONG, photo_of, random_case, simple_case, wide_camera
-from reconstruction.made_facades.layout import clip, draw_up
+from reconstruction.made_facades.layout import area, clip, draw_up
 from reconstruction.made_facades.record import Case, Disturbances, Layout
 from reconstruction.made_facades.render import make_facade
 from reconstruction.made_facades.wall import Wall, first_hits
@@ -59,6 +59,9 @@ def test_rays_that_miss_or_look_away_hit_nothing() -> None:
         (Layout(4, 6, missing_profiles=0.3, missing_panels=0.2), 0.0),
         (Layout(3, 6, top="triangles"), 0.0),
         (Layout(3, 6, top="sloped"), 0.0),
+        (Layout(6, 6, top="gable", n_sloped_rows=4), 0.0),
+        (Layout(4, 6, widths="alternating", braces=((0, 0, 4, 6), (4, 1, 0, 5)), brace_width_m=0.2), 0.0),
+        (Layout(3, 6, frame_depth_m=0.0, braces=tuple((0, c, 3, c + 3) for c in range(4))), 0.0),
         (Layout(4, 24, panel_width_m=0.4), 0.05),
     ],
 )
@@ -201,6 +204,28 @@ def test_teeth_are_triangles_and_a_slope_begins_with_one() -> None:
     assert [len(panel.corners_px) for panel in teeth] == [4] * 4 + [3] * 4
     slope = make_facade(simple_case(Layout(2, 4, top="sloped"), intrinsics=SMALL)).panels
     assert [len(panel.corners_px) for panel in slope] == [4] * 4 + [3] + [4] * 3
+
+
+def test_braces_and_their_pieces_fill_the_cells_that_they_cut() -> None:
+    plain, braced = (
+        draw_up(Layout(4, 6, widths="random", braces=braces, brace_width_m=0.1), np.random.default_rng(3))
+        for braces in ((), ((0, 0, 4, 6), (4, 0, 0, 6)))
+    )
+    for row, column in np.ndindex(4, 6):
+        whole = area(plain.corners(row, column))
+        parts = [braced.corners(row, column, part) for part in range(braced.panel_numbers.shape[2])]
+        kept = sum(
+            area(piece) for piece, number in zip(parts, braced.panel_numbers[row, column], strict=True) if number
+        )
+        n_braces = (braced.cell_braces[row, column] >= 0).sum()
+        assert kept == whole if n_braces == 0 else 0.7 * whole < kept < whole
+
+
+def test_a_brace_of_no_width_and_a_slope_of_more_rows_than_there_are_cannot_be_made() -> None:
+    with pytest.raises(ValueError, match="brace_width_m: expected more than 0"):
+        Layout(braces=((0, 0, 1, 1),), brace_width_m=0.0)
+    with pytest.raises(ValueError, match="n_sloped_rows: expected 1 to 4, got 5"):
+        Layout(4, 6, n_sloped_rows=5)
 
 
 def test_missing_panels_belong_neither_to_the_panels_nor_to_the_facade() -> None:
