@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.rectify.surface import FacadeSurface
+from reconstruction.segmentation.cutting import Cut
 
 Array = NDArray[np.float64]
 
@@ -66,6 +67,35 @@ class SurfaceLine:
     n_photos: int
 
 
+@dataclass(frozen=True, slots=True)
+class SurfaceInclined:
+    """An inclined profile on the surface, out of all photos.
+
+    Parameters
+    ----------
+    first_st_m, last_st_m
+        Ends of its middle.
+    sigma_m
+        Standard deviation of its place across its direction, against the lines of the grid.
+    open_side
+        As in `cutting.Cut`, on the surface.
+    n_photos
+        That show it.
+    """
+
+    first_st_m: tuple[float, float]
+    last_st_m: tuple[float, float]
+    width_m: float
+    sigma_m: float
+    confidence: float
+    open_side: int
+    n_photos: int
+
+    def cut(self) -> Cut:
+        """As cells see it."""
+        return Cut(np.array(self.first_st_m), np.array(self.last_st_m), 0.5 * self.width_m, self.open_side)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SolvedPanel:
     """A panel in 3-D.
@@ -75,9 +105,12 @@ class SolvedPanel:
     row, column
         From the bottom row and the left column, from 0.
     corners_enu_m
-        Shape (4, 3): lower left, lower right, upper right, upper left as seen from outside.
+        Shape (4, 3): lower left, lower right, upper right, upper left as seen from outside. Of a triangle the fourth
+        lies in the middle of the longest side; with five corners and more it is the largest quadrilateral among them.
     covariance_m2
         Shape (4, 3, 3), of each corner, ENU.
+    outline_enu_m
+        Shape (k, 3): all corners of a panel that has not four.
     """
 
     id: str
@@ -86,6 +119,7 @@ class SolvedPanel:
     corners_enu_m: Array
     covariance_m2: Array
     confidence: float
+    outline_enu_m: Array | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,6 +134,8 @@ class SolvedFacade:
         From left to right.
     pose_changes
         By the number of a photo: shape (6,), what the adjustment added to its pose, in the order of its covariance.
+    inclined
+        Profiles that cut cells of the grid.
     """
 
     id: str
@@ -108,3 +144,4 @@ class SolvedFacade:
     columns: tuple[SurfaceLine, ...]
     panels: tuple[SolvedPanel, ...]
     pose_changes: dict[int, Array]
+    inclined: tuple[SurfaceInclined, ...] = ()

@@ -5,7 +5,9 @@ Two effects, each with its size in pixels of the rectified picture.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +15,17 @@ from numpy.typing import NDArray
 from planning.effects import Assessment, Decision, Wish, decide
 from reconstruction.cameras import PosedPhoto
 from reconstruction.rectify.fit import SurfaceFit
+from reconstruction.rectify.polynomial import polynomial_view
 from reconstruction.rectify.surface import FacadeSurface
-from reconstruction.rectify.view import SurfaceView, surface_view
+from reconstruction.rectify.view import SurfaceView, TangentView, surface_view
+from reconstruction.segmentation.record import Rectification
 
 Array = NDArray[np.float64]
+
+ViewKind = Literal["auto", "exact", "tangent", "polynomial"]
+"""How a photo is rectified; `auto` leaves it to the scene."""
+
+VIEW_KINDS: tuple[ViewKind, ...] = get_args(ViewKind)
 
 BENT_LINE_PX = 0.5
 """Tolerance of both effects: lines are found to about half a pixel."""
@@ -79,6 +88,26 @@ class Unrolling:
         squeezed_m = half_width_m * (1.0 - float(np.sinc(min(angle, 0.5 * np.pi) / np.pi)))
         size = squeezed_m * scene.px_per_m
         return Assessment(size, f"the window spans {np.degrees(2.0 * angle):.1f} degrees of the cylinder", 0.0)
+
+
+def decide_view(views: Sequence[SurfaceView], kind: ViewKind = "auto") -> Decision:
+    """Whether photos of a facade are unrolled by arc length: the decision of the photo that it changes most."""
+    wish: Wish = "auto" if kind == "auto" else "on" if kind == "exact" else "off"
+    return max((decide(Unrolling(), view, wish) for view in views), key=lambda found: found.size)
+
+
+def drawn_view(view: SurfaceView, kind: ViewKind, unrolling: Decision) -> Rectification:
+    """The view that a photo is rectified by.
+
+    Raises
+    ------
+    InfeasibleError
+        A polynomial is asked for, and too little of the view is seen in the photo.
+    """
+    if unrolling.on or (view.surface.is_flat and kind != "polynomial"):
+        return view
+    flattened = TangentView(view)
+    return polynomial_view(flattened) if kind == "polynomial" else flattened
 
 
 def decide_surface(scene: FittedFacade, wish: Wish = "auto") -> tuple[FacadeSurface, Decision]:

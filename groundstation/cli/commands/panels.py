@@ -9,16 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.commands.site import add_flight, add_place_and_content, import_options
+from groundstation.cli.pose_options import add_pose_arguments, print_refined, refine_wish
 
 if TYPE_CHECKING:
     from groundstation.services.photo_panels import PanelSearch
 
-EPILOG = """The photos' own positions and angles place them; a COLMAP model of the same photos places them better. A
+EPILOG = """The photos' own positions and angles place them; a COLMAP model of the same photos places them better:
+one that is there already (--colmap), or one made of them now (--refine). A
 file NAME.facades.json beside the site says how good every corner is.
 
 examples:
   panels photos/ coarse.obj -o tower.site.json --origin 22.3372,114.2636,62
   panels photos/ tower.site.json -o found.site.json --colmap sparse/0 --photos-per-facade 8
+  panels photos/ coarse.obj -o tower.site.json --origin 22.3372,114.2636,62 --grids corrected/
 """
 
 
@@ -39,9 +42,22 @@ def add_parser(subparsers: Any) -> None:
     add("model", type=Path, metavar="MODEL", help="coarse model: a mesh, a building model, or a site file")
     add("-o", "--out", type=Path, required=True, metavar="SITE", help="site file to write")
     add("--name", help="name of the site (default: the building's, else the file's)")
-    add("--colmap", type=Path, metavar="FOLDER", help="COLMAP model of the photos, for better poses")
-    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
+    add_pose_arguments(parser)
     add("--curvature", choices=("auto", "on", "off"), default="auto", help="take facades for cylinders (default auto)")
+    add(
+        "--view",
+        choices=("auto", "exact", "tangent", "polynomial"),
+        default="auto",
+        help="rectify by arc length, onto the tangent plane, or by the paper's polynomial (default auto: by arc length "
+        "where the tangent plane would squeeze columns)",
+    )
+    add(
+        "--fuse",
+        choices=("auto", "on", "off"),
+        default="auto",
+        help="search a facade's photos together (default auto: where one by one they do not agree)",
+    )
+    add("--grids", type=Path, metavar="DIR", help="panels files of 'segment', corrected by hand, in place of a search")
     add("--photos-per-facade", type=int, default=4, metavar="N", help="photos that are searched (default 4)")
     add("--json", action="store_true", help="print one JSON object instead of text")
     add_parameter_arguments(parser)
@@ -58,8 +74,14 @@ def run(options: argparse.Namespace) -> int:
     from reconstruction.panels.find import FindParameters
 
     with in_words_of_options():
-        parameters = FindParameters(options.photos_per_facade, options.curvature, segmentation=parameters_of(options))
-    wishes = import_options(options)
+        parameters = FindParameters(
+            options.photos_per_facade,
+            options.curvature,
+            options.view,
+            options.fuse,
+            segmentation=parameters_of(options),
+        )
+    wishes, refine = import_options(options), refine_wish(options)
     search = run_job(
         "panels",
         lambda context: find_panel_files(
@@ -70,6 +92,8 @@ def run(options: argparse.Namespace) -> int:
             parameters,
             heights=options.heights,
             colmap=options.colmap,
+            refine=refine,
+            grids=options.grids,
             monitor=context,
         ),
     )
@@ -77,6 +101,7 @@ def run(options: argparse.Namespace) -> int:
         print_json({"site": str(options.out), **panel_search_summary(search)})
         return 0
     _print_search(search, options.out)
+    print_refined(search.refined)
     print_findings(search.findings)
     print_next("plan", options.out)
     return 0
@@ -94,6 +119,7 @@ def _print_search(search: PanelSearch, out: Path) -> None:
             f"  facade {facade['id']}: {counted(facade['panels'], 'panel')} in {rows} and {columns}, from "
             f"{counted(facade['photos'], 'photo')}; corners good to {facade['corner_sigma_m']:.2f} m"
         )
-        print(f"    {summary['effects'][facade['id']]}")
+        for effect in summary["effects"][facade["id"]]:
+            print(f"    {effect}")
     for note in search.notes:
         print(f"note: {note}")

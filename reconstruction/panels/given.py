@@ -1,0 +1,133 @@
+"""Grids that are given, as from a corrected panels file, in place of a search."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from reconstruction.cameras import PosedPhoto
+from reconstruction.panels.facades import Facade
+from reconstruction.panels_file import FileFacade, FileLine, FilePanel, PanelsFile
+from reconstruction.rectify.surface import FacadeSurface
+from reconstruction.segmentation.cells import facade_grid
+from reconstruction.segmentation.record import FacadeGrid, GridLine, Rectification
+
+Array = NDArray[np.float64]
+
+GIVEN_SIGMA_PX = 1.0
+"""Standard deviation of a line that is given: what a hand can place in a photo."""
+
+BESIDE_M = 2.0
+"""Panels of a facade may lie so far beyond what the coarse model knows of it."""
+
+
+def files_by_photo(photos: Sequence[PosedPhoto], files: Mapping[str, PanelsFile]) -> dict[int, PanelsFile]:
+    """Panels files by the number of their photo.
+
+    Parameters
+    ----------
+    files
+        By the name of the photo's file.
+
+    Raises
+    ------
+    InputError
+        A file is about none of the photos, or about a picture of another size.
+    """
+    numbers = {PurePath(photo.name).name: number for number, photo in enumerate(photos)}
+    found = {}
+    for image, record in files.items():
+        number = numbers.get(PurePath(image).name)
+        if number is None:
+            raise InputError(
+                f"panels of photo '{image}' are given, which is none of the {len(photos)} photos that have a pose; "
+                "name the photo's file in its field 'image', or take the panels file out of the folder"
+            )
+        lens = photos[number].intrinsics
+        if (record.width_px, record.height_px) != (lens.width_px, lens.height_px):
+            raise InputError(
+                f"panels of photo '{image}' are given for {record.width_px} x {record.height_px} pixels, but it has "
+                f"{lens.width_px} x {lens.height_px}; find and correct them in the photo itself"
+            )
+        found[number] = record
+    return found
+
+
+def given_grid(
+    record: PanelsFile, photo: PosedPhoto, facade: Facade, view: Rectification, facade_id: str
+) -> FacadeGrid | None:
+    """What a file says about one facade, in a rectified view of it; None where it says nothing.
+
+    The file's own facades are matched by where most of their panels lie. Lines count; panels tell their widths, and
+    cells without a panel are none.
+
+    Raises
+    ------
+    InputError
+        A line of it has no point on the facade.
+    """
+    on_it = [given for given in record.facades if given.panels and _is_on(given, photo, facade)]
+    if not on_it:
+        return None
+    given = max(on_it, key=lambda one: len(one.panels))
+    rows = _lines(given.horizontal_lines, view, 1, _gaps(given, view, 1))
+    columns = _lines(given.vertical_lines, view, 0, _gaps(given, view, 0))
+    made = facade_grid(facade_id, view, rows, columns)
+    kept = {(panel.row, panel.column) for panel in given.panels}
+    panels = tuple(panel for panel in made.panels if (panel.row, panel.column) in kept)
+    cells = {(row, column) for row in range(len(rows) - 1) for column in range(len(columns) - 1)}
+    present = {(panel.row, panel.column) for panel in panels}
+    return FacadeGrid(facade_id, view, rows, columns, panels, tuple(sorted(cells - present)))
+
+
+def _is_on(given: FileFacade, photo: PosedPhoto, facade: Facade) -> bool:
+    middles = np.array([np.mean(panel.corners_px, axis=0) for panel in given.panels])
+    surface: FacadeSurface = facade.fit.surface
+    st = surface.hits(*photo.rays(middles))
+    with np.errstate(invalid="ignore"):
+        inside = ((st >= facade.low_st_m - BESIDE_M) & (st <= facade.high_st_m + BESIDE_M)).all(axis=1)
+    return bool(inside.mean() > 0.5)
+
+
+def _lines(
+    given: Sequence[FileLine], view: Rectification, across: int, widths: Mapping[int, float]
+) -> tuple[GridLine, ...]:
+    usual = float(np.median(list(widths.values()))) if widths else 0.0
+    lines = []
+    for index, line in enumerate(given):
+        places = view.to_rectified(np.array(line.points_px).reshape(-1, 2))[:, across]
+        places = places[np.isfinite(places)]
+        if not len(places):
+            kind = "vertical_lines" if across == 0 else "horizontal_lines"
+            raise InputError(
+                f"{kind}[{index}] of a panels file has no point on the facade; give it points_px, or take the line out"
+            )
+        width = widths.get(index, usual)
+        lines.append(GridLine(float(np.median(places)), width, GIVEN_SIGMA_PX, line.confidence, line.inferred))
+    return tuple(sorted(lines, key=lambda line: line.position_px))
+
+
+def _gaps(given: FileFacade, view: Rectification, across: int) -> dict[int, float]:
+    """Widths of the profiles between panels, by the line's index: what is left between the panels beside it."""
+    ends: dict[tuple[int, int], tuple[float, float]] = {}
+    for panel in given.panels:
+        places = view.to_rectified(np.array(panel.corners_px))[:, across]
+        if len(panel.corners_px) == 4 and np.isfinite(places).all():
+            low, high = np.sort(places).reshape(2, 2).mean(axis=1)
+            ends[_place(panel, given.rows, across)] = float(low), float(high)
+    gaps: dict[int, list[float]] = {}
+    for (along, order), (_, high) in ends.items():
+        beyond = ends.get((along, order + 1))
+        if beyond is not None:
+            gaps.setdefault(order + 1, []).append(max(0.0, beyond[0] - high))
+    return {index: float(np.median(found)) for index, found in gaps.items()}
+
+
+def _place(panel: FilePanel, n_rows: int, across: int) -> tuple[int, int]:
+    """Place of a panel along the lines and across them, from left to right or from top to bottom."""
+    from_top = n_rows - 1 - panel.row
+    return (from_top, panel.column) if across == 0 else (panel.column, from_top)
