@@ -20,7 +20,8 @@ def compile_kernels() -> None:
     photo = PosedPhoto("", Path(), lens, Pose.looking(np.zeros(3), 0.0, 0.0))
     draw_panels(photo, np.array([[[-1.0, 5.0, -1.0], [1.0, 5.0, -1.0], [1.0, 5.0, 1.0], [-1.0, 5.0, 1.0]]]))
     y, x = np.mgrid[:400, :400]
-    grid = np.where((x % 80 < 6) | (y % 100 < 6), 60, 180) + np.random.default_rng(0).integers(0, 9, x.shape)
+    frame = (x % 80 < 6) | (y % 100 < 6) | (np.abs(x - y) < 4)
+    grid = np.where(frame, 60, 180) + np.random.default_rng(0).integers(0, 9, x.shape)
     picture = grid.astype(np.uint8)
     sharpness(picture)
     segment_rectified(picture)

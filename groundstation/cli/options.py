@@ -29,6 +29,7 @@ OPTIONS = {
     "photos_per_facade": "--photos-per-facade",
     "normal_step": "--normal-step",
     "n_points": "--points",
+    "max_image_size_px": "--refine-size",
 }
 """Options by the name that the records' own checks give a value."""
 

@@ -8,7 +8,7 @@ angles, which fix where the model lies. COLMAP's own covariances leave the latte
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +16,17 @@ from scipy import sparse
 
 from planning.progress import QUIET, Monitor
 from reconstruction.cameras import Intrinsics, PosedPhoto
+from reconstruction.colmap.block_inverse import inverse_blocks
 from reconstruction.colmap.camera_models import intrinsics_of
 from reconstruction.colmap.georeference import angle_information, position_covariance
 from reconstruction.colmap.record import ColmapImage, ColmapModel
 
 Array = NDArray[np.float64]
 
-MAX_PHOTOS = 800
-"""The reduced normal matrix is inverted whole: 4800 unknowns take 0.4 GB and about 10 s."""
+STAGE = "estimating accuracy"
+
+CHUNK = 200_000
+"""Image points whose part of the normal matrix is computed at a time: some 200 MB."""
 
 LEAST_SIGMA_PX = 0.5
 """Image points are taken to be no better: their errors go together where the lens model is not perfect."""
@@ -48,40 +51,29 @@ def pose_covariances(
     Returns
     -------
     covariances
-        Empty where there are more than `MAX_PHOTOS` images, or what was measured does not fix them.
+        Empty where what was measured does not fix them.
+
+    Raises
+    ------
+    TooLargeError
+        More than a thousand photos are linked with each other so closely that the work would not fit into memory.
     """
     images = list(model.images.values())
-    if len(images) > MAX_PHOTOS or not images:
+    if not images:
         return {}
-    monitor.report("estimating accuracy", 0, 0)
-    cameras = {camera_id: index for index, camera_id in enumerate(model.cameras)}
+    monitor.report(STAGE, 0, 0)
     lenses = {camera_id: intrinsics_of(camera) for camera_id, camera in model.cameras.items()}
     row_of = {point: row for row, point in enumerate(model.points.ids.tolist())}
-    n_unknowns = 6 * len(images) + len(cameras)
-    observed = [_Observed.of(image, lenses[image.camera_id], model, row_of) for image in images]
-    sigma_px = max(LEAST_SIGMA_PX, _rms_px(observed))
-    blocks, columns, point_blocks, point_rows = [], [], [], []
-    for index, (image, seen) in enumerate(zip(images, observed, strict=True)):
-        own = np.concatenate([6 * index + np.arange(6), [6 * len(images) + cameras[image.camera_id]]])
-        blocks.append(seen.pose / sigma_px)
-        columns.append(np.tile(own, (len(seen.pose), 1)))
-        point_blocks.append(seen.point / sigma_px)
-        point_rows.append(seen.rows)
-    normal = _reduced(
-        np.concatenate(blocks), np.concatenate(columns), np.concatenate(point_blocks), np.concatenate(point_rows),
-        n_unknowns, len(model.points),
-    )  # fmt: skip
-    for index, image in enumerate(images):
-        photo, at = measured[image.name], 6 * index
-        normal[at : at + 3, at : at + 3] += np.linalg.inv(position_covariance(photo))
-        normal[at + 3 : at + 6, at + 3 : at + 6] += angle_information(photo, len(images))
+    observed = []
+    for number, image in enumerate(images):
+        observed.append(_Observed.of(image, lenses[image.camera_id], model, row_of))
+        monitor.report(STAGE, number, len(images))
+    normal = _normal(model, images, observed, monitor) + _stated(images, measured, len(model.cameras))
     try:
-        np.linalg.cholesky(normal)  # what is not fixed by anything must not come out as known
-    except np.linalg.LinAlgError:
+        blocks = inverse_blocks(sparse.csr_array(normal), 6, len(images), monitor)
+    except np.linalg.LinAlgError:  # what is not fixed by anything must not come out as known
         return {}
-    monitor.report("estimating accuracy", 0, 0)
-    whole = np.asarray(np.linalg.inv(normal), np.float64)
-    return {image.name: whole[6 * i : 6 * i + 6, 6 * i : 6 * i + 6].copy() for i, image in enumerate(images)}
+    return {image.name: block for image, block in zip(images, blocks, strict=True)}
 
 
 class _Observed:
@@ -114,30 +106,84 @@ class _Observed:
         return cls(pose, slopes @ rotation, rows, pixels - image.points_px[kept])
 
 
-def _rms_px(observed: list[_Observed]) -> float:
+def _rms_px(observed: Sequence[_Observed]) -> float:
     """Root mean square error of the image points along one axis, by the median, pixels."""
     lengths = np.concatenate([np.linalg.norm(seen.errors_px, axis=1) for seen in observed])
     return float(np.median(lengths)) / math.sqrt(2.0 * math.log(2.0)) if len(lengths) else 0.0
 
 
-def _reduced(
-    blocks: Array, columns: NDArray[np.int64], point_blocks: Array, rows: NDArray[np.int64], n: int, n_points: int
-) -> Array:
-    """Normal matrix of poses and lenses, shape (n, n), without the points (Schur complement)."""
+def _normal(
+    model: ColmapModel, images: Sequence[ColmapImage], observed: Sequence[_Observed], monitor: Monitor
+) -> sparse.csr_array:
+    """Normal matrix of poses, six unknowns each, then of lenses, without the points (Schur complement)."""
+    cameras = {camera_id: index for index, camera_id in enumerate(model.cameras)}
+    n = 6 * len(images) + len(cameras)
+    sigma_px = max(LEAST_SIGMA_PX, _rms_px(observed))
+    own = np.stack(
+        [
+            np.concatenate([6 * i + np.arange(6), [6 * len(images) + cameras[image.camera_id]]])
+            for i, image in enumerate(images)
+        ]
+    )
+    squares = np.stack([np.einsum("kia,kib->ab", seen.pose, seen.pose) for seen in observed]) / sigma_px**2
+    width = own.shape[1]
+    total = sparse.csr_array(
+        (squares.ravel(), (np.repeat(own, width, axis=1).ravel(), np.tile(own, (1, width)).ravel())), shape=(n, n)
+    )
+    rows = np.concatenate([seen.rows for seen in observed])
     order = np.argsort(rows, kind="stable")
-    squares = np.einsum("kia,kib->kab", point_blocks, point_blocks).reshape(-1, 9)
+    of_image = np.repeat(np.arange(len(images)), [len(seen.rows) for seen in observed])[order]
+    rows = rows[order]
+    poses = np.concatenate([seen.pose for seen in observed])[order] / sigma_px
+    points = np.concatenate([seen.point for seen in observed])[order] / sigma_px
+    roots = _roots(points, rows, len(model.points))
+    for part in _parts(rows):
+        monitor.report(STAGE, part.start, len(rows))
+        total = total - _explained(poses[part], points[part], own[of_image[part]], rows[part], roots, n)
+    return total
+
+
+def _roots(points: Array, rows: NDArray[np.int64], n_points: int) -> Array:
+    """Square roots of the inverses of the points' normal matrices, shape (n_points, 3, 3).
+
+    A point without a depth says nothing about it: its pseudo-inverse leaves that direction out.
+    """
+    squares = np.einsum("kia,kib->kab", points, points).reshape(-1, 9)
     stiffness = np.stack([np.bincount(rows, squares[:, i], n_points) for i in range(9)], axis=1).reshape(-1, 3, 3)
     values, vectors = np.linalg.eigh(stiffness)
     good = values > LEAST_STIFFNESS * np.maximum(values[:, 2:], 1e-300)
-    # A point without a depth says nothing about it: its pseudo-inverse leaves that direction out.
-    roots = vectors * np.sqrt(np.where(good, 1.0 / np.where(good, values, 1.0), 0.0))[:, None, :]
-    cross = np.einsum("kia,kib->kab", blocks, np.einsum("kia,kab->kib", point_blocks, roots[rows]))[order]
+    return np.asarray(vectors * np.sqrt(np.where(good, 1.0 / np.where(good, values, 1.0), 0.0))[:, None, :])
+
+
+def _parts(rows: NDArray[np.int64]) -> Iterator[slice]:
+    """Some `CHUNK` image points at a time, all of a point's together; `rows` are sorted."""
+    start = 0
+    while start < len(rows):
+        last = rows[min(start + CHUNK, len(rows)) - 1]
+        stop = int(np.searchsorted(rows, last, side="right"))
+        yield slice(start, stop)
+        start = stop
+
+
+def _explained(
+    poses: Array, points: Array, columns: NDArray[np.int64], rows: NDArray[np.int64], roots: Array, n: int
+) -> sparse.csr_array:
+    """What moving the points takes from the normal matrix, shape (n, n)."""
+    cross = np.einsum("kia,kib->kab", poses, np.einsum("kia,kab->kib", points, roots[rows]))
     width = columns.shape[1]
-    row_index = np.repeat(columns[order].ravel(), 3)
-    column_index = (3 * rows[order][:, None, None] + np.arange(3)[None, None, :] + np.zeros((1, width, 1), int)).ravel()
-    b = sparse.csr_array((cross.ravel(), (row_index, column_index)), shape=(n, 3 * n_points))
-    own = np.einsum("kia,kib->kab", blocks, blocks)
-    a_rows = np.repeat(columns[:, :, None], width, axis=2).ravel()
-    a_columns = np.repeat(columns[:, None, :], width, axis=1).ravel()
-    a = sparse.csr_array((own.ravel(), (a_rows, a_columns)), shape=(n, n))
-    return np.asarray((a - b @ b.T).toarray(), np.float64)
+    local = 3 * (rows - rows[0])
+    row_index = np.repeat(columns.ravel(), 3)
+    column_index = np.tile(local[:, None] + np.arange(3), (1, width)).ravel()
+    shape = (n, int(local[-1]) + 3)
+    b = sparse.csr_array((cross.ravel(), (row_index, column_index)), shape=shape)
+    return sparse.csr_array(b @ b.T)
+
+
+def _stated(images: Sequence[ColmapImage], measured: Mapping[str, PosedPhoto], n_lenses: int) -> sparse.csr_array:
+    """Information of the photos' own positions and angles, as the normal matrix has its unknowns."""
+    blocks: list[Array] = []
+    for image in images:
+        photo = measured[image.name]
+        position = np.asarray(np.linalg.inv(position_covariance(photo)), np.float64)
+        blocks += [position, angle_information(photo, len(images))]
+    return sparse.csr_array(sparse.block_diag([*blocks, *[np.zeros((1, 1))] * n_lenses], format="csr"))

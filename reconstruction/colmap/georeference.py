@@ -30,6 +30,11 @@ N_STEPS = 6
 OUTLIER_SIGMAS = 3.0
 """Angles further off than this lose their weight."""
 
+ADJUSTED_SIGMA_M = 0.02
+ADJUSTED_SIGMA_DEG = 0.1
+"""The best that a bundle adjustment's poses are taken for where nobody computed how good they are, position and angles:
+a tenth of a degree is a pixel or two at the focal lengths of drones, which no adjustment leaves."""
+
 LEAST_SIGMA_M = 0.005
 """Positions are taken to be no better than this: RTK's own standard deviations leave out lever arm and timing."""
 
@@ -66,6 +71,14 @@ class Georeference:
     def rms_m(self) -> float:
         """Root mean square distance of the positions that were used."""
         return float(np.sqrt(np.mean((self.residuals_m[self.is_inlier] ** 2).sum(axis=1))))
+
+    @property
+    def usual_covariance(self) -> Array:
+        """Of every pose, shape (6, 6): as well as the model lies in the site, and no better than adjustments are."""
+        residuals = self.residuals_m[self.is_inlier]
+        spread_m = float(np.sqrt((residuals**2).mean())) if len(residuals) else 0.0
+        position_m = max(ADJUSTED_SIGMA_M, spread_m / math.sqrt(max(1, len(residuals))))
+        return np.diag([position_m**2] * 3 + [math.radians(ADJUSTED_SIGMA_DEG) ** 2] * 3)
 
 
 def georeference(model: ColmapModel, photos: Sequence[PosedPhoto], seed: int = 0) -> Georeference:

@@ -27,6 +27,10 @@ Array = NDArray[np.float64]
 POLL_S = 0.2
 """Time between two looks at whether the user has cancelled."""
 
+BATCH = 8
+"""Photos whose features are found in one call, so that progress can be told in between: reading COLMAP's database while
+it is written to makes COLMAP stop."""
+
 LEAST_PHOTOS = 3
 
 
@@ -86,27 +90,43 @@ class ColmapRun:
         names_of: dict[Intrinsics, list[str]] = {}
         for photo in self.photos:
             names_of.setdefault(photo.intrinsics, []).append(photo.name)
-        for intrinsics, names in names_of.items():
-            reader = self.colmap.ImageReaderOptions()
-            camera = camera_of(intrinsics, 0)
-            numbers = camera.parameters if camera.model != "PINHOLE" else (*camera.parameters, 0.0, 0.0, 0.0, 0.0)
-            reader.camera_model = "OPENCV" if camera.model == "PINHOLE" else camera.model
-            reader.camera_params = ",".join(map(repr, numbers))
-            self._run(
-                "finding features",
-                self.colmap.extract_features,
-                self.database,
-                self.folder,
-                image_names=names,
-                camera_mode=self.colmap.CameraMode.SINGLE,
-                reader_options=reader,
-                extraction_options=options,
-                device=self.colmap.Device.cpu,
-            )
+        found: list[str] = []
+
+        def n_found() -> int:
+            return len(found)
+
+        for number, (intrinsics, names) in enumerate(names_of.items(), 1):
+            reader = self._reader(intrinsics)
+            for start in range(0, len(names), BATCH):
+                batch = names[start : start + BATCH]
+                self._run(
+                    "finding features",
+                    self.colmap.extract_features,
+                    self.database,
+                    self.folder,
+                    n_done=n_found,
+                    n_all=len(self.photos),
+                    image_names=batch,
+                    camera_mode=self.colmap.CameraMode.SINGLE,
+                    reader_options=reader,
+                    extraction_options=options,
+                    device=self.colmap.Device.cpu,
+                )
+                reader.existing_camera_id = number  # COLMAP counts cameras from 1
+                found += batch
         with self.colmap.Database.open(self.database) as database:
             kept = {c.camera_id for c in database.read_all_cameras() if c.model_name == "FULL_OPENCV"}
             self._write_positions(database)
         return kept
+
+    def _reader(self, intrinsics: Intrinsics) -> Any:
+        """How COLMAP reads photos of one camera: with a lens that can bend, and the calibration it starts from."""
+        reader = self.colmap.ImageReaderOptions()
+        camera = camera_of(intrinsics, 0)
+        numbers = camera.parameters if camera.model != "PINHOLE" else (*camera.parameters, 0.0, 0.0, 0.0, 0.0)
+        reader.camera_model = "OPENCV" if camera.model == "PINHOLE" else camera.model
+        reader.camera_params = ",".join(map(repr, numbers))
+        return reader
 
     def _write_positions(self, database: Any) -> None:
         """The photos' positions in the site's frame, in place of those that COLMAP took from EXIF."""
@@ -148,8 +168,17 @@ class ColmapRun:
         options.multiple_models, options.extract_colors = False, True
         options.min_model_size = LEAST_PHOTOS
         options.constant_cameras = fixed_cameras
+        added: list[None] = []
         models = self._run(
-            "building the model", self.colmap.incremental_mapping, self.database, self.folder, self.own, options=options
+            "building the model",
+            self.colmap.incremental_mapping,
+            self.database,
+            self.folder,
+            self.own,
+            n_done=lambda: len(added),
+            n_all=len(self.photos),
+            options=options,
+            next_image_callback=lambda: added.append(None),
         )
         if not models or max(model.num_reg_images() for model in models.values()) < LEAST_PHOTOS:
             raise ReconstructionError(
@@ -177,9 +206,17 @@ class ColmapRun:
         prior_options.alignment_ransac.random_seed = self.parameters.seed
         prior_options.ceres.prior_position_loss_function_type = self.colmap.LossFunctionType.CAUCHY
         adjuster = self.colmap.create_pose_prior_ceres_bundle_adjuster(options, prior_options, config, priors, model)
-        self._run("adjusting", lambda cancellation_token: adjuster.solve())
+        self._run("adjusting all rays", lambda cancellation_token: adjuster.solve())
 
-    def _run(self, stage: str, function: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
+    def _run(
+        self,
+        stage: str,
+        function: Callable[..., Any],
+        *arguments: Any,
+        n_done: Callable[[], int] = lambda: 0,
+        n_all: int = 0,
+        **options: Any,
+    ) -> Any:
         """Call COLMAP in a thread of its own and pass a wish to cancel on to it; it ends after the photo at hand."""
         token = self.colmap.CancellationToken()
         result: list[Any] = []
@@ -195,7 +232,7 @@ class ColmapRun:
         thread.start()
         try:
             while thread.is_alive():
-                self.monitor.report(stage, 0, 0)
+                self.monitor.report(stage, min(n_done(), n_all), n_all)
                 thread.join(POLL_S)
         except BaseException:
             token.cancel()

@@ -14,11 +14,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.progress import QUIET, Monitor
 from reconstruction.cameras import PosedPhoto
 from reconstruction.colmap.accuracy import pose_covariances
+from reconstruction.colmap.block_inverse import TooLargeError
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import Georeference, georeference, in_enu, posed_photos
 from reconstruction.colmap.pycolmap_run import (
@@ -39,8 +43,7 @@ class Refinement:
     Parameters
     ----------
     photos
-        Those that found a place in the model, in the order given; with covariance, unless there are more than
-        `accuracy.MAX_PHOTOS`.
+        Those that found a place in the model, in the order given; with covariance, unless nothing fixes the model.
     model
         In the site's frame.
     georeference
@@ -99,7 +102,7 @@ def refine_poses(
     # The adjustment knows positions alone; the last word on where the model lies is that of positions and angles.
     laid = georeference(model, photos, parameters.seed)
     model = in_enu(model, laid.enu_from_model)
-    covariances = pose_covariances(model, {photo.name: photo for photo in photos}, monitor)
+    covariances, unsure = _covariances(model, laid, photos, monitor)
     times = {photo.name: photo.taken_at for photo in photos}
     found = {photo.name: photo for photo in posed_photos(model, Similarity.identity(), folder, times)}
     refined = tuple(
@@ -112,7 +115,23 @@ def refine_poses(
         if photo.name in found
     )
     left_out = tuple(photo.name for photo in photos if photo.name not in found)
-    return Refinement(refined, model, laid, error_px, left_out, (*laid.findings, *_left_out(left_out, len(photos))))
+    findings = (*laid.findings, *unsure, *_left_out(left_out, len(photos)))
+    return Refinement(refined, model, laid, error_px, left_out, findings)
+
+
+def _covariances(
+    model: ColmapModel, laid: Georeference, photos: Sequence[PosedPhoto], monitor: Monitor
+) -> tuple[dict[str, NDArray[np.float64]], list[Finding]]:
+    """Of every image, by name; all alike where computing them would take too much memory."""
+    try:
+        return pose_covariances(model, {photo.name: photo for photo in photos}, monitor), []
+    except TooLargeError:
+        text = (
+            "the photos are linked with each other too closely for the accuracy of each pose to be computed; all count "
+            "as equally good"
+        )
+        covariances = {image.name: laid.usual_covariance for image in model.images.values()}
+        return covariances, [Finding(Severity.NOTE, "accuracy-estimated", text)]
 
 
 def _as_model(reconstruction: Any, folder: Path) -> ColmapModel:

@@ -23,7 +23,7 @@ from planning.findings import Finding, Severity
 from planning.jit import n_threads
 from planning.mesh import join, write_mesh
 from planning.progress import QUIET, Monitor
-from planning.site import SiteModel
+from planning.site import SiteModel, panel_corners, require_panels
 from reconstruction.cameras import PosedPhoto
 from reconstruction.dataset.effects import HiddenPanels, LensDistortion, PanelsInPhotos
 from reconstruction.dataset.grow import grown_corners
@@ -103,15 +103,16 @@ def prepare(
     Raises
     ------
     InputError
-        There are no photos, the folder is not empty or cannot be written, or none of the photos can be read.
+        The site has no panels, there are no photos, the folder is not empty or cannot be written, or none of the photos
+        can be read.
     """
+    require_panels(model.site)
     parameters = parameters or PrepareParameters()
-    corners = np.array([panel.corners_enu_m for facade in model.site.facades for panel in facade.panels], float)
     if not photos:
         raise InputError("there are no photos with a pose to prepare")
     made = _empty(folder)
     try:
-        return _prepare(photos, model, corners.reshape(-1, 4, 3), folder, parameters, monitor)
+        return _prepare(photos, model, panel_corners(model.site), folder, parameters, monitor)
     except BaseException:
         for name in {part.split("/")[0] for part in FOLDERS} | {"transforms.json", "dataset.json"}:
             _remove(folder / name)

@@ -16,9 +16,11 @@ from numpy.typing import NDArray
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.sections import NOT_SEEN, sections_of
 from planning.findings import Finding, Severity
+from planning.mesh import TriangleMesh
 from planning.plan import Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.progress import QUIET, Monitor
 from reconstruction.cameras import PosedPhoto
+from reconstruction.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 
@@ -124,6 +126,14 @@ def distances_m(model: CoverageModel, photos: Sequence[PosedPhoto]) -> list[floa
         away_m = np.linalg.norm(model.frames.centroids[seen] - photo.pose.position_enu_m, axis=1)
         found.append(float(away_m.min()) if len(away_m) else None)
     return found
+
+
+def distances_to_building_m(building: TriangleMesh, photos: Sequence[PosedPhoto]) -> list[float | None]:
+    """Distance from each photo to a building, straight ahead; None where it looks past it."""
+    places = np.array([photo.pose.position_enu_m for photo in photos]).reshape(-1, 3)
+    ahead = np.array([photo.pose.forward_enu for photo in photos]).reshape(-1, 3)
+    hits = RayCaster(building).cast(places, ahead)
+    return [float(m) if hit else None for m, hit in zip(hits.distance_m, hits.is_hit, strict=True)]
 
 
 def viewpoints_of(photos: Sequence[PosedPhoto]) -> tuple[ViewpointArrays, Array]:

@@ -12,6 +12,7 @@ from groundstation.cli.main import main
 from groundstation.services.planning import plan_site
 from planning.request import PlanRequest
 from planning.scenes import write_scene
+from tests.planning.revision.cases import QUICK
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -66,7 +67,7 @@ def pane(tmp_path_factory):
     """Folder with the smallest site, `site.json`, and a plan of it, `plan.json`; tests must not change it."""
     folder = tmp_path_factory.mktemp("pane")
     site = write_scene("single-panel", folder).rename(folder / "site.json")
-    plan_site(site, PlanRequest(n_views=6, time_budget_s=5.0), folder / "plan.json")
+    plan_site(site, PlanRequest(n_views=6, greedy=QUICK), folder / "plan.json")
     return folder
 
 

@@ -15,6 +15,7 @@ from planning.plan import FlightRules
 from planning.plan_file import read_plan
 from planning.request import PlanRequest
 from planning.scenes import write_scene
+from tests.planning.revision.cases import QUICK
 
 ENDINGS = {
     "dji-kmz": ".kmz",
@@ -30,7 +31,7 @@ def sorties(tmp_path_factory):
     """Folder with a plan of several sorties: a large reserve makes the battery small."""
     folder = tmp_path_factory.mktemp("sorties")
     site = write_scene("roof", folder).rename(folder / "site.json")
-    request = PlanRequest(n_views=24, rules=FlightRules(battery_reserve=0.93), time_budget_s=5.0)
+    request = PlanRequest(n_views=24, rules=FlightRules(battery_reserve=0.93), greedy=QUICK)
     assert len(plan_site(site, request, folder / "plan.json").plan.sorties) > 1
     return folder
 
@@ -40,7 +41,7 @@ def plans_by_profile(tmp_path_factory):
     folder = tmp_path_factory.mktemp("profiles")
     site = write_scene("single-panel", folder)
     for profile_id in profiles():
-        plan_site(site, PlanRequest(n_views=3, profile_id=profile_id, time_budget_s=5.0), folder / f"{profile_id}.json")
+        plan_site(site, PlanRequest(n_views=3, greedy=QUICK, profile_id=profile_id), folder / f"{profile_id}.json")
     return folder
 
 

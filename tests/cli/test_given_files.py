@@ -7,6 +7,7 @@ import pytest
 from groundstation.services.planning import plan_site
 from planning.request import PlanRequest
 from planning.scenes import write_scene
+from tests.planning.revision.cases import QUICK
 
 GIVEN = {
     "project": ("project", "a project"),
@@ -79,8 +80,8 @@ def files(tmp_path_factory):
 
     folder = tmp_path_factory.mktemp("files")
     site = write_scene("single-panel", folder).rename(folder / "site.json")
-    plan_site(site, PlanRequest(n_views=6, time_budget_s=5.0), folder / "plan.json")
-    plan_site(site, PlanRequest(n_views=3, time_budget_s=5.0), folder / "other.json")
+    plan_site(site, PlanRequest(n_views=6, greedy=QUICK), folder / "plan.json")
+    plan_site(site, PlanRequest(n_views=3, greedy=QUICK), folder / "other.json")
     for file_format, ending in (
         (FileFormat.DJI_KMZ, "kmz"),
         (FileFormat.MAVLINK_PLAN, "plan"),

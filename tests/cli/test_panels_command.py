@@ -1,5 +1,7 @@
 """`panels`: photos and a coarse model to a site."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -64,3 +66,42 @@ def test_wrong_input_is_refused_in_words(flight, reflight, tmp_path):
     far = reflight("panels", photos, mesh, "-o", out, "--origin=48,11,500").error
     assert "km from the site" in far
     assert not out.exists()
+
+
+def test_a_corrected_panels_file_stands_in_for_a_search(flight, reflight, tmp_path):
+    folder, made = flight
+    grids, out = tmp_path / "grids", tmp_path / "x.site.json"
+    grids.mkdir()
+    photos, mesh = folder / "photos", folder / "coarse.ply"
+    ask = ("panels", photos, mesh, "-o", out, AT, "--photos-per-facade", 1, "--grids", grids)
+    assert "expected a folder of panels files" in reflight(*ask).error
+    first = sorted(photos.iterdir())[0]
+    assert reflight("segment", first, "-o", grids / "a.json").status == 0
+    content = json.loads((grids / "a.json").read_text())
+    facade = max(content["facades"], key=lambda one: len(one["panels"]))
+    gone = next(panel for panel in facade["panels"] if (panel["row"], panel["column"]) == (0, 0))
+    facade["panels"].remove(gone)
+    facade["missing"].append({"row": 0, "column": 0})
+    (grids / "a.json").write_text(json.dumps(content))
+    done = reflight(*ask, "--json")
+    assert done.status == 0, done
+    assert done.json["panels"] == len(made[0].panels) - 1
+    assert [effect.split(":")[0] for effect in done.json["effects"]["A"]] == [
+        "facade curvature",
+        "unrolling by arc length",
+    ]
+    content["image"] = "other.jpg"
+    (grids / "a.json").write_text(json.dumps(content))
+    assert "photo 'other.jpg'" in reflight(*ask).error
+
+
+def test_how_photos_are_rectified_and_whether_together_is_told(flight, reflight, tmp_path):
+    folder, _ = flight
+    out = tmp_path / "x.site.json"
+    ask = ("panels", folder / "photos", folder / "coarse.ply", "-o", out, AT, "--photos-per-facade", 2)
+    done = reflight(*ask, "--view", "polynomial", "--fuse", "on")
+    assert done.status == 0, done
+    assert "unrolling by arc length: off, as you asked" in done.out
+    assert "photos searched together: on, as you asked" in done.out
+    written = json.loads((tmp_path / "x.facades.json").read_text())["facades"][0]["search"]
+    assert [decision["effect"] for decision in written] == ["unrolling by arc length", "photos searched together"]

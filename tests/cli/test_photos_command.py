@@ -11,6 +11,7 @@ from planning.request import PlanRequest
 from planning.scenes import write_scene
 from planning.site_file import read_site
 from tests.missions.flight.photo_files import Device, write_photos
+from tests.planning.revision.cases import QUICK
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ def flown(tmp_path_factory):
     """Photos of all views of a plan but the last three, and the files of site and plan."""
     folder = tmp_path_factory.mktemp("card")
     office = Office(write_scene("office", folder), folder / "office.plan.json")
-    plan_site(office.site, PlanRequest(n_views=16, time_budget_s=3.0), office.plan)
+    plan_site(office.site, PlanRequest(n_views=16, greedy=QUICK), office.plan)
     views = read_plan(office.plan).viewpoints
     write_photos(folder / "photos", read_site(office.site).site, views[:-3], Device())
     return folder / "photos", office

@@ -82,12 +82,16 @@ def test_tradeoff_writes_a_row_a_setting_and_a_picture(reflight, tmp_path):
     done = reflight("tradeoff", "segment", "-o", tmp_path, "--seeds", 1, "--width", 480, *knobs, "--json")
     assert done.status == 0
     names = [setting["setting"] for setting in done.json["settings"]]
-    assert names == ["as asked", "image size 240", "image size 480", "samples 32", "detector lsd"]
+    assert names == ["as asked", "image size 240", "image size 480", "samples of a row 32", "detector lsd"]
     with (tmp_path / "tradeoff-segment.csv").open(newline="") as file:
         assert [row["setting"] for row in csv.DictReader(file)] == names
     assert (tmp_path / "tradeoff-segment.png").read_bytes().startswith(b"\x89PNG")
     error = reflight("tradeoff", "segment", "-o", tmp_path / "x", "--detectors", "eyes").error
     assert "--detectors: expected gradient" in error
+    error = reflight("tradeoff", "segment", "-o", tmp_path / "x", "--rectified-by", "round").error
+    assert "--rectified-by: expected auto, exact" in error
+    own = ("--set", "cmp", "--data", tmp_path, "--views", "1,2")
+    assert "--views, --rectified-by: the photos of 'cmp'" in reflight("tradeoff", "segment", "-o", tmp_path, *own).error
     assert json.dumps(done.json, allow_nan=False)
 
 

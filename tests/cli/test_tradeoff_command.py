@@ -8,7 +8,7 @@ import pytest
 from groundstation.cli.main import main
 from planning.plan_file import read_plan, write_plan
 from planning.planner import plan_flight
-from planning.request import PlanRequest
+from planning.request import GreedyParameters, PlanRequest
 from planning.scenes import write_scene
 from planning.site_file import read_site
 
@@ -38,7 +38,9 @@ def site(tmp_path_factory):
 @pytest.fixture(scope="module")
 def plan(site, tmp_path_factory):
     path = tmp_path_factory.mktemp("plan") / "roof.plan.json"
-    write_plan(path, plan_flight(read_site(site), PlanRequest(n_views=10, time_budget_s=10.0)).plan)
+    write_plan(
+        path, plan_flight(read_site(site), PlanRequest(n_views=10, greedy=GreedyParameters(400, improve=False))).plan
+    )
     return path
 
 

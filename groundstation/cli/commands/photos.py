@@ -6,9 +6,12 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.pose_options import add_pose_arguments, print_refined, refine_wish
+
 EPILOG = """examples:
   photos /media/card/DCIM tower.site.json --plan tower.plan.json
   photos photos/ tower.site.json --scale 4 --json
+  photos photos/ tower.site.json --refine
 """
 
 
@@ -27,8 +30,7 @@ def add_parser(subparsers: Any) -> None:
     add("photos", type=Path, metavar="PHOTOS", help="folder of photos, as they come from the camera's card")
     add("site", type=Path, metavar="SITE", help="site file with its panels")
     add("--plan", type=Path, metavar="PLAN", help="plan that was flown")
-    add("--colmap", type=Path, metavar="FOLDER", help="COLMAP model of the photos, for better poses")
-    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
+    add_pose_arguments(parser)
     add(
         "--scale",
         type=int,
@@ -41,12 +43,12 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Read, check, print; returns the exit status."""
-    from groundstation.cli.console import counted, print_findings, print_json, run_job
+    from groundstation.cli.console import counted, named_like, print_findings, print_json, print_next, run_job
     from groundstation.services.photo_intake import intake_summary, take_in
     from groundstation.services.units import per_cent
     from reconstruction.photos.quality import QualityLimits
 
-    limits = QualityLimits(scale=options.scale)
+    limits, refine = QualityLimits(scale=options.scale), refine_wish(options)
     intake = run_job(
         "photos",
         lambda context: take_in(
@@ -56,6 +58,7 @@ def run(options: argparse.Namespace) -> int:
             limits,
             heights=options.heights,
             colmap=options.colmap,
+            refine=refine,
             monitor=context,
         ),
     )
@@ -63,9 +66,14 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(summary)
         return 0
+    print_refined(intake.better.refined)
     blur = summary["blur_px_median"]
     sharpness = "" if blur is None else f", blur {blur:.2f} px in the middle"
     print(f"{counted(summary['photos'], 'photo')} with a pose, {summary['usable']} usable{sharpness}")
+    if intake.coverage is None:
+        print_findings(intake.findings)
+        print_next("panels", options.photos, options.site, "-o", named_like(options.site, ".panels.site.json"))
+        return 0
     share = per_cent(summary["covered"], summary["total"], 1)
     print(f"they show {summary['covered']} of {summary['total']} sections ({share:.1f} %)")
     if "planned" in summary:

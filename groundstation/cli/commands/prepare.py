@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.pose_options import add_pose_arguments, refine_wish
+
 EPILOG = """Writes images/, sparse/0 and points.ply as COLMAP and splatting programs read them, transforms.json for
 nerfstudio, and panels/, masks/ and normals/ (docs/file-formats.md, reflight-dataset/1).
 
@@ -29,8 +31,7 @@ def add_parser(subparsers: Any) -> None:
     add("photos", type=Path, metavar="PHOTOS", help="folder of photos, as they come from the camera's card")
     add("site", type=Path, metavar="SITE", help="site file with its panels")
     add("-o", "--out", type=Path, required=True, metavar="FOLDER", help="new folder for the data set")
-    add("--colmap", type=Path, metavar="FOLDER", help="COLMAP model of the photos, for better poses")
-    add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
+    add_pose_arguments(parser)
     add("--normal-step", type=int, default=2, metavar="N", help="photo pixels per pixel of normal maps (default 2)")
     add("--points", type=int, default=100_000, metavar="N", help="points that reconstruction starts from")
     add("--hidden-panels", choices=("auto", "on", "off"), default="auto", help="take out what something hides")
@@ -49,6 +50,7 @@ def run(options: argparse.Namespace) -> int:
         parameters = PrepareParameters(
             options.normal_step, options.points, options.hidden_panels, options.lens_distortion
         )
+    refine = refine_wish(options)
     prepared, findings = run_job(
         "prepare",
         lambda context: prepare_files(
@@ -58,6 +60,7 @@ def run(options: argparse.Namespace) -> int:
             parameters,
             heights=options.heights,
             colmap=options.colmap,
+            refine=refine,
             monitor=context,
         ),
     )

@@ -50,8 +50,10 @@ def run_new(options: argparse.Namespace) -> int:
     from groundstation.services.document import Document
     from groundstation.services.given_files import read_given_site
     from groundstation.services.project import create_project, open_project
+    from groundstation.services.project_facades import facades_beside
 
-    create_project(options.folder, Document(read_given_site(options.site)), name=options.name, site_source=options.site)
+    document = Document(read_given_site(options.site), found_facades=facades_beside(options.site))
+    create_project(options.folder, document, name=options.name, site_source=options.site)
     project = open_project(options.folder)
     _print(project)
     print_next("plan", options.folder / project.record.site, "-o", "plan.json")

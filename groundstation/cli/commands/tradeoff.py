@@ -48,11 +48,13 @@ ROUTE_EPILOG = """examples:
 
 
 SEGMENT_EPILOG = """Sets of photos are those of 'score segmentation'. --width should be that of your photos: sizes
-above it change nothing.
+above it change nothing. Rows are compared only with the paper's posterior (use_posterior), so --samples
+turns it on.
 
 examples:
   tradeoff segment -o tradeoff --seeds 5 --width 5280 --sizes 800,1600,2400,5280
   tradeoff segment -o tradeoff --set made-curved --seeds 20 --sizes 800,1600 --detectors gradient,hough
+  tradeoff segment -o tradeoff --set made-curved --views 1,3,5 --rectified-by exact,tangent,polynomial
 """
 
 
@@ -131,8 +133,24 @@ def _add_segment(kinds: Any) -> None:
     add_parameter_arguments(parser)
     varied = parser.add_argument_group("what varies (lists with commas)").add_argument
     varied("--sizes", type=_counts, default="400,800,1200,1600", metavar="LIST", help="default: %(default)s")
-    varied("--samples", type=_wholes, default="32,128,512,0", metavar="LIST", help="0: all (default: %(default)s)")
+    varied(
+        "--samples",
+        type=_wholes,
+        default="32,128,512,0",
+        metavar="LIST",
+        help="pixels of a row that are compared, with use_posterior on; 0: all (default: %(default)s)",
+    )
     varied("--detectors", type=_words, default=(), metavar="LIST", help="such as gradient,hough,lsd (default: none)")
+    varied(
+        "--views", type=_counts, default=(), metavar="LIST", help="photos searched together, such as 1,3,5; made sets"
+    )
+    varied(
+        "--rectified-by",
+        type=_words,
+        default=(),
+        metavar="LIST",
+        help="such as exact,tangent,polynomial (default: none); made sets",
+    )
 
 
 def _add_output(parser: argparse.ArgumentParser) -> None:
@@ -325,7 +343,9 @@ def run_segment(options: argparse.Namespace) -> int:
     from reconstruction.scores.tradeoff import SegmentVariants, variant_rows
 
     try:
-        variants = SegmentVariants(options.sizes, options.samples, options.detectors)
+        variants = SegmentVariants(
+            options.sizes, options.samples, options.detectors, options.views, options.rectified_by
+        )
     except ValueError as error:
         raise InputError(str(error)) from error
     request = score_request_of(argparse.Namespace(**{**vars(options), "samples": None}))
@@ -335,9 +355,10 @@ def run_segment(options: argparse.Namespace) -> int:
         print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), "settings": rows})
         return 0
     print(f"{made.runs[0].scores.n_panels} panels in {rows[0]['photos']} photos")
-    print(f"  {'setting':<22}{'s a photo':>10}{'mIoU':>9}{'worst':>9}{'missed':>8}")
+    print(f"  {'setting':<24}{'s a photo':>10}{'mIoU':>9}{'worst':>9}{'missed':>8}")
     for row in rows:
         single, worst = row["individual_miou"], row["individual_miou_worst"]
-        print(f"  {row['setting']:<22}{row['seconds']:>10.3f}{single:>9.4f}{worst:>9.4f}{row['missed']:>8}")
+        off = "" if row["view_error_px"] is None else f"  off by up to {row['view_error_px']:.2f} px in the photo"
+        print(f"  {row['setting']:<24}{row['seconds']:>10.3f}{single:>9.4f}{worst:>9.4f}{row['missed']:>8}{off}")
     print(f"{made.csv_path}\n{made.picture_path}")
     return 0

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from reconstruction.cameras import Intrinsics
-from reconstruction.colmap import accuracy
 from reconstruction.colmap.accuracy import LEAST_SIGMA_PX, pose_covariances
 from reconstruction.colmap.camera_models import camera_of
 from tests.reconstruction.colmap.models import LENS, covariance, model, photos, turned
@@ -85,7 +84,7 @@ def test_errors_of_the_image_points_count():
     assert 0.9 < ratio / (2.0 / LEAST_SIGMA_PX) < 1.1
 
 
-def test_what_nothing_fixes_is_not_told_as_known(monkeypatch):
+def test_what_nothing_fixes_is_not_told_as_known():
     posed = photos(6, rows=2)
     found = model(posed, 40)
     loose = replace(
@@ -93,8 +92,6 @@ def test_what_nothing_fixes_is_not_told_as_known(monkeypatch):
     )
     assert pose_covariances(loose, measured(posed)) == {}
     assert pose_covariances(replace(found, images={}), measured(posed)) == {}
-    monkeypatch.setattr(accuracy, "MAX_PHOTOS", 5)
-    assert pose_covariances(found, measured(posed)) == {}
 
 
 def test_points_without_depth_do_no_harm():

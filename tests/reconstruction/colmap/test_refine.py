@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 
 from planning.errors import InputError, OperationCancelled
+from planning.progress import QUIET
 from reconstruction.cameras import Intrinsics, PosedPhoto
+from reconstruction.colmap import block_inverse
 from reconstruction.colmap.folder import read_model
-from reconstruction.colmap.georeference import angle_between_deg, posed_photos
-from reconstruction.colmap.refine import RefineParameters, refine_poses
+from reconstruction.colmap.georeference import angle_between_deg, georeference, posed_photos
+from reconstruction.colmap.refine import RefineParameters, _covariances, refine_poses
 from reconstruction.colmap.similarity import Similarity
-from tests.reconstruction.colmap.models import covariance, photos, turned
+from tests.reconstruction.colmap.models import covariance, model, photos, turned
 
 UPRIGHT = Similarity(1.0, np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]), np.zeros(3))
 """The reference model has y down; its unit is taken for a metre."""
@@ -71,6 +73,7 @@ def test_refined_poses_meet_the_reference(folder):
     assert np.mean(in_sigmas) < 3.0 * 3.0  # three axes; errors of neighbours go together
     assert np.mean(turned_sigmas) < 3.0 * 3.0
     assert len(found.model.points) > 1000
+    assert len(found.model.cameras) == 1  # of photos in several batches
 
 
 @pytest.mark.slow
@@ -99,6 +102,16 @@ def test_a_refinement_can_be_cancelled(folder):
     with pytest.raises(OperationCancelled):
         refine_poses(start(folder, 4)[0], folder, RefineParameters(max_image_size_px=400), Cancelling())
     assert set(Cancelling.stages) == {"finding features"}
+
+
+def test_too_many_photos_that_are_linked_count_as_equally_good(monkeypatch):
+    monkeypatch.setattr(block_inverse, "MAX_SEGMENT", 12)
+    posed = photos(9)
+    found = model(posed)
+    covariances, said = _covariances(found, georeference(found, posed), posed, QUIET)
+    assert [finding.code for finding in said] == ["accuracy-estimated"]
+    assert set(covariances) == {photo.name for photo in posed}
+    assert len({known.tobytes() for known in covariances.values()}) == 1
 
 
 def test_without_pycolmap_the_message_says_what_to_install(monkeypatch):

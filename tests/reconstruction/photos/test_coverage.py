@@ -14,11 +14,18 @@ from planning.catalogue import profile
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.sections import NOT_SEEN, SectionGrid, panel_frames
 from planning.evaluate import coverage_counts
+from planning.mesh import box_mesh, empty_mesh
 from planning.occlusion import line_of_sight
 from planning.plan import Viewpoint, viewpoint_arrays
 from planning.site import panel_corners
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.photos.coverage import achieved_coverage, distances_m, photo_sections, viewpoints_of
+from reconstruction.photos.coverage import (
+    achieved_coverage,
+    distances_m,
+    distances_to_building_m,
+    photo_sections,
+    viewpoints_of,
+)
 from tests.planning.plan_cases import kiosk, solid_triangles
 
 CAMERA = profile("m3e").camera
@@ -117,3 +124,18 @@ def test_distances_are_to_the_nearest_panel_in_the_picture():
     facing, away = distances_m(model(), both)
     assert facing == pytest.approx(8.0, abs=1e-6)
     assert away is None
+
+
+def test_distance_to_a_building_is_that_straight_ahead():
+    building = box_mesh(np.array([-10.0, 0.0, 0.0]), np.array([10.0, 8.0, 30.0]))
+    shots = [
+        photo(Viewpoint("north", (0.0, -20.0, 10.0), 0.0, 0.0)),
+        photo(Viewpoint("aslant", (0.0, -20.0, 25.0), 0.0, -30.0)),
+        photo(Viewpoint("south", (0.0, -20.0, 10.0), 180.0, 0.0)),
+    ]
+    straight, aslant, past = distances_to_building_m(building, shots)
+    assert straight == pytest.approx(20.0, abs=1e-4)
+    assert aslant == pytest.approx(20.0 / np.cos(np.radians(30.0)), abs=1e-4)
+    assert past is None
+    assert distances_to_building_m(empty_mesh(), shots) == [None] * 3
+    assert distances_to_building_m(building, []) == []

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -14,7 +16,8 @@ from reconstruction.made_facades.render import make_facade
 from reconstruction.scores.metrics import score_overlaps
 from reconstruction.scores.overlaps import pixel_overlaps
 from reconstruction.scores.raster import found_index, found_region, index_image
-from reconstruction.segmentation.record import FacadeGrid, FoundPanel, GridLine, Segmentation
+from reconstruction.segmentation.cells import facade_grid
+from reconstruction.segmentation.record import FacadeGrid, FoundPanel, GridLine, InclinedLine, Segmentation
 from reconstruction.segmentation.views import WholePicture
 
 coordinates = st.floats(-20.0, 60.0, allow_subnormal=False)
@@ -74,6 +77,23 @@ def test_missing_cell_is_a_hole_in_the_region() -> None:
     assert not region[20, 20]
     assert region[44, 20]
     assert region.sum() == 76 * 52 - 24 * 24
+
+
+def test_region_runs_through_under_a_brace_and_ends_at_an_inclined_edge() -> None:
+    facade = grid().facades[0]
+    brace = InclinedLine((12.0, 10.0), (84.0, 58.0), 4.0)
+    regions, panes = [], []
+    for line in (brace, replace(brace, open_side=1)):
+        cut = facade_grid("A", facade.rectification, facade.rows, facade.columns, (line,))
+        found = Segmentation("photo", 100, 80, (cut,))
+        regions.append(found_region(found))
+        panes.append((found_index(found) > 0).sum())
+    assert regions[0].sum() == 76 * 52
+    assert panes[1] < panes[0] < 6 * 400
+    # A right-angled triangle with sides of 72 and 48 px and the frames around it.
+    assert 0.5 * 72 * 48 < regions[1].sum() < 0.5 * 78 * 54 + 4 * 80
+    assert regions[0][20, 60]
+    assert not regions[1][20, 60]
 
 
 @pytest.mark.parametrize("shift_px", [0.0, 0.5, 2.0])
