@@ -28,13 +28,14 @@ def phrasebook() -> Phrasebook:
         photos,
         plan,
         project,
+        refine,
         report,
         site,
         site_import,
         stages,
     )
 
-    tables = (dji, fly, insight, mission, parts, photos, plan, project, report, site, site_import, stages)
+    tables = (dji, fly, insight, mission, parts, photos, plan, project, refine, report, site, site_import, stages)
     return Phrasebook(source for table in tables for source in table.SENTENCES)
 
 

@@ -27,6 +27,7 @@ from groundstation.services.units import UnitSystem
 from planning.errors import InputError
 from planning.request import PlanRequest
 from planning.scenes import write_scene
+from planning.site import require_panels
 
 SIZES_PX = ((1280, 720), (1920, 1080))
 
@@ -72,14 +73,14 @@ def take_screenshots(folder: Path, site: Path | None = None, sizes_px: tuple[tup
     Raises
     ------
     InputError
-        The site cannot be read, or the folder not written.
+        The site cannot be read or has no panels, or the folder not written.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder}: this folder cannot be made ({error.strerror or error}); name another") from error
     if site is not None:
-        open_site(site)
+        require_panels(open_site(site).site)
     application = QApplication.instance() or QApplication(["reflight"])
     assert isinstance(application, QApplication)
     n_pictures = 0
@@ -128,6 +129,7 @@ class _Photographer(QObject):
         self._fly()
         self._error()
         self._looks()
+        self._photos()
         desk.window.close()
         desk.close()
         return self._n_pictures
@@ -305,6 +307,11 @@ class _Photographer(QObject):
                 self._wait_until_idle()
                 self._take(f"{name}-{tab}")
         desk.choose(language=Language.ENGLISH)
+
+    def _photos(self) -> None:
+        from groundstation.gui.screenshots_photos import photo_states
+
+        photo_states(self._desk, self._scratch, self._take, self._wait_until_idle)
 
     # The camera
 

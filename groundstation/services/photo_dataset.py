@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.services.given_files import read_given_site
-from groundstation.services.photo_poses import better_poses
+from groundstation.services.photo_poses import RefineWish, better_poses, still_true
 from planning.findings import Finding
 from planning.photo_files.folder import read_photos
 from planning.photo_files.places import PhotoHeights
@@ -23,6 +23,7 @@ def prepare_files(
     *,
     heights: PhotoHeights = "auto",
     colmap: Path | None = None,
+    refine: RefineWish | None = None,
     monitor: Monitor = QUIET,
 ) -> tuple[PreparedData, tuple[Finding, ...]]:
     """Write the data set of a folder of photos; the second value are findings about all of them.
@@ -30,14 +31,14 @@ def prepare_files(
     Raises
     ------
     InputError
-        Photos, site or COLMAP model cannot be used, or the data set cannot be written.
+        Photos, site or COLMAP model cannot be used, poses cannot be refined, or the data set cannot be written.
     """
     model = read_given_site(site)
     read = read_photos(folder, monitor)
     posed = pose_photos(read.photos, model.site, folder, heights=heights)
-    photos, findings = better_poses(posed, colmap, folder)
-    prepared = prepare(photos, model, out, parameters, monitor)
-    return prepared, (*read.findings, *posed.findings, *findings, *prepared.findings)
+    better = better_poses(posed, folder, colmap, refine, monitor)
+    prepared = prepare(better.photos, model, out, parameters, monitor)
+    return prepared, (*read.findings, *still_true(posed.findings, better), *better.findings, *prepared.findings)
 
 
 def prepared_summary(prepared: PreparedData) -> dict[str, Any]:

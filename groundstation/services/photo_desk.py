@@ -125,5 +125,5 @@ def with_found_panels(model: SiteModel, draft: PanelDraft) -> SiteModel:
         raise ValueError(f"expected a solved draft, got corrections of {sorted(draft.unsolved)}")
     facades = tuple(site_facade(one) for one in draft.found.facades if one.panels)
     if not facades:
-        raise InputError("no panel is left; a site needs at least one: put one back before these panels are used")
+        raise InputError("no panel is left: put one back before these panels are used")
     return with_site(model, replace(model.site, facades=facades))

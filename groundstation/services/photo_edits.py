@@ -18,8 +18,8 @@ from planning.errors import InputError
 from reconstruction.cameras import PosedPhoto
 from reconstruction.panels.adjustment import moved_pose
 from reconstruction.panels.record import Axis
+from reconstruction.segmentation.cells import facade_grid
 from reconstruction.segmentation.record import FacadeGrid, GridLine
-from reconstruction.segmentation.segment import facade_grid
 
 Array = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def remove_line(draft: PanelDraft, place: GridPlace, axis: Axis, index: int) -> 
 
 
 def set_panel(draft: PanelDraft, place: GridPlace, row: int, column: int, *, is_panel: bool) -> PanelDraft:
-    """With a cell of a facade's grid taken for a panel, or for none."""
+    """With a cell of a facade's grid taken for a panel, or for none; one that is cut stands for all its pieces."""
     middle = np.array(cell_middle(draft.grid(place), row, column))
     grids = dict(draft.found.grids)
     for other in _same_facade(draft, place):
@@ -207,7 +207,8 @@ def _remade(grid: FacadeGrid, rows: tuple[GridLine, ...], columns: tuple[GridLin
 def _made(
     grid: FacadeGrid, rows: tuple[GridLine, ...], columns: tuple[GridLine, ...], missing: Sequence[tuple[int, int]]
 ) -> FacadeGrid:
-    made = facade_grid(grid.id, grid.rectification, rows, columns)
+    """Panels between lines, cut by the inclined ones that were found."""
+    made = facade_grid(grid.id, grid.rectification, rows, columns, grid.inclined)
     cells = {*made.missing, *missing}
     panels = tuple(panel for panel in made.panels if (panel.row, panel.column) not in cells)
     return replace(made, panels=panels, missing=tuple(sorted(cells)))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.given_files import FileKind, kind_of, read_given_site
-from groundstation.services.photo_poses import better_poses
+from groundstation.services.photo_poses import RefinedOutcome, RefineWish, better_poses, refined_summary, still_true
 from groundstation.services.project_file import check_not_index
 from planning.errors import InputError
 from planning.findings import Finding
@@ -28,14 +28,19 @@ from planning.site_import.options import ImportOptions
 from planning.site_import.output import write_imported_site
 from planning.site_import.source import SourceModel
 from reconstruction.cameras import PosedPhoto
+from reconstruction.panels.accuracy import facades_path
 from reconstruction.panels.facades_file import facades_bytes
 from reconstruction.panels.find import FindParameters, FoundPanels, find_panels
 from reconstruction.panels.record import SolvedFacade
+from reconstruction.panels_file import read_panels_folder
 from reconstruction.photos.decode import colour_picture
 from reconstruction.photos.poses import pose_photos
 
 CORNER_DECIMALS = 4
 """0.1 mm, so that the file reads back as it was."""
+
+STANDING_OUT_M = 5e-4
+"""Three times what rounding moves a corner against the line between its neighbours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +64,8 @@ class PanelSearch:
         That were given a pose, in the order that `found` counts them.
     notes
         About the coarse model and the new site.
+    refined
+        What refining the poses has brought, where it was asked for.
     """
 
     model: SiteModel
@@ -66,6 +73,7 @@ class PanelSearch:
     photos: tuple[PosedPhoto, ...]
     notes: tuple[str, ...]
     findings: tuple[Finding, ...]
+    refined: RefinedOutcome | None = None
 
 
 def find_panel_files(
@@ -77,6 +85,8 @@ def find_panel_files(
     *,
     heights: PhotoHeights = "auto",
     colmap: Path | None = None,
+    refine: RefineWish | None = None,
+    grids: Path | None = None,
     monitor: Monitor = QUIET,
 ) -> PanelSearch:
     """Find the panels in a folder of photos and write them as a site, with a facades file beside it.
@@ -95,30 +105,36 @@ def find_panel_files(
         Which heights of the photos count.
     colmap
         Folder of a COLMAP model with better poses of the same photos.
+    refine
+        Whether poses are to be refined.
+    grids
+        Folder of panels files, such as corrected ones, in place of a search of their photos.
 
     Raises
     ------
     InputError
-        The photos, the model or the COLMAP model cannot be used, or the site cannot be written.
+        The photos, the model, the COLMAP model or a panels file cannot be used, or the site cannot be written.
     InfeasibleError
         No panels were found.
     """
     options = options or ImportOptions()
     check_not_index(out)
     check_output(out, [model])
+    given = None if grids is None else read_panels_folder(grids)
     read = read_photos(folder, monitor)
     site_model = read_given_site(model) if kind_of(model) is FileKind.SITE else None
     without_panels = replace(options, panels_required=False)
     source = None if site_model is not None else read_source(model, without_panels, monitor)
     place, mesh = _place(model, site_model, source, options)
     posed = pose_photos(read.photos, place, folder, heights=heights)
-    photos, findings = better_poses(posed, colmap, folder)
+    better = better_poses(posed, folder, colmap, refine, monitor)
+    photos = better.photos
     metadata = {photo.name: data for photo, data in zip(posed.photos, posed.metadata, strict=True)}
 
     def load(photo: PosedPhoto) -> NDArray[np.uint8]:
         return colour_picture(metadata[photo.name])
 
-    found = find_panels(photos, mesh, load, parameters, monitor)
+    found = find_panels(photos, mesh, load, parameters, monitor, given)
     facades = tuple(site_facade(facade) for facade in found.facades)
     notes: tuple[str, ...] = ()
     if site_model is not None:
@@ -128,12 +144,14 @@ def find_panel_files(
         imported = site_of_facades(model, source, facades, options, source.notes)
         written, notes = write_imported_site(out, imported, model), imported.notes
     write_atomically(facades_path(out), facades_bytes(found, photos))
-    return PanelSearch(written, found, photos, notes, (*read.findings, *posed.findings, *findings, *found.findings))
-
-
-def facades_path(site: Path) -> Path:
-    """File beside a site file with surfaces, lines and covariances of its facades."""
-    return site.with_name(f"{site.name.removesuffix('.json').removesuffix('.site')}.facades.json")
+    return PanelSearch(
+        written,
+        found,
+        photos,
+        notes,
+        (*read.findings, *still_true(posed.findings, better), *better.findings, *found.findings),
+        better.refined,
+    )
 
 
 def site_facade(facade: SolvedFacade) -> Facade:
@@ -159,8 +177,12 @@ def panel_search_summary(search: PanelSearch) -> dict[str, Any]:
             }
             for facade in facades
         ],
-        "effects": {name: str(decision) for name, decision in search.found.decisions.items()},
+        "effects": {
+            name: [str(curvature), *map(str, search.found.search_decisions.get(name, ()))]
+            for name, curvature in search.found.decisions.items()
+        },
         "notes": list(search.notes),
+        **({} if search.refined is None else {"refined": refined_summary(search.refined)}),
     }
 
 
@@ -170,6 +192,16 @@ def _usual_sigma_m(facade: SolvedFacade) -> float:
 
 
 def _corners(corners_enu_m: NDArray[np.float64]) -> tuple[Vec3, Vec3, Vec3, Vec3]:
+    """Rounded corners, shape (4, 3); one on the line between its neighbours, as a triangle has, is let stand out.
+
+    Rounding would else turn it inwards, and panels are convex.
+    """
+    before, following, opposite = (np.roll(corners_enu_m, by, axis=0) for by in (1, -1, 2))
+    chords = following - before
+    off_m = np.linalg.norm(np.cross(chords, corners_enu_m - before), axis=1) / np.linalg.norm(chords, axis=1)
+    outwards = corners_enu_m - opposite
+    outwards = outwards / np.linalg.norm(outwards, axis=1, keepdims=True)
+    corners_enu_m = corners_enu_m + np.where(off_m < STANDING_OUT_M, STANDING_OUT_M, 0.0)[:, None] * outwards
     a, b, c, d = (
         (round(float(x), CORNER_DECIMALS), round(float(y), CORNER_DECIMALS), round(float(z), CORNER_DECIMALS))
         for x, y, z in corners_enu_m

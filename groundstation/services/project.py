@@ -11,6 +11,7 @@ from pathlib import Path
 import msgspec
 
 from groundstation.services.document import Document
+from groundstation.services.project_facades import facades_to_write, read_project_facades
 from groundstation.services.project_file import (
     FOLDERS,
     PlanRecord,
@@ -84,7 +85,11 @@ def open_project(path: Path) -> OpenedProject:
     current = record.current_plan_id if record.current_plan_id in ids else (ids[-1] if ids else "")
     request, found = read_request(record.request, "the next plan")
     notes += found
-    document = Document(site, tuple(entries), current, PlanRequest() if request is None else request)
+    facades, found = read_project_facades(folder, record)
+    notes += found
+    document = Document(
+        site, tuple(entries), current, PlanRequest() if request is None else request, found_facades=facades
+    )
     return OpenedProject(folder, record.name or folder.resolve().name, document, record, tuple(notes), index.version)
 
 
@@ -181,6 +186,8 @@ def save_project(folder: Path, document: Document, *, name: str = "", site_sourc
     sources = [source for source in (site_source, document.site_source) if source is not None]
     site = None if document.site is None else site_to_write(folder, document.site, before, sources)
     files = {} if site is None else dict(site.files)
+    facades = facades_to_write(folder, "" if site is None else site.file, document.found_facades, before)
+    files |= facades.files
     plans: list[PlanRecord] = []
     for entry in document.plans:
         plan, content = plan_file(folder, entry, before, {plan.file for plan in plans})
@@ -194,6 +201,8 @@ def save_project(folder: Path, document: Document, *, name: str = "", site_sourc
         plans=tuple(plans),
         current_plan_id=document.current_plan_id,
         request=msgspec.to_builtins(document.request),
+        facades=facades.file,
+        facades_sha256=facades.sha256,
     )
     write_project(folder, present, record, files, site)
     return document if site is None or site.model is document.site else replace(document, site=site.model)

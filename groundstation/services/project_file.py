@@ -55,7 +55,10 @@ class PlanRecord:
 
 @dataclass(frozen=True, slots=True)
 class ProjectRecord:
-    """The content of project.json; `site` is empty for a project that has no site yet."""
+    """The content of project.json.
+
+    `site` is empty for a project that has no site yet, `facades` for one whose panels were not found in photos.
+    """
 
     name: str = ""
     site: str = ""
@@ -63,10 +66,13 @@ class ProjectRecord:
     plans: tuple[PlanRecord, ...] = ()
     current_plan_id: str = ""
     request: dict[str, Any] | None = None
+    facades: str = ""
+    facades_sha256: str = ""
 
     def __post_init__(self) -> None:
-        if self.site:
-            check_inside(self.site, "site")
+        for file, name in ((self.site, "site"), (self.facades, "facades")):
+            if file:
+                check_inside(file, name)
         for values, what in (
             ([plan.id for plan in self.plans], "id"),
             ([plan.file.casefold() for plan in self.plans], "file"),
@@ -81,7 +87,8 @@ class ProjectRecord:
 
     def checksums(self) -> dict[str, str]:
         """SHA-256 by file, of those that have one."""
-        files = [(self.site, self.site_sha256), *((plan.file, plan.sha256) for plan in self.plans)]
+        files = [(self.site, self.site_sha256), (self.facades, self.facades_sha256)]
+        files += [(plan.file, plan.sha256) for plan in self.plans]
         return {file: sha256 for file, sha256 in files if file and sha256}
 
 

@@ -142,7 +142,7 @@ def _unused(folder: Path, present: ProjectIndex, record: ProjectRecord, meshes: 
     """
     if present.version != VERSION:
         return []
-    kept = {record.site, *(plan.file for plan in record.plans)}
+    kept = {record.site, record.facades, *(plan.file for plan in record.plans)}
     own = {
         file: folder / file
         for file, sha256 in present.record.checksums().items()

@@ -13,7 +13,7 @@ from planning.errors import InputError
 from planning.json_file import check_output
 from planning.progress import QUIET, Monitor
 from reconstruction.made_facades.cases import wide_camera
-from reconstruction.panels_file import write_panels
+from reconstruction.panels_file import panels_record, write_panels
 from reconstruction.scores.annotated import READERS
 from reconstruction.scores.metrics import SetScores
 from reconstruction.scores.pictures import read_picture, write_picture
@@ -75,7 +75,7 @@ def segment_file(
     started = time.perf_counter()
     found = segment_image(picture, whole_view(picture) if is_rectified else None, parameters, monitor, image.name)
     seconds = time.perf_counter() - started
-    write_panels(out, found)
+    write_panels(out, panels_record(found))
     return SegmentedPhoto(found, seconds)
 
 
@@ -173,8 +173,13 @@ def save_photos(request: ScoreRequest, out: Path, monitor: Monitor = QUIET) -> i
     return n_done
 
 
-def photo_set(request: ScoreRequest) -> PhotoSet:
+def photo_set(request: ScoreRequest, n_beside: int = 0) -> PhotoSet:
     """The photos that a request is about.
+
+    Parameters
+    ----------
+    n_beside
+        More photos of each facade; made sets only.
 
     Raises
     ------
@@ -184,7 +189,7 @@ def photo_set(request: ScoreRequest) -> PhotoSet:
     name = request.set_name
     if name in MADE_SETS:
         camera = wide_camera(request.width_px, round(0.75 * request.width_px))
-        return made_set(name, request.n_seeds, camera, EXTENT_MARGIN_M if request.is_extent_known else None)
+        return made_set(name, request.n_seeds, camera, EXTENT_MARGIN_M if request.is_extent_known else None, n_beside)
     if name in READERS:
         if request.data is None:
             raise InputError(f"--set {name}: needs the folder of its annotated photos; name it with --data")
@@ -215,7 +220,12 @@ def segment_tradeoff(
     InputError
         As `photo_set`, or the folder cannot be written into.
     """
-    photos = photo_set(request)
+    if request.set_name not in MADE_SETS and (variants.n_views or variants.view_kinds):
+        raise InputError(
+            f"--views, --rectified-by: the photos of '{request.set_name}' have no poses, which both need; take a made "
+            f"set: {', '.join(MADE_SETS)}"
+        )
+    photos = photo_set(request, max(variants.n_views, default=1) - 1)
     base = request.parameters or SegmentationParameters()
     with output_folder(out) as folder:
         runs = run_variants(photos, base, variants, monitor)

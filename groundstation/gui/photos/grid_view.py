@@ -1,31 +1,45 @@
-"""A photo, or its rectified view, with the found grid over it, and the tools that correct it."""
+"""The tools and keys that correct a grid over its photo."""
 
 from __future__ import annotations
 
 from enum import Enum, auto
 
 import numpy as np
-from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QPointF, Qt, Signal
-from PySide6.QtGui import QColor, QHelpEvent, QMouseEvent, QPainter, QPen, QPolygonF
+from PySide6.QtCore import QEvent, QPointF, Qt, QTimer, Signal
+from PySide6.QtGui import QFocusEvent, QHelpEvent, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from groundstation.gui.photos.picture_view import PictureView
-from groundstation.gui.theme import colours
-from groundstation.services.photo_grids import cell_at, line_near, lines_of, room_for_line
-from reconstruction.panels.record import Axis
-from reconstruction.segmentation.record import FacadeGrid, GridLine
-
-Array = NDArray[np.float64]
+from groundstation.gui.photos.grid_picture import GridPicture
+from groundstation.services.photo_grids import (
+    LinePlace,
+    cell_at,
+    cell_beside,
+    following_line,
+    line_near,
+    lines_of,
+    panels_in,
+    place_beside,
+    room_for_line,
+)
+from reconstruction.segmentation.record import FacadeGrid
 
 GRAB_PX = 12.0
 """On the screen; a finger on a large picture hits that well enough, for lines are far apart there."""
 
-SURE, UNSURE = 0.9, 0.6
-"""Confidence from where a panel is drawn as sure, and below which as doubtful. Our choice."""
+STEP_PX, LARGE_STEP_PX = 1.0, 10.0
+"""How far one press of an arrow key moves a line, in the rectified view; with Shift."""
 
-POINTS = 17
-"""Along a line: enough for the bend of any lens on the screen."""
+LEAST_MOVE_PX = 0.01
+
+PUT_DOWN_MS = 700
+"""After the last press of an arrow key the line stays where it is: the facade is not solved anew for every pixel."""
+
+ARROWS = {
+    Qt.Key.Key_Left: (-1, 0),
+    Qt.Key.Key_Right: (1, 0),
+    Qt.Key.Key_Up: (0, -1),
+    Qt.Key.Key_Down: (0, 1),
+}
 
 
 class Tool(Enum):
@@ -38,8 +52,12 @@ class Tool(Enum):
     PANEL = auto()
 
 
-class GridView(PictureView):
-    """Draws one or more grids over a picture; the `grid` in hand can be corrected.
+class GridView(GridPicture):
+    """Lets the grid in hand be corrected, by pointer, finger and keys.
+
+    A press or Tab chooses a line; arrows move it by a pixel of the rectified view, with Shift by ten; Delete removes
+    it, Insert adds one beside it, Esc lets go of it. With the tool for panels, arrows choose a panel, Delete takes it
+    out, Insert puts it back and the space bar does either.
 
     Signals
     -------
@@ -56,22 +74,32 @@ class GridView(PictureView):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._grids: tuple[FacadeGrid, ...] = ()
-        self._grid: FacadeGrid | None = None
-        self._is_rectified = False
         self._tool = Tool.MOVE
-        self._dragged: tuple[Axis, int, float] | None = None
+        self._is_dragging = False
+        self._rest = QTimer(self, singleShot=True, interval=PUT_DOWN_MS)
+        self._rest.timeout.connect(self.put_down)
         self.setAccessibleName(self.tr("Photo with the grid found in it"))
+        self.setAccessibleDescription(
+            self.tr("Tab chooses a line, arrows move it, Shift by ten pixels; Delete removes it, Insert adds one.")
+        )
 
     def set_grids(self, grids: tuple[FacadeGrid, ...], in_hand: FacadeGrid | None, *, is_rectified: bool) -> None:
         """Draw these grids, of which one is in hand; the picture is the rectified view of that, or the photo."""
-        self._grids, self._grid, self._is_rectified = grids, in_hand, is_rectified
-        self._dragged = None
-        self.update()
+        before = self._grid
+        is_same = before is not None and in_hand is not None and before.rectification is in_hand.rectification
+        if not is_same or is_rectified is not self._is_rectified:
+            self._let_go()
+        if before is not in_hand:
+            self._held_px, self._is_dragging = None, False
+            self._rest.stop()
+        super().set_grids(grids, in_hand, is_rectified=is_rectified)
+        self._keep_within()
 
     def set_tool(self, tool: Tool) -> None:
         """What a press does from now on."""
+        self.put_down()
         self._tool = tool
+        self._let_go()
         shape = Qt.CursorShape.OpenHandCursor if tool is Tool.MOVE else Qt.CursorShape.CrossCursor
         self.setCursor(shape)
 
@@ -79,15 +107,48 @@ class GridView(PictureView):
         """What a press does."""
         return self._tool
 
-    # Where things are
+    def chosen_line(self) -> LinePlace | None:
+        """The line that keys work on."""
+        return self._line
 
-    def place_of(self, point_px: tuple[float, float]) -> QPointF:
-        """Point of the widget, of a point of the rectified view of the grid in hand."""
-        assert self._grid is not None
-        points = np.array([point_px])
-        if not self._is_rectified:
-            points = self._grid.rectification.to_photo(points)
-        return self.to_widget(QPointF(float(points[0, 0]), float(points[0, 1])))
+    def chosen_cell(self) -> tuple[int, int] | None:
+        """Row and column of the cell that keys work on."""
+        return self._cell
+
+    def nudge(self, right: int, down: int, step_px: float = STEP_PX) -> bool:
+        """Move the chosen line across itself, or choose the cell beside; False where there is nothing to move."""
+        if self._grid is None:
+            return False
+        if self._tool is Tool.PANEL:
+            self._cell = cell_beside(self._grid, self._cell, -down, right)
+            self.update()
+            return self._cell is not None
+        if self._line is None:
+            return False
+        axis, index = self._line
+        step = right if axis == "column" else down
+        if step == 0:
+            return False
+        at = lines_of(self._grid, axis)[index].position_px if self._held_px is None else self._held_px
+        low, high = room_for_line(self._grid, axis, index)
+        self._held_px = min(max(at + step * step_px, low), high)
+        self._rest.start()
+        self.update()
+        return True
+
+    def put_down(self) -> None:
+        """Leave the line that is being moved where it is now."""
+        held, line = self._held_px, self._line
+        self._held_px, self._is_dragging = None, False
+        self._rest.stop()
+        self.update()
+        if held is None or line is None or self._grid is None:
+            return
+        axis, index = line
+        if abs(held - lines_of(self._grid, axis)[index].position_px) > LEAST_MOVE_PX:
+            self.lineMoved.emit(axis, index, held)
+
+    # Where things are
 
     def _rectified(self, at: QPointF) -> tuple[tuple[float, float], float] | None:
         """Point of the rectified view under a point of the widget, and how far the grab reaches there."""
@@ -102,25 +163,42 @@ class GridView(PictureView):
         reach = float(np.linalg.norm(points[1:] - points[0], axis=1).max())
         return (float(points[0, 0]), float(points[0, 1])), reach
 
-    # Hands
+    def _let_go(self) -> None:
+        self._line, self._cell, self._held_px = None, None, None
+        self.update()
+
+    def _keep_within(self) -> None:
+        """What is chosen may have gone with a correction: the one that has its place now is chosen."""
+        if self._grid is None:
+            self._let_go()
+            return
+        if self._line is not None:
+            axis, index = self._line
+            n_lines = len(lines_of(self._grid, axis))
+            self._line = (axis, min(index, n_lines - 1)) if n_lines else None
+        if self._cell is not None:
+            self._cell = cell_beside(self._grid, self._cell, 0, 0)
+
+    # Pointer and finger
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Do what the tool does; on nothing, take hold of the picture."""
+        self.put_down()
         found = self._rectified(event.position())
         if found is None or self._grid is None or event.button() != Qt.MouseButton.LeftButton:
             super().mousePressEvent(event)
             return
         point, reach = found
         line = line_near(self._grid, point, reach)
-        if self._tool is Tool.MOVE and line is not None:
-            self._dragged = (*line, lines_of(self._grid, line[0])[line[1]].position_px)
+        if self._tool is Tool.MOVE:
+            self._line, self._is_dragging = line, line is not None
             self.update()
-        elif self._tool is Tool.MOVE:
-            super().mousePressEvent(event)
+            if line is None:
+                super().mousePressEvent(event)
         else:
             self._use(self._grid, point, line)
 
-    def _use(self, grid: FacadeGrid, point: tuple[float, float], line: tuple[Axis, int] | None) -> None:
+    def _use(self, grid: FacadeGrid, point: tuple[float, float], line: LinePlace | None) -> None:
         cell = cell_at(grid, point)
         match self._tool:
             case Tool.ADD_COLUMN:
@@ -130,29 +208,79 @@ class GridView(PictureView):
             case Tool.REMOVE_LINE if line is not None:
                 self.lineRemoved.emit(*line)
             case Tool.PANEL if cell is not None:
+                self._cell = cell
                 self.panelSwitched.emit(*cell, cell in grid.missing)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Take the line along, or the picture."""
-        if self._dragged is None or self._grid is None:
+        if not self._is_dragging or self._line is None or self._grid is None:
             super().mouseMoveEvent(event)
             return
         found = self._rectified(event.position())
         if found is not None:
-            axis, index, _ = self._dragged
+            axis, index = self._line
             low, high = room_for_line(self._grid, axis, index)
-            self._dragged = axis, index, min(max(found[0][0 if axis == "column" else 1], low), high)
+            self._held_px = min(max(found[0][0 if axis == "column" else 1], low), high)
             self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Put the line down."""
-        dragged, self._dragged = self._dragged, None
-        if dragged is not None and self._grid is not None:
-            axis, index, position = dragged
-            if abs(position - lines_of(self._grid, axis)[index].position_px) > 0.01:
-                self.lineMoved.emit(axis, index, position)
-            self.update()
+        if self._is_dragging:
+            self.put_down()
         super().mouseReleaseEvent(event)
+
+    # Keys
+
+    def focusNextPrevChild(self, next: bool) -> bool:  # noqa: A002, N802
+        """Tab goes through the lines first, then on to the next widget."""
+        self.put_down()
+        if self._grid is not None and self._tool is not Tool.PANEL:
+            self._line = following_line(self._grid, self._line, 1 if next else -1)
+            self.update()
+            if self._line is not None:
+                return True
+        return super().focusNextPrevChild(next)
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:  # noqa: N802
+        """Moving by keys ends."""
+        self.put_down()
+        super().focusOutEvent(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Work on what is chosen; without that, arrows move the picture."""
+        if not self._key(Qt.Key(event.key()), bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)):
+            super().keyPressEvent(event)
+
+    def _key(self, key: Qt.Key, has_shift: bool) -> bool:
+        if key in ARROWS:
+            return self.nudge(*ARROWS[key], LARGE_STEP_PX if has_shift else STEP_PX)
+        if self._grid is None or (self._line is None and self._cell is None):
+            return False
+        match key:
+            case Qt.Key.Key_Escape:
+                self._let_go()
+            case Qt.Key.Key_Return | Qt.Key.Key_Enter:
+                self.put_down()
+            case Qt.Key.Key_Delete | Qt.Key.Key_Insert | Qt.Key.Key_Space:
+                self._change(self._grid, key)
+            case _:
+                return False
+        return True
+
+    def _change(self, grid: FacadeGrid, key: Qt.Key) -> None:
+        """Remove or add what the key says, at what is chosen."""
+        if self._cell is not None:
+            is_none = self._cell in grid.missing
+            if (key == Qt.Key.Key_Space) or is_none is (key == Qt.Key.Key_Insert):
+                self.panelSwitched.emit(*self._cell, is_none)
+        elif self._line is not None and key == Qt.Key.Key_Delete:
+            self._held_px = None
+            self.lineRemoved.emit(*self._line)
+        elif self._line is not None and key == Qt.Key.Key_Insert:
+            self.put_down()
+            self.lineAdded.emit(self._line[0], place_beside(self._grid or grid, self._line))
+
+    # What is known
 
     def event(self, event: QEvent) -> bool:
         """Say what is known of the panel under the pointer."""
@@ -167,83 +295,9 @@ class GridView(PictureView):
         cell = None if found is None or self._grid is None else cell_at(self._grid, found[0])
         if cell is None or self._grid is None:
             return ""
-        panel = next((one for one in self._grid.panels if (one.row, one.column) == cell), None)
         where = self.tr("row {0}, column {1}").format(cell[0] + 1, cell[1] + 1)
-        if panel is None:
+        panels = panels_in(self._grid, cell)
+        if not panels:
             return self.tr("{0}: no panel").format(where)
-        return self.tr("{0}: confidence {1:.0f} %").format(where, 100.0 * panel.confidence)
-
-    # Drawing
-
-    def _paint_over(self, painter: QPainter) -> None:
-        for grid in self._grids:
-            if grid is not self._grid and not self._is_rectified:
-                self._paint_grid(painter, grid, is_in_hand=False)
-        if self._grid is not None:
-            self._paint_grid(painter, self._grid, is_in_hand=True)
-
-    def _paint_grid(self, painter: QPainter, grid: FacadeGrid, *, is_in_hand: bool) -> None:
-        painter.setPen(Qt.PenStyle.NoPen)
-        for panel in grid.panels:
-            corners = grid.rectification.to_rectified(panel.corners_px) if self._is_rectified else panel.corners_px
-            colour = confidence_colour(panel.confidence)
-            colour.setAlpha(90 if is_in_hand else 45)
-            painter.setBrush(colour)
-            painter.drawPolygon(self._polygon(corners))
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(QPen(QColor(colours().undecided), 1.2))
-        for row, column in grid.missing:
-            for points in _crossed(grid, row, column):
-                painter.drawPolyline(self._polygon(self._in_picture(grid, points)))
-        for axis in ("column", "row"):
-            for index, line in enumerate(lines_of(grid, axis)):
-                held = self._dragged if is_in_hand else None
-                is_held = held is not None and held[:2] == (axis, index)
-                position = held[2] if is_held and held is not None else line.position_px
-                painter.setPen(_pen(line, is_in_hand=is_in_hand, is_held=is_held))
-                painter.drawPolyline(self._polygon(self._course(grid, axis, position)))
-
-    def _course(self, grid: FacadeGrid, axis: Axis, position: float) -> Array:
-        """Points along a line, in the picture."""
-        across, along = (grid.columns, grid.rows) if axis == "column" else (grid.rows, grid.columns)
-        if not across or not along:
-            return np.zeros((0, 2))
-        run = np.linspace(along[0].position_px, along[-1].position_px, POINTS)
-        fixed = np.full(POINTS, position)
-        points = np.column_stack([fixed, run] if axis == "column" else [run, fixed])
-        return self._in_picture(grid, points)
-
-    def _in_picture(self, grid: FacadeGrid, points_px: Array) -> Array:
-        """Points of a rectified view, shape (n, 2), in the picture that is shown."""
-        return points_px if self._is_rectified else grid.rectification.to_photo(points_px)
-
-    def _polygon(self, points: Array) -> QPolygonF:
-        finite = points[np.isfinite(points).all(axis=1)]
-        return QPolygonF([self.to_widget(QPointF(float(x), float(y))) for x, y in finite])
-
-
-def _crossed(grid: FacadeGrid, row: int, column: int) -> tuple[Array, Array]:
-    """The diagonals of a cell that is no panel."""
-    top = len(grid.rows) - 2 - row
-    x0, x1 = grid.columns[column].position_px, grid.columns[column + 1].position_px
-    y0, y1 = grid.rows[top].position_px, grid.rows[top + 1].position_px
-    return np.array([[x0, y0], [x1, y1]]), np.array([[x0, y1], [x1, y0]])
-
-
-def confidence_colour(confidence: float) -> QColor:
-    """Colour of a panel."""
-    look = colours()
-    if confidence >= SURE:
-        return QColor(look.covered)
-    return QColor(look.open if confidence >= UNSURE else look.undecided)
-
-
-def _pen(line: GridLine, *, is_in_hand: bool, is_held: bool) -> QPen:
-    """Lines that were not seen are dashed, doubtful ones dotted: none is told by colour alone."""
-    colour = QColor("#ffffff" if is_held else colours().open if line.confidence < SURE else "#7fffd4")
-    style = Qt.PenStyle.SolidLine
-    if line.is_inferred:
-        style = Qt.PenStyle.DashLine
-    elif line.confidence < UNSURE:
-        style = Qt.PenStyle.DotLine
-    return QPen(colour, 3.0 if is_held else 1.6 if is_in_hand else 0.8, style)
+        least = min(panel.confidence for panel in panels)
+        return self.tr("{0}: confidence {1:.0f} %").format(where, 100.0 * least)

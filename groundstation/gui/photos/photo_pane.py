@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QButtonGroup, QComboBox, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QComboBox,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
+from groundstation.gui.photos.coverage_scene import CoverageScene
 from groundstation.gui.photos.grid_view import GridView
 from groundstation.gui.photos.photo_store import LargePicture, PhotoStore
 from groundstation.services.photo_cards import PhotoCard
@@ -20,23 +32,28 @@ class PhotoPane(QWidget):
         The photo cannot be shown, and why.
     placeChanged()
         Another grid is in hand, or none.
+    coverageShown(bool)
+        The coverage in 3-D came into the place of the photo, or went.
     """
 
     refused = Signal(str)
     placeChanged = Signal()  # noqa: N815  (Qt's own way of naming)
+    coverageShown = Signal(bool)  # noqa: N815
 
     def __init__(self, store: PhotoStore, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._store = store
         self._card: PhotoCard | None = None
         self._draft: PanelDraft | None = None
-        self.view, self.facade, self._name = GridView(), QComboBox(), QLabel()
+        self.view, self.scene, self.facade, self._name = GridView(), CoverageScene(), QComboBox(), QLabel()
         self.photo, self.rectified = QPushButton(self.tr("Photo")), QPushButton(self.tr("Rectified"))
+        self.coverage = QPushButton(self.tr("Coverage in 3-D"))
+        self.coverage.setToolTip(self.tr("The panels coloured by what the photos show of them; a click tells which"))
         self.whole = QPushButton(self.tr("Whole"))
         self.whole.setToolTip(self.tr("Show all of the picture (0)"))
         self.facade.setAccessibleName(self.tr("Facade whose grid is corrected"))
         group = QButtonGroup(self)
-        for button in (self.photo, self.rectified):
+        for button in (self.photo, self.rectified, self.coverage):
             button.setCheckable(True)
             group.addButton(button)
             button.clicked.connect(self._show)
@@ -45,13 +62,16 @@ class PhotoPane(QWidget):
         self.whole.clicked.connect(self.view.show_whole)
         bar = QHBoxLayout()
         bar.addWidget(self._name, 1)
-        for widget in (self.facade, self.photo, self.rectified, self.whole):
+        for widget in (self.facade, self.photo, self.rectified, self.coverage, self.whole):
             bar.addWidget(widget)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
         layout.addLayout(bar)
-        layout.addWidget(self.view, 1)
+        self._pictures = QStackedWidget()
+        self._pictures.addWidget(self.view)
+        self._pictures.addWidget(self.scene)
+        layout.addWidget(self._pictures, 1)
         store.largeReady.connect(self._take)
         self.set_text(self.tr("Choose a photo in the strip below."))
         self._show()
@@ -64,6 +84,20 @@ class PhotoPane(QWidget):
         """Show another photo."""
         if card is not self._card:
             self._card = card
+            self._show()
+
+    def set_outlines(self, outlines: tuple[NDArray[np.float64], ...]) -> None:
+        """Draw panels that were not looked for in the photo; see `GridPicture`."""
+        self.view.set_outlines(outlines)
+
+    def is_coverage_shown(self) -> bool:
+        """Whether the coverage stands in the place of the photo."""
+        return self._pictures.currentWidget() is self.scene
+
+    def show_photo(self) -> None:
+        """Show the photo, where the coverage stands in its place."""
+        if self.coverage.isChecked():
+            self.photo.setChecked(True)
             self._show()
 
     def set_draft(self, draft: PanelDraft | None) -> None:
@@ -101,12 +135,16 @@ class PhotoPane(QWidget):
         if [self.facade.itemText(k) for k in range(self.facade.count())] != names:
             self.facade.clear()
             self.facade.addItems(names)
-        self.facade.setVisible(len(names) > 1)
-        self._name.setText("" if card is None else card.path.name)
-        place = self.place()
+        self.facade.setVisible(len(names) > 1 and not self.coverage.isChecked())
+        place, has_coverage = self.place(), self.coverage.isChecked()
+        self._name.setText("" if card is None or has_coverage else card.path.name)
         self.rectified.setEnabled(place is not None)
-        if place is None:
+        if place is None and not has_coverage:
             self.photo.setChecked(True)
+        self.whole.setEnabled(not has_coverage)
+        if has_coverage is not self.is_coverage_shown():
+            self._pictures.setCurrentWidget(self.scene if has_coverage else self.view)
+            self.coverageShown.emit(has_coverage)
         grids = () if self._draft is None else tuple(self._draft.grid(one) for one in places)
         grid = None if place is None or self._draft is None else self._draft.grid(place)
         is_rectified = self.rectified.isChecked()

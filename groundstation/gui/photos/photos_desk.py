@@ -13,17 +13,25 @@ from groundstation.services.document import Document
 from groundstation.services.history import History
 from groundstation.services.jobs import JobContext
 from groundstation.services.photo_cards import PhotoCard, photo_cards
+from groundstation.services.photo_coverage import PhotoCoverage, photo_coverage
 from groundstation.services.photo_desk import PanelDraft, search_panels, solved_draft, with_found_panels
-from groundstation.services.photo_intake import PhotoIntake, take_in_photos
+from groundstation.services.photo_intake import PhotoIntake, counted_again, take_in_photos
+from groundstation.services.photo_poses import BetterPoses
+from groundstation.services.photo_repose import Reposed, repose
 from groundstation.services.photo_tradeoff import Trial, facade_trials
 from planning.errors import GroundStationError
 from planning.findings import Severity
+from planning.plan import Plan
 from planning.site import Facade, SiteModel
+from reconstruction.panels.facades_file import found_facades
 
 PHOTOS_FOLDER = "photos"
 """Of a project."""
 
 Edit = Callable[[PanelDraft], PanelDraft]
+
+_Basis = tuple[tuple[Facade, ...], Plan | None]
+"""What coverage is counted over: the panels, and the plan that was flown."""
 
 
 class PhotosDesk(QObject):
@@ -33,6 +41,8 @@ class PhotosDesk(QObject):
     -------
     photosChanged()
         Others were read.
+    coverageChanged()
+        It was counted again, over other panels or against another plan.
     draftChanged()
         Panels were found, corrected or solved.
     trialsChanged()
@@ -42,6 +52,7 @@ class PhotosDesk(QObject):
     """
 
     photosChanged = Signal()  # noqa: N815  (Qt's own way of naming)
+    coverageChanged = Signal()  # noqa: N815
     draftChanged = Signal()  # noqa: N815
     trialsChanged = Signal()  # noqa: N815
     stateChanged = Signal()  # noqa: N815
@@ -55,8 +66,9 @@ class PhotosDesk(QObject):
         self.trials: tuple[Trial, ...] = ()
         self._history: History[PanelDraft] | None = None
         self._busy: set[int] = set()
-        self._reading: tuple[Facade, ...] = ()
-        self._counted: tuple[Facade, ...] = ()
+        self._counted: _Basis = ((), None)
+        self._counting: _Basis = ((), None)
+        self._coverage: PhotoCoverage | None = None
         workspace.documentChanged.connect(self._document_changed)
         workspace.jobsChanged.connect(self._jobs_changed)
 
@@ -68,9 +80,16 @@ class PhotosDesk(QObject):
 
     @property
     def is_coverage_current(self) -> bool:
-        """Whether the coverage that was counted is of the panels that the site has now."""
+        """Whether the coverage that was counted is of the panels and the plan that there are now."""
+        return self.intake is not None and self._counted == self._basis()
+
+    @property
+    def coverage(self) -> PhotoCoverage | None:
+        """What the photos show of the site's panels; None where that is not known, or has not been counted yet."""
         model = self._workspace.document.site
-        return self.intake is not None and model is not None and model.site.facades == self._counted
+        if self._coverage is None and self.intake is not None and model is not None and self.is_coverage_current:
+            self._coverage = photo_coverage(self.intake, model.site)
+        return self._coverage if self.is_coverage_current else None
 
     @property
     def draft(self) -> PanelDraft | None:
@@ -101,21 +120,57 @@ class PhotosDesk(QObject):
 
     def read(self, folder: Path) -> None:
         """Read a folder of photos over the site."""
-        model, entry = self._workspace.document.site, self._workspace.document.current
+        model, basis = self._workspace.document.site, self._basis()
         if model is None:
             self._workspace.say(Severity.ERROR, self.tr("Open or import a site first: photos are placed on it."))
             return
-        flown = None if entry is None else entry.plan
-        self.folder, self._reading = folder, model.site.facades
+        flown = basis[1]
+        self.folder = folder
 
         def work(context: JobContext) -> PhotoIntake:
             return take_in_photos(folder, model, flown, monitor=context)
 
         def done(intake: PhotoIntake) -> None:
             if _is_same_place(model, self._workspace.document.site):
-                self._taken_in(intake)
+                self._taken_in(intake, basis)
 
         self._start(self.tr("Read photos"), work, done)
+
+    def count(self) -> None:
+        """Count the coverage again where the panels or the plan are others now; once for each, should it fail."""
+        model, intake, basis = self._workspace.document.site, self.intake, self._basis()
+        if model is None or intake is None or self.is_busy or basis in (self._counted, self._counting):
+            return
+        if model.site.n_panels == 0:
+            return
+        self._counting = basis
+
+        def work(context: JobContext) -> PhotoIntake:
+            return counted_again(intake, model, basis[1], context)
+
+        def done(counted: PhotoIntake) -> None:
+            if self.intake is intake:
+                self.intake, self._counted, self._coverage = counted, basis, None
+                self.coverageChanged.emit()
+
+        self._start(self.tr("Count coverage"), work, done)
+
+    def change_poses(self, label: str, poses: Callable[[JobContext], BetterPoses]) -> None:
+        """Go on with other poses of the same photos; panels that were found stay, and are solved with them."""
+        model, intake, draft, basis = self._workspace.document.site, self.intake, self.draft, self._basis()
+        if model is None or intake is None:
+            return
+
+        def work(context: JobContext) -> Reposed:
+            return repose(intake, draft, poses(context), model, basis[1], context)
+
+        def done(reposed: Reposed) -> None:
+            if self.intake is intake and self.draft is draft:
+                self._taken_in(reposed.intake, basis)
+                if reposed.draft is not None:
+                    self._found(reposed.draft)
+
+        self._start(label, work, done)
 
     def find(self) -> None:
         """Search the photos for panels."""
@@ -183,12 +238,18 @@ class PhotosDesk(QObject):
         except GroundStationError as error:
             self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
             return False
-        self._workspace.change(self.tr("Use found panels"), replace(document, site=model))
+        facades = found_facades(draft.found, draft.photos)
+        self._workspace.change(self.tr("Use found panels"), replace(document, site=model, found_facades=facades))
         return True
 
-    def _taken_in(self, intake: PhotoIntake) -> None:
+    def _basis(self) -> _Basis:
+        model, entry = self._workspace.document.site, self._workspace.document.current
+        return (() if model is None else model.site.facades), (None if entry is None else entry.plan)
+
+    def _taken_in(self, intake: PhotoIntake, basis: _Basis) -> None:
         self.intake, self.cards, self._history, self.trials = intake, photo_cards(intake), None, ()
-        self._counted = self._reading
+        self._counted = self._counting = basis
+        self._coverage = None
         self.trialsChanged.emit()
         self.photosChanged.emit()
         self.draftChanged.emit()

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.main_window import MainWindow
 from groundstation.gui.mission.findings_list import FindingsList
+from groundstation.gui.photos.corrections import Corrections
+from groundstation.gui.photos.coverage_shown import CoverageShown
 from groundstation.gui.photos.facade_table import FacadeTable
+from groundstation.gui.photos.grid_view import Tool
+from groundstation.gui.photos.panel_sightings import PanelSightings
 from groundstation.gui.photos.photo_pane import PhotoPane
 from groundstation.gui.photos.photo_store import PhotoStore
 from groundstation.gui.photos.photos_desk import PhotosDesk
 from groundstation.gui.photos.place_map import PlaceMap
+from groundstation.gui.photos.pose_box import PoseBox
 from groundstation.gui.photos.thumbnail_strip import ThumbnailStrip
 from groundstation.gui.photos.tool_box import ToolBox
 from groundstation.gui.photos.trial_chart import TrialChart
@@ -24,10 +31,9 @@ from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
 from groundstation.services.photo_cards import card_of_place
-from groundstation.services.photo_edits import add_line, move_line, remove_line, set_panel
-from groundstation.services.units import UnitSystem, per_cent
+from groundstation.services.photo_outlines import known_panels, panel_outlines
+from groundstation.services.units import UnitSystem
 from planning.findings import Severity
-from reconstruction.panels.record import Axis
 
 SIDE_PX, DETAIL_PX = 250, 320
 """First widths beside the photo, at 1280 pixels."""
@@ -43,10 +49,11 @@ class PhotosPage(QObject):
         self.store = PhotoStore(self)
         self.strip, self.map, self.pane = ThumbnailStrip(self.store), PlaceMap(), PhotoPane(self.store)
         self.findings, self.table, self.tools = FindingsList(), FacadeTable(), ToolBox()
-        self.trials = TrialChart()
+        self.trials, self.sightings, self.poses = TrialChart(), PanelSightings(), PoseBox(self.desk)
         self.read, self.choose = QPushButton(self.tr("Read photos")), QPushButton(self.tr("Choose folder ..."))
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
+        self.coverage_shown = CoverageShown(workspace, self.desk, self.pane.scene, self.sightings, self)
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
@@ -58,11 +65,13 @@ class PhotosPage(QObject):
     # A tab
 
     def shown(self) -> None:
-        """Nothing is shared with others."""
+        """Count what has changed meanwhile."""
+        self.coverage_shown.set_in_front(True)
         self._show_state()
 
     def hidden(self) -> None:
         """Jobs go on."""
+        self.coverage_shown.set_in_front(False)
 
     def actions(self) -> tuple[QAction, ...]:
         """There are none."""
@@ -82,6 +91,7 @@ class PhotosPage(QObject):
         self.coverage.setWordWrap(True)
         top.addWidget(self.choose)
         top.addWidget(self.read)
+        top.addWidget(self.find)
         top.addWidget(self.folder, 1)
         top.addWidget(self.coverage, 2)
         self.splitter = QSplitter(Qt.Orientation.Horizontal)
@@ -98,9 +108,14 @@ class PhotosPage(QObject):
     def _make_side(self) -> QWidget:
         side = QSplitter(Qt.Orientation.Vertical)
         self.findings.set_placeholder(self.tr("What is wrong with photos stands here."))
+        below = QWidget()
+        layout = QVBoxLayout(below)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.poses)
+        layout.addWidget(self.findings, 1)
         side.addWidget(self.map)
-        side.addWidget(self.findings)
-        side.setSizes([200, 260])
+        side.addWidget(below)
+        side.setSizes([160, 300])
         return side
 
     def _make_detail(self) -> QWidget:
@@ -113,12 +128,14 @@ class PhotosPage(QObject):
         self.state.setWordWrap(True)
         self.state.setProperty("role", "muted")
         self.table.setMinimumHeight(80)
-        for widget in (self.find, self.table, self.tools, self.state, self.use):
+        for widget in (self.table, self.tools, self.state, self.use):
             layout.addWidget(widget, int(widget is self.table))
-        tabs = QTabWidget()
-        tabs.addTab(detail, self.tr("Panels"))
-        tabs.addTab(scrolled(self.trials), self.tr("Accuracy and time"))
-        return tabs
+        self.details = QTabWidget()
+        self.details.addTab(detail, self.tr("Panels"))
+        self.details.addTab(self.sightings, self.tr("Coverage"))
+        self.details.addTab(scrolled(self.trials), self.tr("Accuracy"))
+        self.details.setTabToolTip(2, self.tr("What accuracy costs in time"))
+        return self.details
 
     def _connect(self) -> None:
         desk, workspace, view = self.desk, self._workspace, self.pane.view
@@ -131,21 +148,25 @@ class PhotosPage(QObject):
         self.findings.placePicked.connect(self._go_to_place)
         self.table.chosen.connect(self._go_to_facade)
         self.tools.valueChanged.connect(view.set_tool)
+        self.tools.valueChanged.connect(lambda _tool: self._show_state())
+        self.tools.nudged.connect(view.nudge)
+        self.sightings.photoPicked.connect(self._go_to_photo)
+        self.pane.coverageShown.connect(self._coverage_shown)
+        desk.coverageChanged.connect(self._show_findings)
+        desk.coverageChanged.connect(self._show_state)
         self.trials.measure.clicked.connect(self._measure)
         desk.trialsChanged.connect(self._show_trials)
         self.tools.undo.clicked.connect(desk.undo)
         self.tools.redo.clicked.connect(desk.redo)
         self.pane.refused.connect(lambda text: workspace.say(Severity.ERROR, workspace.words(text)))
         self.pane.placeChanged.connect(self._show_state)
-        view.lineMoved.connect(self._move_line)
-        view.lineAdded.connect(self._add_line)
-        view.lineRemoved.connect(self._remove_line)
-        view.panelSwitched.connect(self._switch_panel)
+        self.corrections = Corrections(desk, self.pane, self)
         desk.photosChanged.connect(self._show_photos)
         desk.draftChanged.connect(self._show_draft)
         desk.stateChanged.connect(self._show_state)
         workspace.unitsChanged.connect(self._units_changed)
         workspace.documentChanged.connect(self._document_changed)
+        self._stage.with_scene(lambda _scene: self.pane.scene.let_open())
         window = self._stage.window()
         if isinstance(window, MainWindow):
             window.closing.connect(self._window_closing)
@@ -175,31 +196,19 @@ class PhotosPage(QObject):
         if place is not None:
             self.desk.measure(place.facade)
 
-    def _move_line(self, axis: Axis, index: int, position_px: float) -> None:
-        place = self.pane.place()
-        if place is not None:
-            self.desk.edit(self.tr("Move line"), lambda draft: move_line(draft, place, axis, index, position_px))
-
-    def _add_line(self, axis: Axis, position_px: float) -> None:
-        place = self.pane.place()
-        if place is not None:
-            self.desk.edit(self.tr("Add line"), lambda draft: add_line(draft, place, axis, position_px))
-
-    def _remove_line(self, axis: Axis, index: int) -> None:
-        place = self.pane.place()
-        if place is not None:
-            self.desk.edit(self.tr("Remove line"), lambda draft: remove_line(draft, place, axis, index))
-
-    def _switch_panel(self, row: int, column: int, is_panel: bool) -> None:
-        place = self.pane.place()
-        if place is not None:
-            label = self.tr("Restore panel") if is_panel else self.tr("Remove panel")
-            self.desk.edit(label, lambda draft: set_panel(draft, place, row, column, is_panel=is_panel))
-
     def _go_to_place(self, place: str) -> None:
         number = card_of_place(self.desk.cards, place)
         if number is not None:
             self.strip.choose(number)
+
+    def _go_to_photo(self, path: str) -> None:
+        self._go_to_place(path)
+        self.pane.show_photo()
+
+    def _coverage_shown(self, is_shown: bool) -> None:
+        if is_shown:
+            self.details.setCurrentWidget(self.sightings)
+        self._show_state()
 
     def _go_to_facade(self, facade_id: str) -> None:
         """Show the first photo with a grid of a facade."""
@@ -223,15 +232,29 @@ class PhotosPage(QObject):
         self.strip.set_cards(desk.cards)
         self.map.set_photos(desk.cards)
         self.map.set_site(None if model is None else model.site)
-        self.findings.set_findings(() if desk.intake is None else desk.intake.findings)
+        self._show_findings()
         self.pane.set_card(None)
         if desk.cards:
             self.strip.choose(0)
         self._show_draft()
 
+    def _show_findings(self) -> None:
+        self.findings.set_findings(() if self.desk.intake is None else self.desk.intake.findings)
+        self._show_outlines()
+
     def _show_photo(self, number: int) -> None:
         self.map.choose(number)
         self.pane.set_card(self.desk.cards[number] if 0 <= number < len(self.desk.cards) else None)
+        self._show_outlines()
+
+    def _show_outlines(self) -> None:
+        """Draw the panels that are known into a photo in which they were not looked for."""
+        card, intake, model = self.pane.card(), self.desk.intake, self._workspace.document.site
+        outlines: tuple[NDArray[np.float64], ...] = ()
+        if card is not None and card.posed is not None and intake is not None and model is not None:
+            known = known_panels(self.desk.draft, model.site, card.posed)
+            outlines = panel_outlines(card.posed, known, None if intake.counted is None else intake.counted.sight)
+        self.pane.set_outlines(outlines)
 
     def _show_draft(self) -> None:
         draft = self.desk.draft
@@ -239,6 +262,7 @@ class PhotosPage(QObject):
         self.table.set_draft(draft)
         self.strip.set_searched(frozenset(draft.photos[place.photo].path for place in places) if draft else frozenset())
         self.pane.set_draft(draft)
+        self._show_outlines()
         if draft is not None and self.pane.place() is None and places:
             self._go_to_facade(places[0].facade)
         self._show_state()
@@ -261,7 +285,7 @@ class PhotosPage(QObject):
         draft = desk.draft
         self.use.setEnabled(draft is not None and not draft.unsolved)
         self.state.setText(self._where_it_stands())
-        self.coverage.setText(self._coverage_text())
+        self.coverage.setText(self.coverage_shown.words())
 
     def _where_it_stands(self) -> str:
         desk = self.desk
@@ -275,34 +299,20 @@ class PhotosPage(QObject):
             return self.tr("The corrected panels are being solved ...")
         if self.pane.place() is None:
             return self.tr("No grid was looked for in this photo; photos with one have the sign \u25a6.")
-        return self.tr("Blue panels are sure, orange less so, pink ones doubtful; dashed lines were not seen.")
-
-    def _coverage_text(self) -> str:
-        intake = self.desk.intake
-        if intake is None:
-            return ""
-        if not self.desk.is_coverage_current:
-            return self.tr("The site has other panels now: read the photos again to count what they show.")
-        found = intake.coverage
-        n_photos = self.tr("{0} photos, {1} of them usable.").format(len(intake.metadata), sum(intake.usable))
-        if found.planned_counts is None:
-            seen = self.tr("They show {0} of {1} sections.").format(found.covered, found.counts.size)
-        else:
-            promised = int((found.planned_counts > 0).sum())
-            share = per_cent(promised - int(found.missed.sum()), promised) if promised else 100.0
-            seen = self.tr("They show {0} sections; the plan promised {1}, of which {2:.1f} % are seen.").format(
-                found.covered, promised, share
-            )
-        return f"{n_photos} {seen}"
+        if self.tools.value() is Tool.PANEL:
+            return self.tr("Press a panel, or choose it with arrows; the space bar takes it out or puts it back.")
+        return self.tr("Press a line, or choose it with Tab; arrows move it, Delete takes it out, Insert adds one.")
 
     def _units_changed(self, units: UnitSystem) -> None:
         self.findings.set_units(units)
+        self.poses.set_units(units)
         self.table.set_units(units)
         self.trials.set_units(units)
 
     def _document_changed(self, before: Document, after: Document) -> None:
         if before.site is not after.site:
             self.map.set_site(None if after.site is None else after.site.site)
+            self._show_outlines()
         self._show_state()
 
 

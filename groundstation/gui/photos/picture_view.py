@@ -55,11 +55,14 @@ class PictureView(QWidget):
         self._is_whole = True
         size = self._size()
         if not size.isEmpty():
-            self._zoom = min(self.width() / size.width(), self.height() / size.height())
-            self._corner = QPointF(
-                0.5 * (self.width() - self._zoom * size.width()), 0.5 * (self.height() - self._zoom * size.height())
-            )
+            room = self.room()
+            self._zoom = self._whole_zoom()
+            self._corner = room.center() - QPointF(size.width(), size.height()) * (0.5 * self._zoom)
         self.update()
+
+    def room(self) -> QRectF:
+        """Where the whole picture has its place."""
+        return QRectF(self.rect())
 
     def zoom(self) -> float:
         """Screen pixels per pixel of the picture."""
@@ -174,4 +177,5 @@ class PictureView(QWidget):
 
     def _whole_zoom(self) -> float:
         size = self._size()
-        return 1.0 if size.isEmpty() else min(self.width() / size.width(), self.height() / size.height())
+        room = self.room()
+        return 1.0 if size.isEmpty() else min(room.width() / size.width(), room.height() / size.height())

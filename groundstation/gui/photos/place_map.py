@@ -55,7 +55,7 @@ class PlaceMap(QWidget):
 
     def set_site(self, site: Site | None) -> None:
         """Show the facades of a site as lines."""
-        facades = () if site is None else site.facades
+        facades = () if site is None else [facade for facade in site.facades if facade.panels]
         self._walls = [
             np.array([corner[:2] for panel in facade.panels for corner in panel.corners_enu_m]) for facade in facades
         ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QButtonGroup, QGridLayout, QPushButton, QWidget
 
 from groundstation.gui.photos.grid_view import Tool
@@ -14,9 +14,12 @@ class ToolBox(QWidget):
     Signals
     -------
     valueChanged(Tool)
+    nudged(int, int)
+        What is chosen in the picture is to go one step to the right and down; negative to the left and up.
     """
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+    nudged = Signal(int, int)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -29,8 +32,18 @@ class ToolBox(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
         texts = (
-            (Tool.MOVE, self.tr("Move"), self.tr("Drag a line to its place; elsewhere, drag the picture")),
-            (Tool.PANEL, self.tr("Panel on or off"), self.tr("A press takes a panel out, or puts it back")),
+            (
+                Tool.MOVE,
+                self.tr("Move"),
+                self.tr(
+                    "Drag a line to its place, or press it and move it with the arrows; elsewhere, drag the picture"
+                ),
+            ),
+            (
+                Tool.PANEL,
+                self.tr("Panel on or off"),
+                self.tr("A press takes a panel out, or puts it back; arrows and the space bar do the same"),
+            ),
             (Tool.ADD_COLUMN, self.tr("Add upright line"), self.tr("A press adds a vertical line of the grid")),
             (Tool.ADD_ROW, self.tr("Add level line"), self.tr("A press adds a horizontal line of the grid")),
             (Tool.REMOVE_LINE, self.tr("Remove line"), self.tr("A press on a line removes it")),
@@ -45,7 +58,30 @@ class ToolBox(QWidget):
             layout.addWidget(button, number // 2, 2 * (number % 2), 1, 2)
         layout.addWidget(self.undo, 2, 2)
         layout.addWidget(self.redo, 2, 3)
+        self._arrows = tuple(self._arrow(*each) for each in self._directions())
+        for column, arrow in enumerate(self._arrows):
+            layout.addWidget(arrow, 3, column)
         self.setValue(Tool.MOVE)
+
+    def _directions(self) -> tuple[tuple[str, str, int, int], ...]:
+        return (
+            ("\u2190", self.tr("To the left"), -1, 0),
+            ("\u2192", self.tr("To the right"), 1, 0),
+            ("\u2191", self.tr("Upwards"), 0, -1),
+            ("\u2193", self.tr("Downwards"), 0, 1),
+        )
+
+    def _arrow(self, sign: str, name: str, right: int, down: int) -> QPushButton:
+        """A button for fingers, which have no arrow keys."""
+        button = QPushButton(sign)
+        button.setAccessibleName(name)
+        button.setToolTip(
+            self.tr("Move the chosen line by a pixel, or choose the next panel; arrow keys do the same, Shift by ten")
+        )
+        button.setAutoRepeat(True)
+        button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        button.clicked.connect(lambda: self.nudged.emit(right, down))
+        return button
 
     def value(self) -> Tool:
         """What a press does."""
@@ -57,7 +93,7 @@ class ToolBox(QWidget):
 
     def set_possible(self, *, can_edit: bool, undo_label: str, redo_label: str) -> None:
         """Enable what can be done; labels say what would be taken back or done again, empty for nothing."""
-        for button in self._buttons.values():
+        for button in (*self._buttons.values(), *self._arrows):
             button.setEnabled(can_edit)
         for button, label, tip in (
             (self.undo, undo_label, self.tr("Take back: {0}")),

@@ -11,6 +11,7 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "none of the photos says where it was taken, so that panels cannot be put into 3-D"),
     QT_TRANSLATE_NOOP("Sentences", "solving facades"),
+    QT_TRANSLATE_NOOP("Sentences", "rendering"),
     QT_TRANSLATE_NOOP("Sentences", "trying scales"),
     QT_TRANSLATE_NOOP(
         "Sentences",
@@ -22,9 +23,8 @@ SENTENCES = (
         "Sentences",
         "a facade needs two lines in each direction at least; add another line before this one goes",
     ),
-    QT_TRANSLATE_NOOP(
-        "Sentences", "no panel is left; a site needs at least one: put one back before these panels are used"
-    ),
+    QT_TRANSLATE_NOOP("Sentences", "no panel is left: put one back before these panels are used"),
+    QT_TRANSLATE_NOOP("Sentences", "the site has no panels yet, so nothing is said of what the photos show of them"),
     QT_TRANSLATE_NOOP("Sentences", "reading photos"),
     QT_TRANSLATE_NOOP("Sentences", "none of its {0} photos can be read; the first: {1}"),
     QT_TRANSLATE_NOOP("Sentences", "the file has no end, so that a part of the picture is missing"),
@@ -82,6 +82,15 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "finding panels"),
     QT_TRANSLATE_NOOP("Sentences", "a facade was left out: {0}"),
     QT_TRANSLATE_NOOP("Sentences", "a wall with {0} panel was left out"),
+    QT_TRANSLATE_NOOP("Sentences", "inclined lines"),
+    QT_TRANSLATE_NOOP("Sentences", "edge pixels on one line"),
+    QT_TRANSLATE_NOOP("Sentences", "no inclined line has edges enough for a profile through three panes"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} inclined lines have edges enough for a profile through three panes"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} of {1} panels have more than four corners; a site's panels have four, so that the largest "
+        "four-cornered part of each is kept",
+    ),
     QT_TRANSLATE_NOOP(
         "Sentences",
         "no grid of panels was found on any facade; choose sharper photos taken from the front",
@@ -152,6 +161,11 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "casting rays"),
     QT_TRANSLATE_NOOP("Sentences", "the photo does not show this facade from its front"),
     QT_TRANSLATE_NOOP("Sentences", "the photo shows no area of this facade"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} photos searched together showed no more than each by itself"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "its lines were found in {0} photos together, which were moved onto one another by up to {1} px",
+    ),
     QT_TRANSLATE_NOOP("Sentences", "find lines"),
     QT_TRANSLATE_NOOP("Sentences", "compare rows"),
     QT_TRANSLATE_NOOP("Sentences", "refine lines"),

@@ -118,6 +118,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "another program has changed the plan '{0}' since the project was saved"),
     QT_TRANSLATE_NOOP("Sentences", "the plan '{0}'"),
     QT_TRANSLATE_NOOP("Sentences", "{0}; what was asked of {1} was left out"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}; how good the panels are was left out"),
     QT_TRANSLATE_NOOP("Sentences", "plan '{0}'"),
     QT_TRANSLATE_NOOP("Sentences", "the project holds this plan already, as '{0}'; leave it out"),
     QT_TRANSLATE_NOOP("Sentences", "this plan was made for another state of the site, or for another site ('{0}')"),

@@ -73,14 +73,27 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "zone '{0}' needs a ceiling above its floor ({1} m)"),
     QT_TRANSLATE_NOOP("Sentences", "zone '{0}' crosses itself or has no area"),
     QT_TRANSLATE_NOOP("Sentences", "the airspace is empty, {0} runs from {1} to {2} m"),
-    QT_TRANSLATE_NOOP("Sentences", "expected at least one panel, got none"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "expected at least one panel, or a building_mesh on which panels can be found, got neither; add panels, or "
+        "name the mesh of the building",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "site '{0}' has no panels yet: find them in photos ('panels' or the Photos tab), or draw them on the building "
+        "(the Site tab, or 'site import' with --panel-grid)",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "there are no panels yet: find them in photos (Photos tab), or draw a panel grid on the building",
+    ),
     QT_TRANSLATE_NOOP("Sentences", "expected unique panel ids, '{0}' occurs twice"),
     QT_TRANSLATE_NOOP("Sentences", "expected {0} obstacle meshes, got {1}"),
     QT_TRANSLATE_NOOP("Sentences", "{0}; mesh paths start from the folder of the site file"),
     QT_TRANSLATE_NOOP("Sentences", "no-fly zone"),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "panels: a site needs at least one panel; add the new ones first, then remove these",
+        "panels: a site without a building needs at least one panel; add the new ones first, then remove these",
     ),
     QT_TRANSLATE_NOOP("Sentences", "sea level"),
     QT_TRANSLATE_NOOP("Sentences", "expected the first value below the second, got {0} m and {1} m"),

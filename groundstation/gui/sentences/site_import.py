@@ -42,7 +42,6 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "'{0}' is a {1}; expected a projected or geographic system"),
     QT_TRANSLATE_NOOP("Sentences", "there is no building with surfaces in this file"),
-    QT_TRANSLATE_NOOP("Sentences", "no building in this file has windows; {0}"),
     QT_TRANSLATE_NOOP(
         "Sentences",
         "other buildings in the file: {0} within reach of the airspace, kept as obstacles; {1} further away, left out",
@@ -75,7 +74,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "windows left out because they have no geometry: {0}"),
     QT_TRANSLATE_NOOP("Sentences", "--deflection {0}: expected a positive length in metres"),
     QT_TRANSLATE_NOOP("Sentences", "no building element in this file has geometry"),
-    QT_TRANSLATE_NOOP("Sentences", "there is neither a window nor a glazed plate with geometry; {0}"),
     QT_TRANSLATE_NOOP("Sentences", "the file has more than {0} GiB; export the facade alone"),
     QT_TRANSLATE_NOOP("Sentences", "expected an IFC file (STEP text that begins with ISO-10303-21)"),
     QT_TRANSLATE_NOOP("Sentences", "the file is cut off (END-ISO-10303-21 is missing); copy or export it again"),
@@ -113,6 +111,11 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "no window of {0} is a pane that faces the open"),
     QT_TRANSLATE_NOOP("Sentences", "there are no windows"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0}, so the site has no panels yet: find them in photos ('panels' or the Photos tab), or draw them on the "
+        "building (the Site tab, or --panel-grid)",
+    ),
     QT_TRANSLATE_NOOP("Sentences", "expected a file ending in {0}, got '{1}'"),
     QT_TRANSLATE_NOOP("Sentences", "there is no such file"),
     QT_TRANSLATE_NOOP(
@@ -129,11 +132,6 @@ SENTENCES = (
         "Sentences",
         "{0} % of the building's surface does not close (gaps and overlaps in the model): the distance to it is kept "
         "all the same, but the space behind it does not count as solid",
-    ),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "a mesh does not tell windows from walls; state where the panels are, for example --panel-grid '0,0,0 36,0,0 "
-        "0,0,42' --rows 14 --columns 20 (lower left, lower right and upper left corner of a facade, seen from outside)",
     ),
     QT_TRANSLATE_NOOP("Sentences", "axes: {0} is up"),
     QT_TRANSLATE_NOOP("Sentences", " (glTF's rule)"),
@@ -211,12 +209,6 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "panels come from the windows of a city model (level of detail 3), from IfcWindow and glazed IfcPlate of a "
-        "BIM model, or from you: --panel-grid 'E,N,U E,N,U E,N,U' (lower left, lower right and upper left corner of "
-        "a facade seen from outside, in the file's coordinates) --rows N --columns N",
-    ),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
         "there is no place for home inside the airspace that is at least {0} m from every wall; widen it with "
         "--airspace-margin, or name a place with --home E,N,U",
     ),
@@ -229,6 +221,10 @@ SENTENCES = (
     QT_TRANSLATE_NOOP(
         "Sentences",
         "home: {0:m}, {1:m}, {2} m, on the ground in front of the largest facade, {3} m from the nearest wall (--home)",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "home: {0:m}, {1:m}, {2} m, on the ground beside the building, {3} m from the nearest wall (--home)",
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",

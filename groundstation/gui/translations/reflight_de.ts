@@ -763,6 +763,71 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
+    <name>Corrections</name>
+    <message>
+        <source>Move line</source>
+        <translation>Linie verschieben</translation>
+    </message>
+    <message>
+        <source>Add line</source>
+        <translation>Linie hinzufügen</translation>
+    </message>
+    <message>
+        <source>Remove line</source>
+        <translation>Linie entfernen</translation>
+    </message>
+    <message>
+        <source>Restore panel</source>
+        <translation>Scheibe wiederherstellen</translation>
+    </message>
+    <message>
+        <source>Remove panel</source>
+        <translation>Scheibe entfernen</translation>
+    </message>
+</context>
+<context>
+    <name>CoverageScene</name>
+    <message>
+        <source>Seen of what the plan promised</source>
+        <translation>Zu sehen von dem, was der Plan versprach</translation>
+    </message>
+    <message>
+        <source>Sections that photos show</source>
+        <translation>Sektoren, die Fotos zeigen</translation>
+    </message>
+</context>
+<context>
+    <name>CoverageShown</name>
+    <message>
+        <source>{0} photos, {1} of them usable.</source>
+        <translation>{0} Fotos, davon {1} brauchbar.</translation>
+    </message>
+    <message>
+        <source>They show {0} of {1} sections.</source>
+        <translation>Sie zeigen {0} von {1} Sektoren.</translation>
+    </message>
+    <message>
+        <source>They show {0} sections; the plan promised {1}, of which {2:.1f} % are seen.</source>
+        <translation>Sie zeigen {0} Sektoren; der Plan versprach {1}, von denen {2:.1f} % zu sehen sind.</translation>
+    </message>
+    <message>
+        <source>Open or import a site first: photos are placed on it.</source>
+        <translation>Öffnen oder importieren Sie zuerst einen Standort: darauf werden die Fotos eingeordnet.</translation>
+    </message>
+    <message>
+        <source>Read the photos of the flight.</source>
+        <translation>Lesen Sie die Fotos des Flugs.</translation>
+    </message>
+    <message>
+        <source>The site has no panels yet: find them in these photos.</source>
+        <translation>Der Standort hat noch keine Scheiben: suchen Sie sie in diesen Fotos.</translation>
+    </message>
+    <message>
+        <source>The panels or the plan are others now; what the photos show is counted again.</source>
+        <translation>Scheiben oder Plan sind jetzt andere; was die Fotos zeigen, wird neu gezählt.</translation>
+    </message>
+</context>
+<context>
     <name>Desk</name>
     <message>
         <source>{0}. The settings of the first start are used; the file stays as it is.</source>
@@ -823,8 +888,8 @@ Bild in dieser Entfernung: {4} x {5}</translation>
 <context>
     <name>EffectsPanel</name>
     <message>
-        <source>Open a site, and what its scene calls for stands here.</source>
-        <translation>Einen Standort öffnen; dann steht hier, was seine Szene verlangt.</translation>
+        <source>What the scene calls for stands here, once there is a site with panels.</source>
+        <translation>Hier steht, was die Szene verlangt, sobald es einen Standort mit Scheiben gibt.</translation>
     </message>
 </context>
 <context>
@@ -993,6 +1058,10 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     <message>
         <source>Turn to the other side</source>
         <translation>Auf die andere Seite drehen</translation>
+    </message>
+    <message>
+        <source>No panels</source>
+        <translation>Keine Scheiben</translation>
     </message>
     <message>
         <source>Panels: {0}, {1} of glass
@@ -1501,10 +1570,41 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>GridPicture</name>
+    <message>
+        <source>panel, sure</source>
+        <translation>Scheibe, sicher</translation>
+    </message>
+    <message>
+        <source>panel, less sure</source>
+        <translation>Scheibe, weniger sicher</translation>
+    </message>
+    <message>
+        <source>panel, doubtful</source>
+        <translation>Scheibe, zweifelhaft</translation>
+    </message>
+    <message>
+        <source>no panel</source>
+        <translation>keine Scheibe</translation>
+    </message>
+    <message>
+        <source>not seen, follows from the spacing</source>
+        <translation>nicht gesehen, folgt aus den Abständen</translation>
+    </message>
+    <message>
+        <source>known panel, not looked for here</source>
+        <translation>bekannte Scheibe, hier nicht gesucht</translation>
+    </message>
+</context>
+<context>
     <name>GridView</name>
     <message>
         <source>Photo with the grid found in it</source>
         <translation>Foto mit dem Raster, das darin gefunden wurde</translation>
+    </message>
+    <message>
+        <source>Tab chooses a line, arrows move it, Shift by ten pixels; Delete removes it, Insert adds one.</source>
+        <translation>Tab wählt eine Linie, Pfeile verschieben sie, mit Umschalt um zehn Pixel; Entf entfernt sie, Einfg fügt eine hinzu.</translation>
     </message>
     <message>
         <source>row {0}, column {1}</source>
@@ -1744,6 +1844,10 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Zero at {0:.6f}°, {1:.6f}°, {2} above the ellipsoid, {3} above sea level (EGM96)</source>
         <translation>Nullpunkt bei {0:.6f}°, {1:.6f}°, {2} über Ellipsoid, {3} über Meer (EGM96)</translation>
+    </message>
+    <message>
+        <source>No panels yet: find them in photos after the import, or pick a panel grid here.</source>
+        <translation>Noch keine Scheiben: nach dem Import in Fotos suchen oder hier ein Scheibenraster wählen.</translation>
     </message>
     <message>
         <source>{0} smaller ones</source>
@@ -2451,6 +2555,65 @@ Blickrichtung: {3}</translation>
         <source>In the imported file: {0}</source>
         <translation>In der importierten Datei: {0}</translation>
     </message>
+    <message>
+        <source>Found in photos: corners ± {0:.3g} {1}, confidence {2:.0f} %</source>
+        <translation>In Fotos gefunden: Ecken ± {0:.3g} {1}, Sicherheit {2:.0f} %</translation>
+    </message>
+</context>
+<context>
+    <name>PanelSightings</name>
+    <message>
+        <source>Photos that show the panel</source>
+        <translation>Fotos, die die Scheibe zeigen</translation>
+    </message>
+    <message>
+        <source>No panel selected</source>
+        <translation>Keine Scheibe ausgewählt</translation>
+    </message>
+    <message>
+        <source>Click a panel in 3-D to see which photos show it.</source>
+        <translation>Klicken Sie in 3D auf eine Scheibe, um zu sehen, welche Fotos sie zeigen.</translation>
+    </message>
+    <message>
+        <source>Panel {0}</source>
+        <translation>Scheibe {0}</translation>
+    </message>
+    <message>
+        <source>section {0}: {1}</source>
+        <translation>Sektor {0}: {1}</translation>
+    </message>
+    <message>
+        <source>Photos that show it: {0}; sections: {1}</source>
+        <translation>Fotos, die sie zeigen: {0}; Sektoren: {1}</translation>
+    </message>
+    <message>
+        <source>Sections that no photo shows: {0}</source>
+        <translation>Sektoren, die kein Foto zeigt: {0}</translation>
+    </message>
+    <message>
+        <source>Promised and on no photo: {0} ({1})</source>
+        <translation>Versprochen und auf keinem Foto: {0} ({1})</translation>
+    </message>
+    <message>
+        <source>Everything that the plan promised is on photos.</source>
+        <translation>Alles, was der Plan versprach, ist auf Fotos.</translation>
+    </message>
+    <message>
+        <source>Only photos of section {0} are listed; press it again for all.</source>
+        <translation>Nur Fotos von Sektor {0} sind aufgeführt; noch ein Druck darauf zeigt alle.</translation>
+    </message>
+    <message>
+        <source>photos that show it: {0}</source>
+        <translation>Fotos, die ihn zeigen: {0}</translation>
+    </message>
+    <message>
+        <source>promised by the plan, but on no photo</source>
+        <translation>vom Plan versprochen, aber auf keinem Foto</translation>
+    </message>
+    <message>
+        <source>on no photo</source>
+        <translation>auf keinem Foto</translation>
+    </message>
 </context>
 <context>
     <name>PassphraseDialog</name>
@@ -2495,6 +2658,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Rectified</source>
         <translation>Entzerrt</translation>
+    </message>
+    <message>
+        <source>Coverage in 3-D</source>
+        <translation>Abdeckung in 3D</translation>
+    </message>
+    <message>
+        <source>The panels coloured by what the photos show of them; a click tells which</source>
+        <translation>Die Scheiben gefärbt nach dem, was die Fotos von ihnen zeigen; ein Klick sagt, welche</translation>
     </message>
     <message>
         <source>Whole</source>
@@ -2583,6 +2754,10 @@ Blickrichtung: {3}</translation>
         <translation>Fotos lesen</translation>
     </message>
     <message>
+        <source>Count coverage</source>
+        <translation>Abdeckung zählen</translation>
+    </message>
+    <message>
         <source>Find panels</source>
         <translation>Scheiben suchen</translation>
     </message>
@@ -2638,32 +2813,28 @@ Blickrichtung: {3}</translation>
         <translation>Scheiben</translation>
     </message>
     <message>
-        <source>Accuracy and time</source>
-        <translation>Genauigkeit und Zeit</translation>
+        <source>Coverage</source>
+        <translation>Abdeckung</translation>
+    </message>
+    <message>
+        <source>Accuracy</source>
+        <translation>Genauigkeit</translation>
+    </message>
+    <message>
+        <source>What accuracy costs in time</source>
+        <translation>Was Genauigkeit an Zeit kostet</translation>
+    </message>
+    <message>
+        <source>Press a panel, or choose it with arrows; the space bar takes it out or puts it back.</source>
+        <translation>Drücken Sie auf eine Scheibe oder wählen Sie sie mit den Pfeilen; die Leertaste nimmt sie heraus oder setzt sie ein.</translation>
+    </message>
+    <message>
+        <source>Press a line, or choose it with Tab; arrows move it, Delete takes it out, Insert adds one.</source>
+        <translation>Drücken Sie auf eine Linie oder wählen Sie sie mit Tab; Pfeile verschieben sie, Entf nimmt sie heraus, Einfg fügt eine hinzu.</translation>
     </message>
     <message>
         <source>Folder of photos</source>
         <translation>Ordner mit Fotos</translation>
-    </message>
-    <message>
-        <source>Move line</source>
-        <translation>Linie verschieben</translation>
-    </message>
-    <message>
-        <source>Add line</source>
-        <translation>Linie hinzufügen</translation>
-    </message>
-    <message>
-        <source>Remove line</source>
-        <translation>Linie entfernen</translation>
-    </message>
-    <message>
-        <source>Restore panel</source>
-        <translation>Scheibe wiederherstellen</translation>
-    </message>
-    <message>
-        <source>Remove panel</source>
-        <translation>Scheibe entfernen</translation>
     </message>
     <message>
         <source>Folder: {0}</source>
@@ -2688,26 +2859,6 @@ Blickrichtung: {3}</translation>
     <message>
         <source>No grid was looked for in this photo; photos with one have the sign ▦.</source>
         <translation>In diesem Foto wurde kein Raster gesucht; Fotos mit einem haben das Zeichen ▦.</translation>
-    </message>
-    <message>
-        <source>Blue panels are sure, orange less so, pink ones doubtful; dashed lines were not seen.</source>
-        <translation>Blaue Scheiben sind sicher, orange weniger, rosa zweifelhaft; gestrichelte Linien wurden nicht gesehen.</translation>
-    </message>
-    <message>
-        <source>The site has other panels now: read the photos again to count what they show.</source>
-        <translation>Der Standort hat jetzt andere Scheiben: lesen Sie die Fotos neu, um zu zählen, was sie zeigen.</translation>
-    </message>
-    <message>
-        <source>{0} photos, {1} of them usable.</source>
-        <translation>{0} Fotos, davon {1} brauchbar.</translation>
-    </message>
-    <message>
-        <source>They show {0} of {1} sections.</source>
-        <translation>Sie zeigen {0} von {1} Sektoren.</translation>
-    </message>
-    <message>
-        <source>They show {0} sections; the plan promised {1}, of which {2:.1f} % are seen.</source>
-        <translation>Sie zeigen {0} Sektoren; der Plan versprach {1}, von denen {2:.1f} % zu sehen sind.</translation>
     </message>
 </context>
 <context>
@@ -3061,6 +3212,10 @@ Blickrichtung: {3}</translation>
         <translation>Zuerst im Reiter Standort einen Standort öffnen oder importieren.</translation>
     </message>
     <message>
+        <source>No panels yet: find them in photos (Photos tab), or draw them on the building (Site tab).</source>
+        <translation>Noch keine Scheiben: in Fotos suchen (Reiter Fotos) oder auf das Gebäude zeichnen (Reiter Standort).</translation>
+    </message>
+    <message>
         <source>Planning ...</source>
         <translation>Planung läuft ...</translation>
     </message>
@@ -3196,6 +3351,41 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Remove this corner</source>
         <translation>Diese Ecke entfernen</translation>
+    </message>
+</context>
+<context>
+    <name>PoseBox</name>
+    <message>
+        <source>Refine poses</source>
+        <translation>Posen verfeinern</translation>
+    </message>
+    <message>
+        <source>Own poses</source>
+        <translation>Eigene Posen</translation>
+    </message>
+    <message>
+        <source>Match the photos with each other and adjust all rays; computed once and kept beside the photos</source>
+        <translation>Die Fotos einander zuordnen und alle Strahlen ausgleichen; wird einmal berechnet und neben den Fotos aufbewahrt</translation>
+    </message>
+    <message>
+        <source>Go back to the poses that the photos themselves have</source>
+        <translation>Zurück zu den Posen, die die Fotos selbst haben</translation>
+    </message>
+    <message>
+        <source>By how much poses differ from the photos&apos; own, and how well the photos fit each other; more below</source>
+        <translation>Wie weit Posen von den eigenen der Fotos abweichen und wie gut die Fotos zueinander passen; mehr steht darunter</translation>
+    </message>
+    <message>
+        <source>Refined: {0} of {1} photos.</source>
+        <translation>Verfeinert: {0} von {1} Fotos.</translation>
+    </message>
+    <message>
+        <source>Moved {0}, at most {1}; turned {2:.2f}°, at most {3:.2f}°; {4:.2f} px.</source>
+        <translation>Verschoben um {0}, höchstens {1}; gedreht um {2:.2f}°, höchstens {3:.2f}°; {4:.2f} px.</translation>
+    </message>
+    <message>
+        <source>{0} found no place.</source>
+        <translation>{0} fanden keinen Platz.</translation>
     </message>
 </context>
 <context>
@@ -5810,6 +6000,10 @@ Take it over?</source>
         <translation>{0}; was an {1} verlangt war, wurde weggelassen</translation>
     </message>
     <message>
+        <source>{0}; how good the panels are was left out</source>
+        <translation>{0}; wie gut die Scheiben sind, wurde weggelassen</translation>
+    </message>
+    <message>
         <source>plan &apos;{0}&apos;</source>
         <translation>Plan &apos;{0}&apos;</translation>
     </message>
@@ -6082,12 +6276,12 @@ Take it over?</source>
         <translation>der Luftraum ist leer, {0} geht von {1} bis {2} m</translation>
     </message>
     <message>
-        <source>expected at least one panel, got none</source>
-        <translation>erwartet wurde mindestens eine Scheibe, gefunden: keine</translation>
-    </message>
-    <message>
         <source>expected unique panel ids, &apos;{0}&apos; occurs twice</source>
         <translation>erwartet wurden eindeutige Kennungen der Scheiben, &apos;{0}&apos; kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>panels: a site without a building needs at least one panel; add the new ones first, then remove these</source>
+        <translation>panels: Ein Standort ohne Gebäude braucht mindestens eine Scheibe; zuerst die neuen hinzufügen, dann diese entfernen</translation>
     </message>
     <message>
         <source>rally point</source>
@@ -6146,6 +6340,18 @@ Take it over?</source>
         <translation>Hindernis &apos;{0}&apos; ist ein Netz, kein Quader</translation>
     </message>
     <message>
+        <source>expected at least one panel, or a building_mesh on which panels can be found, got neither; add panels, or name the mesh of the building</source>
+        <translation>erwartet mindestens eine Scheibe oder ein building_mesh, auf dem Scheiben gefunden werden können, gefunden keines von beiden; Scheiben hinzufügen oder das Netz des Gebäudes nennen</translation>
+    </message>
+    <message>
+        <source>site &apos;{0}&apos; has no panels yet: find them in photos (&apos;panels&apos; or the Photos tab), or draw them on the building (the Site tab, or &apos;site import&apos; with --panel-grid)</source>
+        <translation>Standort &apos;{0}&apos; hat noch keine Scheiben: in Fotos suchen (&apos;panels&apos; oder Reiter Fotos) oder auf das Gebäude zeichnen (Reiter Standort oder &apos;site import&apos; mit --panel-grid)</translation>
+    </message>
+    <message>
+        <source>there are no panels yet: find them in photos (Photos tab), or draw a panel grid on the building</source>
+        <translation>es gibt noch keine Scheiben: in Fotos suchen (Reiter Fotos) oder ein Scheibenraster auf das Gebäude zeichnen</translation>
+    </message>
+    <message>
         <source>expected {0} obstacle meshes, got {1}</source>
         <translation>erwartet wurden {0} Hindernisnetze, gefunden: {1}</translation>
     </message>
@@ -6156,10 +6362,6 @@ Take it over?</source>
     <message>
         <source>no-fly zone</source>
         <translation>Flugverbotszone</translation>
-    </message>
-    <message>
-        <source>panels: a site needs at least one panel; add the new ones first, then remove these</source>
-        <translation>panels: Ein Standort braucht mindestens eine Scheibe; zuerst die neuen hinzufügen, dann diese entfernen</translation>
     </message>
     <message>
         <source>sea level</source>
@@ -6294,10 +6496,6 @@ Take it over?</source>
         <translation>in dieser Datei ist kein Gebäude mit Flächen</translation>
     </message>
     <message>
-        <source>no building in this file has windows; {0}</source>
-        <translation>kein Gebäude in dieser Datei hat Fenster; {0}</translation>
-    </message>
-    <message>
         <source>other buildings in the file: {0} within reach of the airspace, kept as obstacles; {1} further away, left out</source>
         <translation>weitere Gebäude in der Datei: {0} in Reichweite des Luftraums, als Hindernisse behalten; {1} weiter weg, weggelassen</translation>
     </message>
@@ -6398,10 +6596,6 @@ Take it over?</source>
         <translation>kein Bauteil in dieser Datei hat Geometrie</translation>
     </message>
     <message>
-        <source>there is neither a window nor a glazed plate with geometry; {0}</source>
-        <translation>es gibt weder ein Fenster noch eine verglaste Platte mit Geometrie; {0}</translation>
-    </message>
-    <message>
         <source>the file has more than {0} GiB; export the facade alone</source>
         <translation>die Datei hat mehr als {0} GiB; die Fassade allein exportieren</translation>
     </message>
@@ -6462,6 +6656,10 @@ Take it over?</source>
         <translation>es gibt keine Fenster</translation>
     </message>
     <message>
+        <source>{0}, so the site has no panels yet: find them in photos (&apos;panels&apos; or the Photos tab), or draw them on the building (the Site tab, or --panel-grid)</source>
+        <translation>{0}, daher hat der Standort noch keine Scheiben: in Fotos suchen (&apos;panels&apos; oder Reiter Fotos) oder auf das Gebäude zeichnen (Reiter Standort oder --panel-grid)</translation>
+    </message>
+    <message>
         <source>expected a file ending in {0}, got &apos;{1}&apos;</source>
         <translation>erwartet wurde eine Datei mit der Endung {0}, gefunden: &apos;{1}&apos;</translation>
     </message>
@@ -6484,10 +6682,6 @@ Take it over?</source>
     <message>
         <source>{0} % of the building&apos;s surface does not close (gaps and overlaps in the model): the distance to it is kept all the same, but the space behind it does not count as solid</source>
         <translation>{0} % der Gebäudeoberfläche schließen nicht (Lücken und Überlappungen im Modell): Der Abstand dazu wird trotzdem eingehalten, der Raum dahinter gilt aber nicht als fest</translation>
-    </message>
-    <message>
-        <source>a mesh does not tell windows from walls; state where the panels are, for example --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (lower left, lower right and upper left corner of a facade, seen from outside)</source>
-        <translation>ein Netz unterscheidet Fenster nicht von Wänden; angeben, wo die Scheiben sind, zum Beispiel --panel-grid &apos;0,0,0 36,0,0 0,0,42&apos; --rows 14 --columns 20 (untere linke, untere rechte und obere linke Ecke einer Fassade, von außen gesehen)</translation>
     </message>
     <message>
         <source>axes: {0} is up</source>
@@ -6602,10 +6796,6 @@ Take it over?</source>
         <translation>die Koordinaten der Datei liegen bis zu {0} km von null, daher gilt der genannte Ort als Mitte des Grundrisses am Boden; sind es projizierte Koordinaten, rechnet --crs sie genau um (Gitternord ist nicht geografisch Nord)</translation>
     </message>
     <message>
-        <source>panels come from the windows of a city model (level of detail 3), from IfcWindow and glazed IfcPlate of a BIM model, or from you: --panel-grid &apos;E,N,U E,N,U E,N,U&apos; (lower left, lower right and upper left corner of a facade seen from outside, in the file&apos;s coordinates) --rows N --columns N</source>
-        <translation>Scheiben kommen aus den Fenstern eines Stadtmodells (Detailgrad 3), aus IfcWindow und verglasten IfcPlate eines BIM-Modells oder von Hand: ein Rechteck auf einer Wand aufziehen mit --panel-grid</translation>
-    </message>
-    <message>
         <source>there is no place for home inside the airspace that is at least {0} m from every wall; widen it with --airspace-margin, or name a place with --home E,N,U</source>
         <translation>im Luftraum ist kein Platz für den Start, der mindestens {0} m von jeder Wand liegt; ihn mit --airspace-margin erweitern oder mit --home E,N,U einen Ort nennen</translation>
     </message>
@@ -6620,6 +6810,10 @@ Take it over?</source>
     <message>
         <source>home: {0:m}, {1:m}, {2} m, on the ground in front of the largest facade, {3} m from the nearest wall (--home)</source>
         <translation>Startplatz: {0:m}, {1:m}, {2} m, am Boden vor der größten Fassade, {3} m von der nächsten Wand (--home)</translation>
+    </message>
+    <message>
+        <source>home: {0:m}, {1:m}, {2} m, on the ground beside the building, {3} m from the nearest wall (--home)</source>
+        <translation>Startplatz: {0:m}, {1:m}, {2} m, am Boden neben dem Gebäude, {3} m von der nächsten Wand (--home)</translation>
     </message>
     <message>
         <source>no place inside the airspace is {0} m from every wall, so home is tight: choose one with --home, or widen --airspace-margin</source>
@@ -7890,6 +8084,10 @@ Take it over?</source>
         <translation>Fassaden werden berechnet</translation>
     </message>
     <message>
+        <source>rendering</source>
+        <translation>Bilder werden berechnet</translation>
+    </message>
+    <message>
         <source>trying scales</source>
         <translation>Maßstäbe werden ausprobiert</translation>
     </message>
@@ -7906,8 +8104,12 @@ Take it over?</source>
         <translation>eine Fassade braucht mindestens zwei Linien in jeder Richtung; fügen Sie eine andere hinzu, bevor Sie diese entfernen</translation>
     </message>
     <message>
-        <source>no panel is left; a site needs at least one: put one back before these panels are used</source>
-        <translation>es ist keine Scheibe übrig; ein Standort braucht mindestens eine: stellen Sie eine wieder her, bevor diese Scheiben verwendet werden</translation>
+        <source>no panel is left: put one back before these panels are used</source>
+        <translation>es ist keine Scheibe übrig: stellen Sie eine wieder her, bevor diese Scheiben verwendet werden</translation>
+    </message>
+    <message>
+        <source>the site has no panels yet, so nothing is said of what the photos show of them</source>
+        <translation>der Standort hat noch keine Scheiben, daher lässt sich nicht sagen, was die Fotos von ihnen zeigen</translation>
     </message>
     <message>
         <source>reading photos</source>
@@ -8048,6 +8250,26 @@ Take it over?</source>
     <message>
         <source>a wall with {0} panel was left out</source>
         <translation>eine Wand mit {0} Scheibe wurde ausgelassen</translation>
+    </message>
+    <message>
+        <source>inclined lines</source>
+        <translation>schräge Linien</translation>
+    </message>
+    <message>
+        <source>edge pixels on one line</source>
+        <translation>Kantenpixel auf einer Linie</translation>
+    </message>
+    <message>
+        <source>no inclined line has edges enough for a profile through three panes</source>
+        <translation>keine schräge Linie hat genug Kanten für ein Profil durch drei Scheiben</translation>
+    </message>
+    <message>
+        <source>{0} inclined lines have edges enough for a profile through three panes</source>
+        <translation>{0} schräge Linien haben genug Kanten für ein Profil durch drei Scheiben</translation>
+    </message>
+    <message>
+        <source>{0} of {1} panels have more than four corners; a site&apos;s panels have four, so that the largest four-cornered part of each is kept</source>
+        <translation>{0} von {1} Scheiben haben mehr als vier Ecken; Scheiben eines Standorts haben vier, deshalb bleibt von jeder das größte Viereck darin</translation>
     </message>
     <message>
         <source>no grid of panels was found on any facade; choose sharper photos taken from the front</source>
@@ -8230,6 +8452,14 @@ Take it over?</source>
         <translation>das Foto zeigt keine Fläche dieser Fassade</translation>
     </message>
     <message>
+        <source>{0} photos searched together showed no more than each by itself</source>
+        <translation>{0} Fotos gemeinsam durchsucht zeigten nicht mehr als jedes für sich</translation>
+    </message>
+    <message>
+        <source>its lines were found in {0} photos together, which were moved onto one another by up to {1} px</source>
+        <translation>ihre Linien wurden in {0} Fotos gemeinsam gefunden, die um bis zu {1} px aufeinander geschoben wurden</translation>
+    </message>
+    <message>
         <source>find lines</source>
         <translation>Linien werden gesucht</translation>
     </message>
@@ -8256,6 +8486,142 @@ Take it over?</source>
     <message>
         <source>fuse views</source>
         <translation>Ansichten werden vereint</translation>
+    </message>
+    <message>
+        <source>finding features</source>
+        <translation>Merkmale werden gesucht</translation>
+    </message>
+    <message>
+        <source>matching photos</source>
+        <translation>Fotos werden einander zugeordnet</translation>
+    </message>
+    <message>
+        <source>building the model</source>
+        <translation>das Modell wird aufgebaut</translation>
+    </message>
+    <message>
+        <source>adjusting all rays</source>
+        <translation>alle Strahlen werden ausgeglichen</translation>
+    </message>
+    <message>
+        <source>estimating accuracy</source>
+        <translation>die Genauigkeit wird geschätzt</translation>
+    </message>
+    <message>
+        <source>inverting normal equations</source>
+        <translation>die Normalgleichungen werden umgekehrt</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos have refined poses and lenses, moved by {2} m and turned by {3} degrees in the middle, by {4} m and {5} degrees at most; image points are off by {6} px</source>
+        <translation>{0} von {1} Fotos haben verfeinerte Posen und Objektive, im Mittel um {2} m verschoben und um {3} Grad gedreht, höchstens um {4} m und {5} Grad; Bildpunkte liegen um {6} px daneben</translation>
+    </message>
+    <message>
+        <source>none of the {0} photos has a refined pose; all keep their own</source>
+        <translation>keines der {0} Fotos hat eine verfeinerte Pose; alle behalten ihre eigene</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos found no place in the model, the first {2}; they keep their own poses</source>
+        <translation>{0} von {1} Fotos fanden keinen Platz im Modell, das erste ist {2}; sie behalten ihre eigenen Posen</translation>
+    </message>
+    <message>
+        <source>nothing fixes where the refined model lies; the photo keeps its own pose</source>
+        <translation>nichts legt fest, wo das verfeinerte Modell liegt; das Foto behält seine eigene Pose</translation>
+    </message>
+    <message>
+        <source>its refined position is {0} m from its own, which is {1} standard deviations; the photo keeps its own pose</source>
+        <translation>seine verfeinerte Position liegt {0} m von der eigenen, das sind {1} Standardabweichungen; das Foto behält seine eigene Pose</translation>
+    </message>
+    <message>
+        <source>its refined angles are {0} degrees from its own, which is {1} standard deviations more than for the others; the photo keeps its own pose</source>
+        <translation>seine verfeinerten Winkel weichen um {0} Grad von den eigenen ab, das sind {1} Standardabweichungen mehr als bei den anderen; das Foto behält seine eigene Pose</translation>
+    </message>
+    <message>
+        <source>its refined pose is known {0} times worse than its own; the photo keeps its own pose</source>
+        <translation>seine verfeinerte Pose ist {0}-mal schlechter bekannt als die eigene; das Foto behält seine eigene Pose</translation>
+    </message>
+    <message>
+        <source>{0} of {1} refined poses were refused, so none is used: all photos keep their own</source>
+        <translation>{0} von {1} verfeinerten Posen wurden abgelehnt, deshalb wird keine verwendet: alle Fotos behalten ihre eigenen</translation>
+    </message>
+    <message>
+        <source>the angles of all photos are off by {0} degrees in common, so it is the compass or the gimbal; refined poses are free of it</source>
+        <translation>die Winkel aller Fotos weichen gemeinsam um {0} Grad ab, es liegt also am Kompass oder am Gimbal; verfeinerte Posen sind frei davon</translation>
+    </message>
+    <message>
+        <source>the photos are linked with each other too closely for the accuracy of each pose to be computed; all count as equally good</source>
+        <translation>die Fotos hängen zu eng zusammen, um die Genauigkeit jeder Pose zu berechnen; alle gelten als gleich gut</translation>
+    </message>
+    <message>
+        <source>the photos were taken along one line: the turn of the model about it is that of the cameras&apos; angles</source>
+        <translation>die Fotos wurden auf einer Linie aufgenommen: die Drehung des Modells um sie ist die der Kamerawinkel</translation>
+    </message>
+    <message>
+        <source>the positions of {0} of {1} photos contradict the model and were not used</source>
+        <translation>die Positionen von {0} der {1} Fotos widersprechen dem Modell und wurden nicht verwendet</translation>
+    </message>
+    <message>
+        <source>refining cameras needs at least {0} photos with a pose, got {1}</source>
+        <translation>um Kameras zu verfeinern, braucht es mindestens {0} Fotos mit Pose, gefunden wurden {1}</translation>
+    </message>
+    <message>
+        <source>refining cameras needs pycolmap, which is not installed; install it with: pip install &apos;reflight[colmap]&apos;, or go on with the poses that the photos have</source>
+        <translation>um Kameras zu verfeinern, braucht es pycolmap, das nicht installiert ist; installieren Sie es mit: pip install &apos;reflight[colmap]&apos;, oder arbeiten Sie mit den Posen der Fotos weiter</translation>
+    </message>
+    <message>
+        <source>the {0} photos do not fit together: expected features that at least {1} of them share; photos must overlap by two thirds, and show more than mirroring glass</source>
+        <translation>die {0} Fotos passen nicht zusammen: erwartet wurden Merkmale, die mindestens {1} von ihnen gemeinsam haben; Fotos müssen sich zu zwei Dritteln überlappen und mehr zeigen als spiegelndes Glas</translation>
+    </message>
+    <message>
+        <source>COLMAP stopped while {0}: {1}</source>
+        <translation>COLMAP brach ab ({0}): {1}</translation>
+    </message>
+    <message>
+        <source>COLMAP model: {0} of its {1} images are among the {2} photos with a pose; expected at least 3; are the names in the model the paths below the folder of photos?</source>
+        <translation>COLMAP-Modell: {0} seiner {1} Bilder sind unter den {2} Fotos mit Pose; erwartet werden mindestens 3; sind die Namen im Modell die Pfade unterhalb des Fotoordners?</translation>
+    </message>
+    <message>
+        <source>COLMAP model: all photos were taken in one place, so that the model gets no scale from them</source>
+        <translation>COLMAP-Modell: alle Fotos wurden an einem Ort aufgenommen, so dass das Modell keinen Maßstab von ihnen bekommt</translation>
+    </message>
+    <message>
+        <source>COLMAP model: the photos&apos; positions contradict the model; are they photos of this model?</source>
+        <translation>COLMAP-Modell: die Positionen der Fotos widersprechen dem Modell; sind es Fotos dieses Modells?</translation>
+    </message>
+    <message>
+        <source>cannot be written ({0}); name another folder</source>
+        <translation>nicht beschreibbar ({0}); nennen Sie einen anderen Ordner</translation>
+    </message>
+    <message>
+        <source>is a whole drive, and refined poses cannot lie beside it; copy the photos first</source>
+        <translation>ist ein ganzes Laufwerk, und neben ihm können keine verfeinerten Posen liegen; kopieren Sie zuerst die Fotos</translation>
+    </message>
+    <message>
+        <source>expected a folder to write into, found none</source>
+        <translation>erwartet wurde ein Ordner, in den geschrieben wird, gefunden wurde keiner</translation>
+    </message>
+    <message>
+        <source>is write-protected; name another folder for refined poses</source>
+        <translation>ist schreibgeschützt; nennen Sie einen anderen Ordner für verfeinerte Posen</translation>
+    </message>
+    <message>
+        <source>holds something other than refined poses; name another folder</source>
+        <translation>enthält etwas anderes als verfeinerte Posen; nennen Sie einen anderen Ordner</translation>
+    </message>
+    <message>
+        <source>{0}; remove the folder {1} to have the poses refined again</source>
+        <translation>{0}; entfernen Sie den Ordner {1}, um die Posen neu verfeinern zu lassen</translation>
+    </message>
+    <message>
+        <source>names other photos than the model beside it</source>
+        <translation>nennt andere Fotos als das Modell daneben</translation>
+    </message>
+    <message>
+        <source>photo &apos;{0}&apos;: expected a covariance of 6 rows of 6 numbers</source>
+        <translation>Foto &apos;{0}&apos;: erwartet wurde eine Kovarianz aus 6 Zeilen mit je 6 Zahlen</translation>
+    </message>
+    <message>
+        <source>photo &apos;{0}&apos;: expected a covariance, got a matrix that is none</source>
+        <translation>Foto &apos;{0}&apos;: erwartet wurde eine Kovarianz, gefunden wurde eine Matrix, die keine ist</translation>
     </message>
 </context>
 <context>
@@ -8935,16 +9301,16 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Verschieben</translation>
     </message>
     <message>
-        <source>Drag a line to its place; elsewhere, drag the picture</source>
-        <translation>Eine Linie an ihren Platz ziehen; anderswo das Bild ziehen</translation>
-    </message>
-    <message>
         <source>Panel on or off</source>
         <translation>Scheibe an/aus</translation>
     </message>
     <message>
-        <source>A press takes a panel out, or puts it back</source>
-        <translation>Ein Druck nimmt eine Scheibe heraus oder stellt sie wieder her</translation>
+        <source>Drag a line to its place, or press it and move it with the arrows; elsewhere, drag the picture</source>
+        <translation>Eine Linie an ihren Platz ziehen oder auf sie drücken und sie mit den Pfeilen verschieben; anderswo das Bild ziehen</translation>
+    </message>
+    <message>
+        <source>A press takes a panel out, or puts it back; arrows and the space bar do the same</source>
+        <translation>Ein Druck nimmt eine Scheibe heraus oder setzt sie wieder ein; Pfeile und Leertaste tun dasselbe</translation>
     </message>
     <message>
         <source>Add upright line</source>
@@ -8969,6 +9335,26 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>A press on a line removes it</source>
         <translation>Ein Druck auf eine Linie entfernt sie</translation>
+    </message>
+    <message>
+        <source>To the left</source>
+        <translation>Nach links</translation>
+    </message>
+    <message>
+        <source>To the right</source>
+        <translation>Nach rechts</translation>
+    </message>
+    <message>
+        <source>Upwards</source>
+        <translation>Nach oben</translation>
+    </message>
+    <message>
+        <source>Downwards</source>
+        <translation>Nach unten</translation>
+    </message>
+    <message>
+        <source>Move the chosen line by a pixel, or choose the next panel; arrow keys do the same, Shift by ten</source>
+        <translation>Die gewählte Linie um ein Pixel verschieben oder die nächste Scheibe wählen; Pfeiltasten tun dasselbe, mit Umschalt um zehn</translation>
     </message>
     <message>
         <source>Take back: {0}</source>

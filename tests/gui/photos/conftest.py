@@ -1,0 +1,47 @@
+"""A window with the Photos tab, its photos read, and panels found in them."""
+
+import gc
+
+import pytest
+
+from tests.gui.driving import Answers, turn_until
+from tests.gui.photos.photos_tab import PhotosTab
+from tests.services.photo_cases import write_photos
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("photos")
+    write_photos(folder)
+    damaged = sorted(folder.iterdir())[2]
+    damaged.write_bytes(damaged.read_bytes()[:-4000])
+    return folder
+
+
+@pytest.fixture(scope="module")
+def desk(application, worker, tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
+        from groundstation.gui.desk import Desk
+
+        desk = Desk(application, Answers(), worker)
+        desk.show()
+        desk.window.setGeometry(0, 0, 1280, 720)
+        turn_until(application, lambda: desk.window.stage.scene() is not None)
+        yield desk
+        desk.window.close()
+        desk.close()
+        gc.collect()
+
+
+@pytest.fixture
+def page(application, desk, folder):
+    page = PhotosTab(application, desk, folder)
+    yield page
+    desk.workspace.messageShown.disconnect(page.messages.append)
+
+
+@pytest.fixture
+def found(page):
+    page.found()
+    return page

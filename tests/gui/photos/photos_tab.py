@@ -1,0 +1,75 @@
+"""The Photos tab in the real window with its photos read, and hands to work it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from groundstation.services.document import Document
+from groundstation.services.history import History
+from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.services.photo_cases import draft_of, site_model, with_paths
+
+
+class PhotosTab:
+    """A user at the tab."""
+
+    def __init__(self, application, desk, folder, model=None):
+        self.application, self.desk = application, desk
+        desk.workspace.session.open(Document(site_model() if model is None else model), None)
+        desk.window.show_tab("photos")
+        self.tab = desk.window.tab("photos")
+        self.messages = []
+        desk.workspace.messageShown.connect(self.messages.append)
+        self.tab.questions = Answers(folder=folder)
+        self.tab.choose.click()
+        self.idle()
+
+    @property
+    def view(self):
+        return self.tab.pane.view
+
+    @property
+    def draft(self):
+        return self.tab.desk.draft
+
+    @property
+    def grid(self):
+        return self.draft.grid(self.tab.pane.place())
+
+    def idle(self):
+        turn_until_idle(self.application, self.desk)
+        turn_until(self.application, lambda: not self.tab.store.is_busy())
+        self.application.processEvents()
+
+    def found(self, draft=None):
+        """Give the desk what a search finds in these photos; the search itself is tested where it is."""
+        cards = self.tab.desk.cards
+        draft = draft_of([card.posed for card in cards]) if draft is None else draft
+        self.tab.desk._history = History(with_paths(draft, [card.path for card in cards]))
+        self.tab.desk.draftChanged.emit()
+        self.idle()
+
+    def at(self, point_px):
+        return self.view.place_of(point_px).toPoint()
+
+    def press(self, point_px):
+        QTest.mouseClick(self.view, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, self.at(point_px))
+        self.idle()
+
+    def drag(self, start, end):
+        buttons = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+        QTest.mousePress(self.view, *buttons, start)
+        QTest.mouseMove(self.view, end)
+        QTest.mouseRelease(self.view, *buttons, end)
+        self.idle()
+
+    def use_tool(self, name):
+        from groundstation.gui.photos.grid_view import Tool
+
+        self.tab.tools._buttons[Tool[name]].click()
+
+    def keys(self, *keys, shift=False):
+        modifier = Qt.KeyboardModifier.ShiftModifier if shift else Qt.KeyboardModifier.NoModifier
+        for key in keys:
+            QTest.keyClick(self.view, Qt.Key[f"Key_{key}"], modifier)
