@@ -8,6 +8,8 @@ PY := $(VENV)/bin/python
 endif
 # Processes that share the tests; those with windows each have a virtual screen of their own.
 WORKERS ?= 2
+WARM := $(patsubst %,$(VENV)/.warm-%,planning missions.simulator reconstruction)
+UNUSED := [/\\](tests|sympy|plotly|pymavlink.dialects)[/\\]
 TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -15,10 +17,11 @@ unexport PYTHONDONTWRITEBYTECODE
 .PHONY: setup demo test test-all check check-style check-types check-imports ready-to-test alone benchmark format
 .PHONY: translations pictures clean
 
-setup: $(VENV)/.ready $(VENV)/.warm
+setup: $(VENV)/.ready $(WARM)
 
 # CPU torch goes in first: asked for later, as a dependency, pip could choose a CUDA build of several gigabytes.
 # pip would compile the files of packages one by one; compileall does it on all cores, and passes over what no Python can.
+# UNUSED are packages and folders, half of all there is, of which next to nothing is ever imported.
 $(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] not in ((3, 11), (3, 12)))' || \
 		{ echo 'Python 3.11 or 3.12 is needed; name one: make PYTHON=python3.11' >&2; exit 1; }
@@ -27,14 +30,12 @@ $(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
 	$(PY) -m pip install --quiet --upgrade --constraint constraints.txt pip setuptools
 	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt torch
 	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt --editable '.[dev,cluster]'
-	$(PY) -m compileall -qq -j $(WORKERS) $(VENV) || true
+	$(PY) -m compileall -qq -j $(WORKERS) -x '$(UNUSED)' $(VENV) || true
 	touch $@
 
 # The kernels, compiled once for all processes.
-$(VENV)/.warm: $(VENV)/.ready
-	$(PY) -m planning.warm_up
-	$(PY) -m missions.simulator.warm_up
-	$(PY) -m reconstruction.warm_up
+$(WARM): $(VENV)/.warm-%: $(VENV)/.ready
+	$(PY) -m $*.warm_up
 	touch $@
 
 demo: setup
@@ -52,17 +53,17 @@ check-types: $(VENV)/.ready
 check-imports: $(VENV)/.ready
 	$(VENV)/bin/lint-imports
 
-# Compiling the kernels takes one core as long as the checks take another.
-ready-to-test: check $(VENV)/.warm
+# Compiling the kernels of planning takes one core as long as all the rest takes another: it has to start first.
+ready-to-test: $(WARM) check
 
 test:
 	$(MAKE) --jobs $(WORKERS) ready-to-test
-	$(PY) -m pytest -n $(WORKERS) -m 'not slow and not benchmark and not alone'
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not slow and not benchmark and not alone'
 	$(MAKE) alone FAST='not slow and'
 
 test-all:
 	$(MAKE) --jobs $(WORKERS) ready-to-test
-	$(PY) -m pytest -n $(WORKERS) -m 'not benchmark and not alone'
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not benchmark and not alone'
 	$(MAKE) alone
 
 # Only the files with such tests are read.
@@ -79,6 +80,8 @@ pictures: setup
 	cp pictures/1280x720/site.png docs/window-site.png
 	cp pictures/1280x720/mission-2.png docs/window-mission.png
 	cp pictures/1280x720/fly-paused.png docs/window-fly.png
+	cp pictures/1280x720/photos-grid.png docs/window-photos.png
+	cp pictures/1280x720/photos-coverage.png docs/window-photos-coverage.png
 
 format: setup
 	$(PY) -m ruff format .

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+import tempfile
 from pathlib import Path
 
 import hypothesis
@@ -17,6 +19,17 @@ hypothesis.settings.load_profile("reflight")
 _STATUS = pytest.StashKey[int]()
 
 SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
+
+MEMORY = Path("/dev/shm")
+NEEDED_BYTES = 2**30
+"""Free memory from which on the files of tests are kept there; 30 MB were the most seen at a time."""
+
+
+def pytest_configure() -> None:
+    """Keep the files of tests in memory where there is room: disks wait for each file that is written anew."""
+    has_room = os.access(MEMORY, os.W_OK) and shutil.disk_usage(MEMORY).free >= NEEDED_BYTES
+    if has_room and "TMPDIR" not in os.environ:
+        os.environ["TMPDIR"] = tempfile.tempdir = str(MEMORY)
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:

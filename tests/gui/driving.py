@@ -6,10 +6,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from PySide6.QtCore import QTimer
+
 from groundstation.gui.questions import Answer, Questions
 
-SETTLE_S = 0.35
-"""Effects are looked at 0.3 s after the last change, by a job of their own."""
+SETTLE_S, CALM_S = 0.35, 0.05
+"""Time without a job after which none follows: where a timer still runs (effects are looked at 0.3 s after the last
+change), and where none does."""
 
 
 class Answers(Questions):
@@ -56,7 +59,7 @@ def turn_until(application, condition: Callable[[], bool], timeout_s: float = 60
 def turn_until_idle(application, desk, timeout_s: float = 60.0) -> float:
     """Process events until no job runs and none follows; returns the longest turn, s."""
     longest, quiet_since = 0.0, time.perf_counter()
-    while time.perf_counter() - quiet_since < SETTLE_S:
+    while time.perf_counter() - quiet_since < (SETTLE_S if _waits(desk) else CALM_S):
         longest = max(longest, turn_until(application, lambda: not desk.workspace.jobs(), timeout_s))
         started = time.perf_counter()
         application.processEvents()
@@ -65,3 +68,9 @@ def turn_until_idle(application, desk, timeout_s: float = 60.0) -> float:
             quiet_since = time.perf_counter()
         time.sleep(0.005)
     return longest
+
+
+def _waits(desk) -> bool:
+    """Whether a timer runs that may start something soon."""
+    timers = desk.window.findChildren(QTimer)
+    return any(timer.isActive() and timer.interval() <= 1000.0 * SETTLE_S for timer in timers)

@@ -16,6 +16,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import roof
 from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.planning.revision.cases import QUICK
 from tests.services.project_cases import small_disk
 
 
@@ -52,7 +53,7 @@ def make_desk(application, worker, answers, tmp_path, monkeypatch):
 
 @pytest.fixture(scope="module")
 def entry():
-    return PlanEntry("plan-1", "First", plan_flight(roof(), PlanRequest(n_views=4, time_budget_s=2.0)).plan)
+    return PlanEntry("plan-1", "First", plan_flight(roof(), PlanRequest(n_views=4, greedy=QUICK)).plan)
 
 
 def with_site(application, desk):

@@ -116,8 +116,9 @@ def test_mesh_becomes_a_site_field_by_field(opened, tower_mm):
     assert "“Unit of lengths”" in dialog.error()
     hands.choose(form._unit, "mm")
     hands.again()
-    assert "pick a rectangle on a wall with “Panel grid”" in dialog.error()
-    assert not dialog.can_import()
+    assert dialog.error() == ""
+    assert "No panels yet" in dialog._summary.text()
+    assert "draw them on the building (the Site tab, or “Panel grid”)" in dialog._notes.toPlainText()
     assert len(dialog.shown().source.building.triangles) == 12
     grid._rows.setValue(14)
     grid._columns.setValue(20)
@@ -179,7 +180,8 @@ def test_wrong_coordinate_system_is_told_by_the_fields_name(opened, shared_data)
         assert not hands.dialog.can_import()
     hands.choose(form._place, "file")
     hands.again()
-    assert "there are no windows" in hands.dialog.error()
+    assert hands.dialog.error() == ""
+    assert "there are no windows" in hands.dialog._notes.toPlainText()
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,13 @@ import pytest
 from groundstation.services.document import Item, ItemKind
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
-from planning.request import PlanRequest
+from planning.request import GreedyParameters, PlanRequest
 from tests.gui.driving import Answers, turn_until, turn_until_idle
+
+QUICK = PlanRequest(
+    n_views=8, greedy=GreedyParameters(n_candidates=400, improve=False, certify=False), time_budget_s=4.0
+)
+"""A plan that is there at once, where the window is what is tested."""
 
 
 @pytest.fixture
@@ -48,7 +53,7 @@ def test_window_opens_a_site_plans_it_and_shows_both(application, desk):
     desk.window.show_tab("plan")
     turn_until_idle(application, desk)
     empty = scene.screenshot()
-    page = planned(application, desk, PlanRequest(n_views=12, time_budget_s=5.0))
+    page = planned(application, desk, PlanRequest(n_views=12, time_budget_s=3.0))
     assert "roof: panels 32" in desk.window.messages.texts()
     assert "Views: 12, sorties: 1" in desk.window.messages.texts()
     assert page.verdict().startswith("Ready to fly")
@@ -96,7 +101,7 @@ def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application,
 
 def test_editing_by_hand_shows_at_once_and_can_be_undone(application, desk):
     opened(application, desk, "roof")
-    page = planned(application, desk, PlanRequest(n_views=8, time_budget_s=4.0))
+    page = planned(application, desk, QUICK)
     before = desk.workspace.document.current.plan
     viewpoint = before.viewpoints[3]
     desk.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
@@ -116,13 +121,13 @@ def test_editing_by_hand_shows_at_once_and_can_be_undone(application, desk):
     assert "switch off “Keep when planning again”" in desk.window.messages.texts()
     page.viewpoint.add_viewpoint()
     assert len(desk.workspace.document.current.plan.viewpoints) == 9
-    again = planned(application, desk, PlanRequest(n_views=6, time_budget_s=4.0))
+    again = planned(application, desk, replace(QUICK, n_views=6))
     assert locked in again.desk.in_hand.plan.viewpoints
 
 
 def test_plans_are_compared_side_by_side(application, desk):
     opened(application, desk, "roof")
-    planned(application, desk, PlanRequest(n_views=8, time_budget_s=4.0))
+    planned(application, desk, QUICK)
     page = planned(application, desk, PlanRequest(method="noto", share=0.9, time_budget_s=4.0))
     page.lists.compare(tuple(entry.id for entry in desk.workspace.document.plans))
     turn_until_idle(application, desk)
@@ -201,7 +206,7 @@ def test_the_language_waits_while_something_runs(application, desk):
     opened(application, desk, "roof")
     desk.window.show_tab("plan")
     page, window = desk.window.tab("plan"), desk.window
-    page.desk.set_request(PlanRequest(n_views=6, time_budget_s=4.0))
+    page.desk.set_request(replace(QUICK, n_views=6))
     page.desk.plan()
     desk.choose(language=Language.GERMAN)
     assert desk.window is window

@@ -20,6 +20,7 @@ from groundstation.gui.sentences import (
     photos,
     plan,
     project,
+    refine,
     report,
     site,
     site_import,
@@ -43,7 +44,7 @@ from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
-FROM_SOURCES = (dji, fly, insight, mission, photos, plan, project, report, site, site_import, stages)
+FROM_SOURCES = (dji, fly, insight, mission, photos, plan, project, refine, report, site, site_import, stages)
 """Tables of whole sentences; `parts` holds words and what Python says."""
 
 NOT_SHOWN = {
@@ -55,12 +56,16 @@ NOT_SHOWN = {
     "groundstation/services/import_words.py": "patterns, and English for what the import says otherwise",
     "missions/dji/xml_text.py": "file content",
     **{
-        f"reconstruction/colmap/{name}.py": "the window reads no COLMAP models"
-        for name in ("binary", "camera_models", "folder", "georeference", "text")
+        f"reconstruction/colmap/{name}.py": "the window reads no COLMAP models but those that it has written"
+        for name in ("binary", "camera_models", "folder", "text")
     },
     "reconstruction/rectify/curvature.py": "the decision about each facade, for the command line",
     "reconstruction/rectify/vanishing_view.py": "facades in the window are rectified by their poses",
-    "reconstruction/segmentation/fuse.py": "views are fused in measurements only",
+    "reconstruction/segmentation/fuse.py": "the views of one search are of one size",
+    "reconstruction/panels/fusing.py": "the decision about each facade, for the command line",
+    "reconstruction/panels/given.py": "panels files are read on the command line",
+    "reconstruction/panels_file.py": "panels files are read on the command line",
+    "reconstruction/rectify/polynomial.py": "the polynomial is asked for on the command line",
     "reconstruction/segmentation/parameters.py": "settings are read from files on the command line",
     "reconstruction/segmentation/pictures.py": "the window decodes its photos itself",
     "missions/simulator/ardupilot_scheduler.py": "texts of an autopilot, which no vehicle translates",
@@ -114,6 +119,17 @@ NO_SENTENCE = {
         "{0}nothing was recorded: the vehicle sent no positions in flight",
         "the site has no building mesh, and panels are found on one; name a mesh instead",
         "the site would be written over the file it is imported from; name another file",
+        *(
+            "no building in this file has windows; {0}",
+            "there is neither a window nor a glazed plate with geometry; {0}",
+        ),
+        "a mesh does not tell windows from walls; state where the panels are, for example --panel-grid '0,0,0 36,0,0 "
+        "0,0,42' --rows 14 --columns 20 (lower left, lower right and upper left corner of a facade, seen from "
+        "outside), or import the building alone with --without-panels and find them in photos with 'panels'",
+        "panels come from the windows of a city model (level of detail 3), from IfcWindow and glazed IfcPlate of a BIM "
+        "model, or from you: --panel-grid 'E,N,U E,N,U E,N,U' (lower left, lower right and upper left corner of a "
+        "facade seen from outside, in the file's coordinates) --rows N --columns N; or import the building alone with "
+        "--without-panels, and find them in photos with 'panels'",
     ),
     "options, for which `import_words` puts the label of a field": (
         *("--rows {0} --columns {1}", "--panel-grid {0}", "--gap {0}"),

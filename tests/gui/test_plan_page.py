@@ -9,7 +9,7 @@ from groundstation.gui.plan.paint_bar import PanelPaint, RoutePaint
 from groundstation.services.document import Item, ItemKind
 from planning.request import PlanRequest
 from tests.gui.driving import turn_until, turn_until_idle
-from tests.gui.test_main_window import desk, opened, planned
+from tests.gui.test_main_window import QUICK, desk, opened, planned
 
 __all__ = ["desk"]
 
@@ -19,7 +19,7 @@ LOOK = "Look at the scene"
 @pytest.fixture
 def page(application, desk):
     opened(application, desk, "roof")
-    return planned(application, desk, PlanRequest(n_views=8, time_budget_s=1.0))
+    return planned(application, desk, QUICK)
 
 
 def first_views(desk, n=1):
@@ -60,7 +60,7 @@ def test_undo_of_the_first_plan_leaves_nothing_of_it(application, desk, page):
 def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application, desk, page):
     desk.workspace.select(Item(ItemKind.PANEL, desk.workspace.document.site.site.panels[3].id))
     opened(application, desk, "library")
-    planned(application, desk, PlanRequest(n_views=6, time_budget_s=1.0))
+    planned(application, desk, replace(QUICK, n_views=6))
     shown = page.panel.panel_id()
     assert shown is None or shown == desk.workspace.document.site.site.panels[3].id
 
@@ -149,7 +149,7 @@ def test_a_plan_for_a_site_that_is_gone_is_not_put_on_the_one_that_is_open(appli
     opened(application, desk, "roof")
     desk.window.show_tab("plan")
     page = desk.window.tab("plan")
-    page.desk.set_request(PlanRequest(n_views=8, time_budget_s=1.0))
+    page.desk.set_request(QUICK)
     page.desk.plan()
     desk.workspace.session.undo()
     assert desk.workspace.document.site is None

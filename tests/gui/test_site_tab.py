@@ -16,6 +16,7 @@ from planning.findings import Severity
 from planning.mesh import box_mesh
 from planning.scenes import write_scene
 from planning.site_file import site_sha256
+from tests.planning.revision.cases import QUICK
 
 
 class Window:
@@ -240,10 +241,15 @@ def test_names_are_changed_in_one_step_and_taken_ones_refused(opened):
     assert hands.workspace.session.undo_label == "Rename A"
 
 
-def test_last_facade_cannot_be_removed_and_says_so(opened):
+def test_last_facade_can_be_removed_from_a_building_only(opened):
+    hands = opened("single-panel")
+    hands.tab.left.tree.removeAsked.emit(Item(ItemKind.FACADE, "A"))
+    assert "needs at least one panel" in hands.messages[-1].text
+    assert hands.site.n_panels == 1
     hands = opened("roof")
     hands.tab.left.tree.removeAsked.emit(Item(ItemKind.FACADE, "A"))
-    assert "at least one panel" in hands.messages[-1].text
+    assert hands.site.facades == ()
+    hands.workspace.session.undo()
     assert hands.site.n_panels == 32
 
 
@@ -333,7 +339,7 @@ def test_plans_of_the_site_before_are_put_away_and_undo_brings_them_back(opened)
 
     hands = opened("single-panel")
     site = hands.workspace.document.site
-    plan = plan_flight(site, PlanRequest(n_views=2, time_budget_s=1.0)).plan
+    plan = plan_flight(site, PlanRequest(n_views=2, greedy=QUICK)).plan
     hands.workspace.change("Plan", Document(site=site).with_plan(PlanEntry("plan-1", "Plan 1", plan)))
     hands.tab.left.opener.open_bundled("roof")
     hands.idle()

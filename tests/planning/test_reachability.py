@@ -1,5 +1,6 @@
 """Verdicts on what can be reached: sound against brute force, exact where the answer is known."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -31,6 +32,13 @@ def prepare(site_model, occlusion=False, step=30.0, camera=CAMERA, min_distance_
     return CoverageModel(frames, camera, SectionGrid(step), sight=sight, precision="f64", **options), space
 
 
+@functools.cache
+def whole_scene(name, occlusion):
+    """A bundled site with its coverage model, its free space, and what can be reached."""
+    model, space = prepare(SCENES[name](), occlusion)
+    return model, space, find_reachable(model, space)
+
+
 def sections_hit(model, space, n_seeds=6, n=3000):
     """Elements that some random allowed position sees (elevation and float64 line of sight included)."""
     low, high = elevation_range_rad(model.camera)
@@ -53,8 +61,7 @@ def sections_hit(model, space, n_seeds=6, n=3000):
     ("scene", "occlusion"), [("office", False), ("library", False), ("court", True), ("roof", False)]
 )
 def test_nothing_proven_unreachable_is_ever_seen_from_an_allowed_place(scene, occlusion):
-    model, space = prepare(SCENES[scene](), occlusion)
-    found = find_reachable(model, space)
+    model, space, found = whole_scene(scene, occlusion)
     hit = sections_hit(model, space)
     verdicts = found.verdicts.ravel()
     assert not (hit & (verdicts == UNREACHABLE)).any()
@@ -65,8 +72,7 @@ def test_nothing_proven_unreachable_is_ever_seen_from_an_allowed_place(scene, oc
 
 @pytest.mark.parametrize(("scene", "occlusion"), [("office", False), ("court", True)])
 def test_every_witness_covers_its_section_by_the_definition(scene, occlusion):
-    model, space = prepare(SCENES[scene](), occlusion)
-    found = find_reachable(model, space)
+    model, space, found = whole_scene(scene, occlusion)
     panel, section = np.nonzero(found.verdicts == REACHABLE)
     chosen = np.random.default_rng(0).choice(len(panel), 1500, replace=False)
     panel, section = panel[chosen], section[chosen]
@@ -102,7 +108,7 @@ def prepare_bound(scene, min_distance_m=10.0):
 
 
 def test_view_distance_limit_and_larger_safety_distance_only_lower_the_bound():
-    base = prepare_bound("office")
+    base = whole_scene("office", False)[2].upper_bound
     near = find_reachable(*prepare(SCENES["office"](), max_distance_m=18.0)).upper_bound
     model, space = prepare(SCENES["office"](), min_distance_m=25.0)
     far = find_reachable(model, space).upper_bound
@@ -144,8 +150,8 @@ def test_stopping_at_once_leaves_everything_undecided_and_the_bound_at_the_total
 
 
 def test_more_effort_only_settles_more():
-    model, space = prepare(SCENES["library"]())
-    bounds = [find_reachable(model, space, max_cells=cells).upper_bound for cells in (1, 100, 6000)]
+    model, space, whole = whole_scene("library", False)
+    bounds = [*(find_reachable(model, space, max_cells=n).upper_bound for n in (1, 100)), whole.upper_bound]
     assert bounds == sorted(bounds, reverse=True)
     assert bounds[0] > bounds[-1]
 

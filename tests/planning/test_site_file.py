@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from planning.errors import InputError
 from planning.json_file import write_atomically
 from planning.mesh import box_mesh, closed_parts, read_mesh, write_mesh
 from planning.scenes import SCENES, write_scene
-from planning.site import panel_corners
+from planning.site import panel_corners, require_panels
 from planning.site_file import read_site, site_to_json, write_site
 
 
@@ -94,7 +95,7 @@ SQUARE = [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]]
         (set_at(*CORNERS, [*SQUARE[:3], [0, 0.5, 1]]), "is not flat"),
         (set_at(*CORNERS, [*SQUARE[:3], [0.9, 0, 0.2]]), "not convex"),
         (set_at("facades", 0, "panels", 3, "id", "A-0002"), "unique panel ids, 'A-0002' occurs twice"),
-        (set_at("facades", []), "at least one panel"),
+        (lambda content: content.update(facades=[], building_mesh=None), "at least one panel, or a building_mesh"),
         (set_at("facades", {}), "facades: expected list, got object"),
         (set_at("building_mesh", "missing.ply"), "no such mesh file"),
         (set_at("building_mesh", "site.json"), r"expected a mesh file \(.ply"),
@@ -195,3 +196,19 @@ def test_bad_meshes_are_refused_with_a_reason(tmp_path, name, content, message):
     path.write_bytes(content)
     with pytest.raises(InputError, match=message):
         read_mesh(path)
+
+
+@pytest.mark.parametrize("has_facades", [False, True])
+def test_a_site_without_panels_is_written_and_read_back(tmp_path, has_facades):
+    path = write_scene("court", tmp_path)
+    model = read_site(path)
+    emptied = tuple(replace(facade, panels=()) for facade in model.site.facades) if has_facades else ()
+    site = replace(model.site, facades=emptied)
+    sha256 = write_site(path, site)
+    read = read_site(path)
+    assert (read.site, read.sha256) == (site, sha256)
+    assert len(read.building.triangles) == len(model.building.triangles)
+    assert panel_corners(read.site).shape == (0, 4, 3)
+    with pytest.raises(InputError, match="site 'court' has no panels yet: find them in photos"):
+        require_panels(read.site)
+    require_panels(model.site)

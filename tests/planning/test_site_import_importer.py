@@ -61,6 +61,20 @@ def test_defaults_are_a_flyable_site_and_every_one_is_noted() -> None:
         assert option in text
 
 
+def test_building_without_panels_is_a_flyable_site_where_that_is_wanted() -> None:
+    model = source(windows=())
+    with pytest.raises(InputError, match=r"there are no windows; .*--panel-grid.*--without-panels"):
+        assembled(model)
+    site = assembled(model, ImportOptions(panels_required=False))
+    assert site.model.site.facades == ()
+    assert any("there are no windows, so the site has no panels yet" in note for note in site.notes)
+    assert any("on the ground beside the building" in note for note in site.notes)
+    home = np.array(site.model.site.home_enu_m)
+    assert Solids.of(HOUSE.corners_enu_m).clearance_m(home[None])[0] >= 15.0
+    assert home[1] < HOUSE.vertices_enu_m[:, 1].min()
+    assert free_space(site.model, 10.0).is_allowed(np.array([[0.0, -30.0, 10.0]])).all()
+
+
 def test_home_keeps_15_m_from_every_wall_seen_from_above() -> None:
     for windows in ((WINDOW,), (WINDOW[::-1] * np.array([1.0, -1.0, 1.0]),)):
         site = assembled(source(*windows)).model

@@ -138,8 +138,7 @@ def test_photos_taken_twice_change_nothing() -> None:
     plan = flown_plan()
     once = photos(plan, range(6))
     twice = ViewpointArrays(*(np.concatenate([part, part[::-1]]) for part in once))
-    request = replace(SOON, time_budget_s=1.5)
-    first, second = topped_up(plan, once, request), topped_up(plan, twice, request)
+    first, second = topped_up(plan, once), topped_up(plan, twice)
     assert (first.seen, first.wanted, first.closed) == (second.seen, second.wanted, second.closed)
 
 
@@ -213,9 +212,9 @@ def test_a_full_battery_is_taken_where_the_one_on_board_does_not_suffice() -> No
 def test_the_battery_on_board_is_flown_first_where_full_ones_do_not_suffice() -> None:
     plan = flown_plan()
     short = replace(plan, rules=replace(plan.rules, battery_reserve=0.97))
-    taken = photos(plan, range(25))
-    one = topped_up(short, taken, replace(SOON, n_batteries=1, time_budget_s=1.0))
-    both = topped_up(short, taken, replace(SOON, battery=1.0, n_batteries=1, time_budget_s=1.5))
+    taken = photos(plan, range(10))
+    one = topped_up(short, taken, replace(SOON, n_batteries=1))
+    both = topped_up(short, taken, replace(SOON, battery=1.0, n_batteries=1))
     assert one.plan is not None
     assert both.plan is not None
     assert (one.on_board, len(one.plan.sorties)) == (False, 1)
@@ -229,7 +228,7 @@ def test_a_battery_on_board_that_reaches_nothing_is_left_out() -> None:
     plan = flown_plan()
     short = replace(plan, rules=replace(plan.rules, battery_reserve=0.97))
     charge = 0.97 + 31.0 / plan.aircraft.endurance_s
-    found = topped_up(short, photos(plan, range(25)), replace(SOON, battery=charge, n_batteries=1, time_budget_s=1.5))
+    found = topped_up(short, photos(plan, range(10)), replace(SOON, battery=charge, n_batteries=1))
     assert found.plan is not None
     assert (found.on_board, len(found.plan.sorties)) == (False, 1)
     assert 0 < found.closed < found.wanted
@@ -238,7 +237,7 @@ def test_a_battery_on_board_that_reaches_nothing_is_left_out() -> None:
 def test_as_many_full_batteries_as_it_takes_close_everything() -> None:
     plan = flown_plan()
     short = replace(plan, rules=replace(plan.rules, battery_reserve=0.97))
-    found = topped_up(short, photos(plan, range(25)), replace(SOON, time_budget_s=1.0))
+    found = topped_up(short, photos(plan, range(10)))
     assert found.plan is not None
     assert len(found.plan.sorties) > 1
     assert (found.closed, found.missing) == (found.wanted, ())
@@ -261,10 +260,10 @@ def test_what_is_only_out_of_reach_stays_in_sight_round_after_round(monkeypatch:
 def test_a_battery_for_one_view_flies_one_view() -> None:
     plan = flown_plan()
     model = prepared_kiosk().problem
-    times = flight_times(model.roadmap, photos(plan), plan.aircraft, plan.rules)
+    times = flight_times(model.roadmap, photos(plan, range(10, 25)), plan.aircraft, plan.rules)
     alone_s = times.travel_s[0, 1:] + times.service_s + times.travel_s[1:, 0]
     charge = plan.rules.battery_reserve + (alone_s.min() + 30.0 + 1.0) / plan.aircraft.endurance_s
-    found = topped_up(plan, photos(plan, range(25)), replace(SOON, battery=charge))
+    found = topped_up(plan, photos(plan, range(10)), replace(SOON, battery=charge))
     assert found.plan is not None
     assert 1 <= len(found.plan.viewpoints) <= 2, "a second photo from the same place may fit"
     assert 0 < found.closed < found.wanted

@@ -56,6 +56,9 @@ class Cut:
     def close(self):
         pass  # the vehicle flies on
 
+    def end(self):
+        self._link.close()
+
     def _check(self):
         if self.is_unplugged.is_set():
             raise LinkError("the radio was unplugged")
@@ -80,6 +83,11 @@ class Reopening:
     @property
     def cut(self):
         return self._opened.link
+
+    def end(self):
+        """End the vehicle, which would fly on as long as the process lives."""
+        if self._opened is not None:
+            self.cut.end()
 
 
 class Follower:

@@ -8,10 +8,11 @@ from planning.errors import InputError, OperationCancelled
 from planning.findings import is_flyable
 from planning.plan_file import read_plan
 from planning.request import PlanRequest
+from tests.planning.revision.cases import QUICK
 
 
 def test_all_files_are_made_and_the_plan_is_ready_to_fly(tmp_path):
-    made = demonstrate(tmp_path / "new" / "demo", "single-panel", PlanRequest(n_views=4, time_budget_s=5.0))
+    made = demonstrate(tmp_path / "new" / "demo", "single-panel", PlanRequest(n_views=4, greedy=QUICK))
     paths = {made.site_path, made.plan_path, made.flight_path, *made.mission_paths}
     assert paths == set((tmp_path / "new" / "demo").iterdir())
     assert len(made.mission_paths) == len(FileFormat)

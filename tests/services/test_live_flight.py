@@ -39,14 +39,17 @@ def flight(tmp_path, monkeypatch):
 
     def begin(connection=None, folder=None, **options):
         follower = Follower()
-        flight = LiveFlight(sortie(), connection or simulation(), follower, folder or tmp_path / "flights", **options)
-        flights.append(flight)
+        connection = connection or simulation()
+        flight = LiveFlight(sortie(), connection, follower, folder or tmp_path / "flights", **options)
+        flights.append((flight, connection))
         flight.start()
         return flight, follower
 
     yield begin
-    for flight in flights:
+    for flight, connection in flights:
         assert flight.close()
+        if isinstance(connection, Reopening):
+            connection.end()
 
 
 def fly(flight, follower):

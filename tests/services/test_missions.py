@@ -17,6 +17,7 @@ from planning.plan_file import read_plan
 from planning.request import PlanRequest
 from planning.scenes import SCENES, write_scene
 from planning.site_file import read_site, write_site
+from tests.planning.revision.cases import QUICK
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +25,7 @@ def folder(tmp_path_factory):
     """Folder with two sites and a plan for one of them."""
     folder = tmp_path_factory.mktemp("roof")
     write_scene("single-panel", folder)
-    plan_site(write_scene("roof", folder), PlanRequest(n_views=12, time_budget_s=5.0), folder / "roof.plan.json")
+    plan_site(write_scene("roof", folder), PlanRequest(n_views=12, greedy=QUICK), folder / "roof.plan.json")
     return folder
 
 

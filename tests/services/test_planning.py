@@ -30,14 +30,14 @@ def site(tmp_path):
 
 def test_the_plan_returned_is_the_plan_written_and_passes_its_check(site, tmp_path):
     out = tmp_path / "plan.json"
-    planned = plan_site(site, PlanRequest(n_views=4, time_budget_s=5.0), out)
+    planned = plan_site(site, PlanRequest(n_views=4, greedy=QUICK), out)
     assert read_plan(out) == planned.plan
     assert is_flyable(check_files(out, site))
 
 
 def test_without_an_output_nothing_is_written(site, tmp_path):
     before = set(tmp_path.iterdir())
-    assert len(plan_site(site, PlanRequest(n_views=2, time_budget_s=5.0), None).plan.viewpoints) == 2
+    assert len(plan_site(site, PlanRequest(n_views=2, greedy=QUICK), None).plan.viewpoints) == 2
     assert set(tmp_path.iterdir()) == before
 
 
@@ -75,7 +75,7 @@ def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
 
 
 def test_summaries_are_json(site):
-    planned = plan_site(site, PlanRequest(n_views=3, time_budget_s=5.0), None)
+    planned = plan_site(site, PlanRequest(n_views=3, greedy=QUICK), None)
     summary = planned_summary(planned, 1.23456)
     assert json.loads(json.dumps(summary, allow_nan=False)).keys() == summary.keys()
     assert summary["seconds"] == 1.235
@@ -109,7 +109,7 @@ def test_planning_an_open_site_again_uses_what_the_first_plan_prepared_where_it_
 
 def test_locked_viewpoints_are_read_from_a_plan_that_has_some(site, tmp_path):
     path = tmp_path / "plan.json"
-    plan = plan_site(site, PlanRequest(n_views=3, time_budget_s=5.0), path).plan
+    plan = plan_site(site, PlanRequest(n_views=3, greedy=QUICK), path).plan
     with pytest.raises(InputError, match=r"plan\.json: none of the viewpoints is locked"):
         locked_viewpoints(path)
     held = replace(plan.viewpoints[1], locked=True)

@@ -10,13 +10,14 @@ from groundstation.services.session import Session
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from tests.planning.plan_cases import kiosk
+from tests.planning.revision.cases import QUICK
 
 FOLDER = Path("project")
 
 
 @pytest.fixture(scope="module")
 def entry():
-    return PlanEntry("plan-1", "Plan 1", plan_flight(kiosk(), PlanRequest(n_views=4, time_budget_s=2.0)).plan)
+    return PlanEntry("plan-1", "Plan 1", plan_flight(kiosk(), PlanRequest(n_views=4, greedy=QUICK)).plan)
 
 
 def test_a_change_is_published_once_with_before_and_after_and_can_be_undone(entry):

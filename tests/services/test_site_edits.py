@@ -61,7 +61,8 @@ def edited(draw):
     model, before = draw(st.sampled_from([SCENES["roof"](), CANYON])), []
     for _ in range(draw(st.integers(1, 6))):
         before.append((model, model.site))
-        which, known = draw(st.integers(0, 6)), items(model)
+        known = items(model)
+        which = draw(st.integers(0, 6).filter(lambda which, known=known: known or which not in (3, 4)))
         try:
             match which:
                 case 0:
@@ -76,7 +77,7 @@ def edited(draw):
                     model = rename_item(model, draw(st.sampled_from(known)), draw(names))
                 case 5:
                     facades = [item for item in known if item.kind is ItemKind.FACADE]
-                    model = flip_facade(model, draw(st.sampled_from(facades)).id)
+                    model = flip_facade(model, draw(st.sampled_from(facades)).id) if facades else model
                 case 6:
                     model, _ = add_mesh_obstacle(model, "crane", box_mesh(np.zeros(3), np.ones(3)))
         except InputError:
@@ -162,7 +163,7 @@ def test_boxes_and_zones_get_free_names_and_new_shapes():
         (lambda m: set_origin(m, 91.0, 0.0, 0.0, HeightReference.ELLIPSOID), "lat_deg: expected -90 to 90"),
         (lambda m: set_origin(m, 91.0, 0.0, 0.0, HeightReference.SEA_LEVEL), "lat_deg: expected -90 to 90"),
         (lambda m: set_origin(m, 0.0, 0.0, 1e5, HeightReference.SEA_LEVEL), "ellipsoid_height_m"),
-        (lambda m: remove_item(m, Item(ItemKind.FACADE, "A")), "at least one panel"),
+        (lambda _: remove_item(SCENES["single-panel"](), Item(ItemKind.FACADE, "A")), "at least one panel"),
         (lambda m: rename_item(m, Item(ItemKind.FACADE, "A"), "  "), "expected a name"),
         (lambda m: rename_item(m, Item(ItemKind.PANEL, "A-0001"), "A-0002"), "panel 'A-0002' already"),
     ],
@@ -313,3 +314,14 @@ def test_a_rally_point_in_a_bad_place_is_told_of():
     marked, name = add_rally_point(OFFICE, (0.0, -5.0, 0.0))
     (finding,) = (finding for finding in site_findings(marked) if finding.code == "rally-point")
     assert (finding.severity, finding.place) == (Severity.ERROR, f"rally/{name}")
+
+
+def test_the_last_facade_can_go_where_there_is_a_building_and_a_new_one_be_drawn():
+    bare = remove_item(SCENES["roof"](), Item(ItemKind.FACADE, "A"))
+    assert bare.site.facades == ()
+    (found,) = site_findings(bare)
+    assert (found.code, found.severity, found.place) == ("no-panels", Severity.WARNING, "building")
+    top = ((-10.0, -6.0, 12.0), (10.0, -6.0, 12.0), (-10.0, 6.0, 12.0))
+    drawn = add_panel_grid(bare, top, 2, 3)
+    assert (drawn.facade_id, drawn.model.site.n_panels) == ("A", 6)
+    assert site_findings(drawn.model) == ()

@@ -60,8 +60,8 @@ def test_city_models_are_not_taken_for_site_files(shared_data):
 def test_mesh_without_panels_can_be_looked_at_and_a_grid_picked_on_it_makes_it_a_site(tower_obj, tmp_path):
     options = ImportOptions(origin=HERE, unit="m")
     looked_at = preview_import(tower_obj, options)
-    assert looked_at.model is None
-    assert "there are no windows" in looked_at.problem
+    assert (looked_at.model.site.facades, looked_at.problem) == ((), "")
+    assert any("there are no windows, so the site has no panels yet" in note for note in looked_at.notes)
     assert len(looked_at.source.building.triangles) == 12
     grid = grid_in_file(looked_at, SOUTH, 14, 20, 0.1)
     np.testing.assert_allclose(grid.corners, SOUTH, atol=1e-5)
@@ -72,11 +72,13 @@ def test_mesh_without_panels_can_be_looked_at_and_a_grid_picked_on_it_makes_it_a
     assert done.model.sha256 == write_site(tmp_path / "site.json", done.model.site)
 
 
-def test_building_without_panels_can_be_shown_unless_its_unit_is_wrong(tower_obj):
-    looked_at = preview_import(tower_obj, ImportOptions(origin=HERE))
+def test_building_that_is_no_site_yet_can_be_shown_unless_its_unit_is_wrong(tower_obj):
+    looked_at = preview_import(tower_obj, ImportOptions(origin=HERE, floor_m=50.0, ceiling_m=40.0))
+    assert "leave no airspace" in looked_at.problem
+    assert looked_at.model is None
     shown = shown_site(looked_at)
     assert len(shown.building.triangles) == 12
-    assert max(np.ptp(panel_corners(shown.site)[0], axis=0)) < 0.05
+    assert shown.site.facades == ()
     mesh = trimesh.load_mesh(tower_obj)
     mesh.apply_scale(1000.0)
     mesh.export(tower_obj)
@@ -106,7 +108,7 @@ def test_city_model_without_windows_lists_its_buildings_and_a_grid_chooses_its_o
     assert holds_many_buildings(path)
     looked_at = preview_import(path, ImportOptions())
     assert len(looked_at.source.choices) == 49
-    assert "there are no windows" in looked_at.problem
+    assert looked_at.model.site.facades == ()
     wanted = max(looked_at.source.choices, key=lambda choice: choice.size_m[2])
     one = preview_import(path, ImportOptions(building=wanted.id))
     height_m = np.ptp(one.source.building.vertices_enu_m[:, 2])
@@ -166,6 +168,15 @@ def test_every_option_that_the_import_may_name_has_a_field():
 )
 def test_options_become_labels_and_take_their_placeholders_along(text, said):
     assert in_window_words(text, {field: field for field in FIELDS.values()}) == said
+
+
+@pytest.mark.parametrize("n_facades", [0, 2])
+def test_building_without_panels_is_summed_up(n_facades):
+    model = SCENES["court"]()
+    emptied = tuple(replace(facade, panels=()) for facade in model.site.facades[:n_facades])
+    summary = site_summary(replace(model, site=replace(model.site, facades=emptied)))
+    assert (summary.n_panels, summary.area_m2, len(summary.facades)) == (0, 0.0, n_facades)
+    assert summary.size_m == pytest.approx((65.0, 55.0, 23.0))
 
 
 def test_real_building_with_windows_is_summed_up(shared_data):

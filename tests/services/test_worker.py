@@ -14,7 +14,7 @@ from groundstation.services.planning import plan_document_site, reunited
 from groundstation.services.worker import Worker
 from planning.errors import GroundStationError, InfeasibleError, OperationCancelled
 from planning.progress import QUIET, StopRequest, Trace, never
-from planning.request import PlanRequest
+from planning.request import GreedyParameters, PlanRequest
 from planning.scenes import SCENES
 from tests.planning.plan_cases import kiosk
 
@@ -104,7 +104,7 @@ def test_the_work_is_done_in_one_other_process(worker):
 
 @pytest.mark.parametrize("scene", [SCENES["roof"], kiosk], ids=["roof", "kiosk, whose walls hide one another"])
 def test_a_plan_is_the_one_that_is_made_here(worker, scene):
-    model, request = scene(), PlanRequest(n_views=5, time_budget_s=60.0)
+    model, request = scene(), PlanRequest(n_views=2, greedy=GreedyParameters(n_candidates=400), time_budget_s=60.0)
     here = plan_document_site(model, request)
     there = reunited(worker.run(plan_document_site, model, request), model, None)
     assert there.plan.viewpoints == here.plan.viewpoints

@@ -16,6 +16,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import single_panel
 from planning.timing import leg_times_s, motion_limits
+from tests.planning.revision.cases import QUICK
 
 LEGS = [
     (5.61, -0.02, 6.10),
@@ -46,7 +47,7 @@ def test_legs_take_what_a_real_arducopter_took():
 def test_the_simulated_vehicle_takes_what_its_items_are_reckoned_to(profile_id):
     """The M3E states no jerk: both fly with the autopilot's own."""
     model = single_panel()
-    plan = plan_flight(model, PlanRequest(n_views=8, time_budget_s=2.0, profile_id=profile_id)).plan
+    plan = plan_flight(model, PlanRequest(n_views=8, greedy=QUICK, profile_id=profile_id)).plan
     flown = fly_plan(plan, model, FlightWish(autopilot=Autopilot.ARDUPILOT))
     (sortie,) = flown.sorties
     seconds = flown.flight.report.sorties[0].duration_flown_s
@@ -54,7 +55,7 @@ def test_the_simulated_vehicle_takes_what_its_items_are_reckoned_to(profile_id):
 
 
 def test_a_plan_timed_by_its_items_keeps_its_other_sorties():
-    plan = plan_flight(single_panel(), PlanRequest(n_views=8, time_budget_s=2.0)).plan
+    plan = plan_flight(single_panel(), PlanRequest(n_views=8, greedy=QUICK)).plan
     twice = replace(plan, sorties=plan.sorties * 2)
     timed = timed_by_items(twice, {2: 100.0})
     assert timed.sorties[0] == plan.sorties[0]

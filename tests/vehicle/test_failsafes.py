@@ -21,6 +21,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site import RallyPoint
 from tests.planning.plan_cases import kiosk
+from tests.planning.revision.cases import QUICK
 from tests.vehicle.toy import Toy, ToyLink
 
 VEHICLE = Address(1, 1)
@@ -30,7 +31,7 @@ ARDUPILOT, PX4 = Autopilot.ARDUPILOT, Autopilot.PX4
 @pytest.fixture(scope="module")
 def planned():
     model = kiosk()
-    return model, plan_flight(model, PlanRequest(n_views=6, time_budget_s=2.0)).plan
+    return model, plan_flight(model, PlanRequest(n_views=6, greedy=QUICK)).plan
 
 
 def orders_of(planned, *places):

@@ -17,6 +17,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import single_panel
 from planning.site import NoFlyZone
+from tests.planning.revision.cases import QUICK
 from tests.vehicle.toy import Toy, ToyLink
 
 BOTH = pytest.mark.parametrize("autopilot", list(Autopilot))
@@ -30,7 +31,7 @@ def orders():
     corner = [(low[0] + x, low[1] + y) for x, y in ((0, 0), (3, 0), (3, 3))]
     airspace = replace(model.site.airspace, no_fly=(NoFlyZone("road", tuple(corner), -10.0, 200.0),))
     model = replace(model, site=replace(model.site, airspace=airspace))
-    plan = plan_flight(model, PlanRequest(n_views=5, time_budget_s=2.0)).plan
+    plan = plan_flight(model, PlanRequest(n_views=5, greedy=QUICK)).plan
     (mission,) = missions_from_plan(plan, model.site.origin, model.site.home_enu_m)
     return sortie_orders(plan, model, mission)
 

@@ -23,6 +23,7 @@ from missions.mavlink.messages import Address
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import single_panel
+from tests.planning.revision.cases import QUICK
 
 NOW_S = 50.0
 ALL_ON_BOARD = OnBoard(mission=True, fence=True)
@@ -31,7 +32,7 @@ ALL_ON_BOARD = OnBoard(mission=True, fence=True)
 @pytest.fixture(scope="module")
 def orders():
     model = single_panel()
-    plan = plan_flight(model, PlanRequest(n_views=3, time_budget_s=2.0, profile_id="ardupilot")).plan
+    plan = plan_flight(model, PlanRequest(n_views=3, greedy=QUICK, profile_id="ardupilot")).plan
     (mission,) = missions_from_plan(plan, model.site.origin, model.site.home_enu_m)
     return sortie_orders(plan, model, mission)
 

@@ -46,6 +46,14 @@ class Says:
 
 
 @pytest.fixture
+def radio():
+    """A link that can be unplugged; asked for before `desk`, it ends after it."""
+    radio = Reopening()
+    yield radio
+    radio.end()
+
+
+@pytest.fixture
 def desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
     from groundstation.gui.desk import Desk
@@ -185,8 +193,7 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     assert page.desk.in_hand.battery > 0.99
 
 
-def test_losing_the_link_shows_a_band_and_is_survived(application, desk, page, monkeypatch):
-    radio = Reopening()
+def test_losing_the_link_shows_a_band_and_is_survived(application, radio, desk, page, monkeypatch):
     monkeypatch.setattr(page.desk, "_connection", lambda *_: radio)
     connect(application, page)
     take_off(application, page)
@@ -369,9 +376,8 @@ def test_start_waits_for_rtk_only_where_it_is_needed(application, desk, page):
 
 
 def test_parameters_of_a_real_vehicle_are_set_only_where_allowed_and_after_a_question(
-    application, desk, page, monkeypatch
+    application, radio, desk, page, monkeypatch
 ):
-    radio = Reopening()
     radio.is_simulated = False
     monkeypatch.setattr(page.desk, "_connection", lambda *_: radio)
     page.desk.set_choice(ConnectionChoice(LinkKind.TCP, "127.0.0.1:5760"))

@@ -16,12 +16,13 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
+from tests.planning.revision.cases import QUICK
 
 
 @pytest.fixture(scope="module")
 def planned():
     model = kiosk()
-    return model, plan_flight(model, PlanRequest(n_views=10, time_budget_s=5.0)).plan
+    return model, plan_flight(model, PlanRequest(n_views=10, greedy=QUICK)).plan
 
 
 @pytest.fixture
