@@ -22,6 +22,9 @@ from planning.plan import Camera, Viewpoint
 
 Array = NDArray[np.float64]
 
+LOCKED = 1e-6
+"""Horizontal part of a line of sight below which heading and roll turn the picture alike; roll is 0 then."""
+
 UNDISTORT_STEPS = 50
 UNDISTORT_TOLERANCE = 1e-12
 """Of the fixed-point iteration that takes Brown's distortion away, normalised image units."""
@@ -210,15 +213,34 @@ class Pose:
         return np.array(self.cam_from_enu[2])
 
     @property
+    def angles_deg(self) -> tuple[float, float, float]:
+        """Heading (clockwise from north, in (-180, 180]), pitch (0 level, -90 straight down) and roll of `looking`.
+
+        The roll is within 90 degrees: a gimbal that swung through the vertical has a pitch below -90. Straight up or
+        down the roll is 0, and the heading that of the picture's upper edge.
+        """
+        right, down, forward = self.cam_from_enu
+        level = math.hypot(forward[0], forward[1])
+        if level < LOCKED:
+            heading, pitch, roll = math.atan2(-right[1], right[0]), math.copysign(math.pi / 2.0, forward[2]), 0.0
+        else:
+            heading, pitch = math.atan2(forward[0], forward[1]), math.atan2(forward[2], level)
+            # The right vector against the level one, (cos h, -sin h, 0), in the plane of the picture.
+            roll = math.atan2(-right[2], -down[2])
+        if abs(roll) > math.pi / 2.0:
+            heading, roll = heading + math.pi, roll - math.copysign(math.pi, roll)
+            pitch = math.copysign(math.pi, pitch) - pitch
+        return wrap_heading_deg(math.degrees(heading)), math.degrees(pitch), math.degrees(roll)
+
+    @property
     def heading_deg(self) -> float:
         """Clockwise from north, in (-180, 180]; where the camera looks straight up or down, that of its upper edge."""
-        east, north, _ = self.cam_from_enu[0]
-        return wrap_heading_deg(math.degrees(math.atan2(-north, east)))
+        return self.angles_deg[0]
 
     @property
     def pitch_deg(self) -> float:
-        """0 level, -90 straight down, for a camera without roll."""
-        return math.degrees(math.asin(max(-1.0, min(1.0, float(self.cam_from_enu[2, 2])))))
+        """0 level, -90 straight down; beyond it where the gimbal swung through the vertical."""
+        return self.angles_deg[1]
 
     def points_cam(self, points_enu_m: Array) -> Array:
         """Points, shape (n, 3), in camera axes."""

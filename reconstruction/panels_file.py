@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from planning.errors import InputError
 from planning.json_file import expect_format, read_json, to_record, write_atomically
-from reconstruction.segmentation.record import FacadeGrid, GridLine, Segmentation
+from reconstruction.segmentation.record import FacadeGrid, GridLine, InclinedLine, Rectification, Segmentation
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -37,6 +37,30 @@ class FileLine:
     inferred: bool = False
 
     def __post_init__(self) -> None:
+        _check_share(self.confidence)
+
+
+PanelsBeside = Literal["both", "left", "right"]
+"""On which sides of an inclined profile there are panels, walking along its edges as the photo shows it."""
+
+OPEN_SIDES: dict[PanelsBeside, int] = {"both": 0, "left": -1, "right": 1}
+
+
+@dataclass(frozen=True, slots=True)
+class FileInclined:
+    """An inclined profile: its two edges, from the same end, in pixels of the photo."""
+
+    left_px: tuple[Point, ...]
+    right_px: tuple[Point, ...]
+    panels: PanelsBeside = "both"
+    confidence: float = 1.0
+
+    def __post_init__(self) -> None:
+        if len(self.left_px) < 2 or len(self.right_px) != len(self.left_px):
+            raise ValueError(
+                "inclined line: expected two points or more on its left edge and as many on its right one, found "
+                f"{len(self.left_px)} and {len(self.right_px)}"
+            )
         _check_share(self.confidence)
 
 
@@ -75,6 +99,7 @@ class FileFacade:
     vertical_lines: tuple[FileLine, ...]
     missing: tuple[FileCell, ...] = ()
     panels: tuple[FilePanel, ...] = ()
+    inclined_lines: tuple[FileInclined, ...] = ()
 
     def __post_init__(self) -> None:
         for what, n_cells, lines in (
@@ -195,7 +220,23 @@ def _facade(facade: FacadeGrid) -> FileFacade:
             FilePanel(panel.id, panel.row, panel.column, _points(panel.corners_px), _share(panel.confidence))
             for panel in facade.panels
         ),
+        inclined_lines=tuple(
+            found for line in facade.inclined if (found := _inclined(line, facade.rectification)) is not None
+        ),
     )
+
+
+def _inclined(line: InclinedLine, view: Rectification) -> FileInclined | None:
+    """Both edges in the photo; None where the view cannot take them there."""
+    first, last = np.array(line.first_px), np.array(line.last_px)
+    middle = first + np.linspace(0.0, 1.0, LINE_POINTS)[:, None] * (last - first)
+    along = (last - first) / np.hypot(*(last - first))
+    to_right = 0.5 * line.width_px * np.array([-along[1], along[0]])
+    left, right = view.to_photo(middle - to_right), view.to_photo(middle + to_right)
+    if not (np.isfinite(left).all() and np.isfinite(right).all()):
+        return None
+    beside = next(name for name, side in OPEN_SIDES.items() if side == line.open_side)
+    return FileInclined(_points(left), _points(right), beside, _share(line.confidence))
 
 
 def _ends(lines: tuple[GridLine, ...]) -> tuple[float, float]:

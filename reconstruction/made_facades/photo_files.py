@@ -62,6 +62,7 @@ def write_photos(
 
 def _properties(photo: PosedPhoto, origin: Origin, taken_at: datetime) -> str:
     lens, pose = photo.intrinsics, photo.pose
+    heading_deg, pitch_deg, roll_deg = pose.angles_deg
     lat, lon, height = (float(part[0]) for part in geodetic_from_enu(origin, pose.position_enu_m[None]))
     properties = {
         "tiff:Make": "DJI",
@@ -77,9 +78,9 @@ def _properties(photo: PosedPhoto, origin: Origin, taken_at: datetime) -> str:
         "drone-dji:AltitudeType": "RtkAlt",
         "drone-dji:AbsoluteAltitude": f"{height:+.4f}",
         "drone-dji:RelativeAltitude": f"{pose.position_enu_m[2]:+.3f}",
-        "drone-dji:GimbalYawDegree": f"{pose.heading_deg:+.4f}",
-        "drone-dji:GimbalPitchDegree": f"{pose.pitch_deg:+.4f}",
-        "drone-dji:GimbalRollDegree": "+0.00",
+        "drone-dji:GimbalYawDegree": f"{heading_deg:+.4f}",
+        "drone-dji:GimbalPitchDegree": f"{pitch_deg:+.4f}",
+        "drone-dji:GimbalRollDegree": f"{roll_deg:+.4f}",
         "drone-dji:DewarpFlag": "0",
         "drone-dji:DewarpData": _dewarp(lens),
         "drone-dji:CalibratedFocalLength": f"{lens.fx_px:.4f}",

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from reconstruction.cameras import PosedPhoto
 from reconstruction.panels.facades import Facade
-from reconstruction.panels_file import FileFacade, FileLine, FilePanel, PanelsFile
+from reconstruction.panels_file import OPEN_SIDES, FileFacade, FileInclined, FileLine, FilePanel, PanelsFile
 from reconstruction.rectify.surface import FacadeSurface
 from reconstruction.segmentation.cells import facade_grid
-from reconstruction.segmentation.record import FacadeGrid, GridLine, Rectification
+from reconstruction.segmentation.record import FacadeGrid, FoundPanel, GridLine, InclinedLine, Rectification
 
 Array = NDArray[np.float64]
 
@@ -68,7 +68,7 @@ def given_grid(
     Raises
     ------
     InputError
-        A line of it has no point on the facade.
+        A line of it has no point on the facade, or an inclined one leaves it.
     """
     on_it = [given for given in record.facades if given.panels and _is_on(given, photo, facade)]
     if not on_it:
@@ -76,12 +76,33 @@ def given_grid(
     given = max(on_it, key=lambda one: len(one.panels))
     rows = _lines(given.horizontal_lines, view, 1, _gaps(given, view, 1))
     columns = _lines(given.vertical_lines, view, 0, _gaps(given, view, 0))
-    made = facade_grid(facade_id, view, rows, columns)
-    kept = {(panel.row, panel.column) for panel in given.panels}
-    panels = tuple(panel for panel in made.panels if (panel.row, panel.column) in kept)
+    inclined = tuple(_inclined(line, index, view) for index, line in enumerate(given.inclined_lines))
+    made = facade_grid(facade_id, view, rows, columns, inclined)
+    kept = [_meant(made, panel) for panel in given.panels]
+    panels = tuple(panel for panel in made.panels if panel in kept)
     cells = {(row, column) for row in range(len(rows) - 1) for column in range(len(columns) - 1)}
     present = {(panel.row, panel.column) for panel in panels}
-    return FacadeGrid(facade_id, view, rows, columns, panels, tuple(sorted(cells - present)))
+    return FacadeGrid(facade_id, view, rows, columns, panels, tuple(sorted(cells - present)), inclined)
+
+
+def _meant(made: FacadeGrid, given: FilePanel) -> FoundPanel | None:
+    """The panel of the given one's cell that lies nearest to it: cells may be cut."""
+    beside = [panel for panel in made.panels if (panel.row, panel.column) == (given.row, given.column)]
+    middle = np.mean(given.corners_px, axis=0)
+    return min(beside, key=lambda panel: float(np.linalg.norm(panel.corners_px.mean(axis=0) - middle)), default=None)
+
+
+def _inclined(line: FileInclined, index: int, view: Rectification) -> InclinedLine:
+    left, right = (view.to_rectified(np.array(points)) for points in (line.left_px, line.right_px))
+    middle = 0.5 * (left + right)
+    if not np.isfinite(middle).all():
+        raise InputError(f"inclined_lines[{index}] of a panels file leaves the facade; shorten it, or take it out")
+    first, last = middle[0], middle[-1]
+    along = (last - first) / np.hypot(*(last - first))
+    width = float(np.median((right - left) @ np.array([-along[1], along[0]])))
+    open_side = OPEN_SIDES[line.panels]
+    ends = (float(first[0]), float(first[1])), (float(last[0]), float(last[1]))
+    return InclinedLine(*ends, abs(width), GIVEN_SIGMA_PX, line.confidence, open_side)
 
 
 def _is_on(given: FileFacade, photo: PosedPhoto, facade: Facade) -> bool:

@@ -6,7 +6,6 @@ its roll, its principal point and its distortion. For a camera as planned both a
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -17,7 +16,7 @@ from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.sections import NOT_SEEN, sections_of
 from planning.findings import Finding, Severity
 from planning.mesh import TriangleMesh
-from planning.plan import Viewpoint, ViewpointArrays, viewpoint_arrays
+from planning.plan import Viewpoint, viewpoint_arrays
 from planning.progress import QUIET, Monitor
 from reconstruction.cameras import PosedPhoto
 from reconstruction.ray_casting import RayCaster
@@ -26,9 +25,6 @@ Array = NDArray[np.float64]
 
 CHUNK = 64
 """Photos between two reports of progress."""
-
-LOCKED = 1e-6
-"""Horizontal part of a line of sight below which heading and roll turn the picture alike; roll is 0 then."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -134,31 +130,6 @@ def distances_to_building_m(building: TriangleMesh, photos: Sequence[PosedPhoto]
     ahead = np.array([photo.pose.forward_enu for photo in photos]).reshape(-1, 3)
     hits = RayCaster(building).cast(places, ahead)
     return [float(m) if hit else None for m, hit in zip(hits.distance_m, hits.is_hit, strict=True)]
-
-
-def viewpoints_of(photos: Sequence[PosedPhoto]) -> tuple[ViewpointArrays, Array]:
-    """Photos as viewpoints, and their rolls, shape (n,), rad, positive clockwise as seen from behind the camera.
-
-    The roll is within 90 degrees: a gimbal that swung through the vertical has a pitch below -90.
-    """
-    positions = np.array([photo.pose.position_enu_m for photo in photos]).reshape(-1, 3)
-    angles = np.array([_angles_rad(photo.pose.cam_from_enu) for photo in photos]).reshape(-1, 3)
-    return ViewpointArrays(positions, angles[:, 0], angles[:, 1]), angles[:, 2]
-
-
-def _angles_rad(cam_from_enu: Array) -> tuple[float, float, float]:
-    """Heading, pitch and roll of a camera, rad."""
-    right, down, forward = cam_from_enu
-    flat = math.hypot(forward[0], forward[1])
-    if flat < LOCKED:
-        return math.atan2(-right[1], right[0]), math.copysign(math.pi / 2.0, forward[2]), 0.0
-    heading, pitch = math.atan2(forward[0], forward[1]), math.atan2(forward[2], flat)
-    # The right vector against the level one, (cos h, -sin h, 0), in the plane of the picture.
-    roll = math.atan2(-right[2], -down[2])
-    if abs(roll) > math.pi / 2.0:
-        heading, roll = heading + math.pi, roll - math.copysign(math.pi, roll)
-        pitch = math.copysign(math.pi, pitch) - pitch
-    return math.remainder(heading, 2.0 * math.pi), pitch, roll
 
 
 def _counts(sections: NDArray[np.int64], n_sections: int) -> NDArray[np.int64]:

@@ -16,7 +16,6 @@ from planning.effects import Assessment, Decision, Wish, decide
 from reconstruction.cameras import PosedPhoto
 from reconstruction.rectify.fit import SurfaceFit
 from reconstruction.rectify.polynomial import polynomial_view
-from reconstruction.rectify.surface import FacadeSurface
 from reconstruction.rectify.view import SurfaceView, TangentView, surface_view
 from reconstruction.segmentation.record import Rectification
 
@@ -108,12 +107,6 @@ def drawn_view(view: SurfaceView, kind: ViewKind, unrolling: Decision) -> Rectif
         return view
     flattened = TangentView(view)
     return polynomial_view(flattened) if kind == "polynomial" else flattened
-
-
-def decide_surface(scene: FittedFacade, wish: Wish = "auto") -> tuple[FacadeSurface, Decision]:
-    """Surface to rectify on, and why: the cylinder where the effect is on, else the plane."""
-    decision = decide(Curvature(), scene, wish)
-    return (scene.cylinder if decision.on else scene.plane).surface, decision
 
 
 def bent_by_px(scene: FittedFacade) -> float:

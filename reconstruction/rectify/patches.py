@@ -81,7 +81,7 @@ class FacadePatch:
     points_enu_m: Array
 
     def fitted(self, photo: PosedPhoto) -> FittedFacade:
-        """The scene for `curvature.decide_surface`."""
+        """The scene that the effect `curvature.Curvature` looks at."""
         return FittedFacade(photo, self.plane, self.cylinder, self.low_st_m, self.high_st_m)
 
 

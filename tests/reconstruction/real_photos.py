@@ -18,7 +18,6 @@ from reconstruction.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import posed_photos
 from reconstruction.colmap.similarity import Similarity
-from reconstruction.photos.coverage import viewpoints_of
 from tests.planning.photo_files.photo_writer import exif_part, gps_tags, jpeg, packet, save
 from tests.reconstruction.colmap.models import turned
 
@@ -56,9 +55,9 @@ def write_flight(truth: Sequence[PosedPhoto], folder: Path, lens: Intrinsics, se
     rng = np.random.default_rng(seed)
     for number, photo in enumerate(truth):
         off = turned(photo, rng.normal(0.0, SIGMA_M, 3), np.zeros(3))
-        views, rolls = viewpoints_of([off])
-        heading = np.degrees(views.heading_rad[0]) + rng.normal(0.0, HEADING_DEG)
-        pitch, roll = np.degrees([views.pitch_rad[0], rolls[0]]) + rng.normal(0.0, TILT_DEG, 2)
+        heading, *tilts = off.pose.angles_deg
+        heading += rng.normal(0.0, HEADING_DEG)
+        pitch, roll = np.array(tilts) + rng.normal(0.0, TILT_DEG, 2)
         lat, lon, height = (float(part[0]) for part in geodetic_from_enu(ORIGIN, off.pose.position_enu_m[None]))
         taken = START + timedelta(seconds=5.0 * number)
         properties = {

@@ -43,6 +43,19 @@ def test_heading_and_pitch_come_back(heading: float, pitch: float) -> None:
     assert pose.pitch_deg == pytest.approx(pitch, abs=1e-6)
 
 
+@given(heading=angles, pitch=st.floats(-130.0, 85.0), roll=st.floats(-80.0, 80.0))
+def test_angles_come_back_from_poses(heading: float, pitch: float, roll: float) -> None:
+    pose = Pose.looking(np.zeros(3), heading, pitch, roll)
+    again = Pose.looking(np.zeros(3), *pose.angles_deg)
+    assert again.cam_from_enu == pytest.approx(pose.cam_from_enu, abs=1e-5)
+    assert abs(pose.angles_deg[2]) <= 90.0 + 1e-9
+
+
+@pytest.mark.parametrize("pitch", [-105.0, -90.0])
+def test_a_gimbal_at_or_beyond_the_vertical_keeps_its_heading(pitch: float) -> None:
+    assert Pose.looking(np.zeros(3), 40.0, pitch).angles_deg == pytest.approx((40.0, pitch, 0.0))
+
+
 def test_roll_turns_the_camera_clockwise_so_that_its_right_sinks() -> None:
     right = Pose.looking(np.zeros(3), 0.0, 0.0, roll_deg=10.0).cam_from_enu[0]
     assert right[2] == pytest.approx(-np.sin(np.radians(10.0)))

@@ -17,6 +17,7 @@ from reconstruction.panels_file import (
     PIXEL_CONVENTION,
     FileCell,
     FileFacade,
+    FileInclined,
     FileLine,
     FilePanel,
     PanelsFile,
@@ -66,6 +67,13 @@ lines = st.builds(FileLine, st.lists(points, max_size=5).map(tuple), shares, st.
 
 
 @st.composite
+def inclined(draw: st.DrawFn) -> FileInclined:
+    n = draw(st.integers(2, 4))
+    left, right = (tuple(draw(st.lists(points, min_size=n, max_size=n))) for _ in range(2))
+    return FileInclined(left, right, draw(st.sampled_from(["both", "left", "right"])), draw(shares))
+
+
+@st.composite
 def facades(draw: st.DrawFn) -> FileFacade:
     n_rows, n_columns = draw(st.integers(1, 4)), draw(st.integers(1, 4))
     cells = [(row, column) for row in range(n_rows) for column in range(n_columns)]
@@ -75,7 +83,8 @@ def facades(draw: st.DrawFn) -> FileFacade:
                    for i, cell in enumerate(chosen))  # fmt: skip
     missing = tuple(FileCell(*cell) for cell in cells if cell not in chosen)
     horizontal, vertical = (tuple(draw(lines) for _ in range(n + 1)) for n in (n_rows, n_columns))
-    return FileFacade(draw(st.text(max_size=3)), n_rows, n_columns, horizontal, vertical, missing, panels)
+    braces = tuple(draw(st.lists(inclined(), max_size=2)))
+    return FileFacade(draw(st.text(max_size=3)), n_rows, n_columns, horizontal, vertical, missing, panels, braces)
 
 
 @given(

@@ -9,16 +9,20 @@ from typing import Any
 import numpy as np
 import pytest
 
+from planning.effects import Decision
 from planning.errors import InputError
 from reconstruction.cameras import PosedPhoto
 from reconstruction.made_facades.record import MadeFacade
+from reconstruction.panels.facades import Facade
 from reconstruction.panels.find import FindParameters, find_panels
-from reconstruction.panels_file import FileCell, FileLine, PanelsFile, panels_record
+from reconstruction.panels.given import given_grid
+from reconstruction.panels_file import FileCell, FileInclined, FileLine, PanelsFile, panels_record
 from reconstruction.rectify.curvature import ViewKind
+from reconstruction.rectify.fit import SurfaceFit
 from reconstruction.rectify.view import surface_view
 from reconstruction.scores.sets import surface_of
 from reconstruction.segmentation.cells import facade_grid
-from reconstruction.segmentation.record import FacadeGrid, GridLine, Segmentation
+from reconstruction.segmentation.record import FacadeGrid, GridLine, InclinedLine, Segmentation
 from tests.reconstruction.made_photos import coarse_model, made_photos
 from tests.reconstruction.panels.test_find import posed
 
@@ -36,8 +40,8 @@ def named(curvature: float = 0.0) -> list[PosedPhoto]:
     return [replace(photo, name=name) for photo, name in zip(found, NAMES, strict=True)]
 
 
-def drawn_by_hand(number: int, curvature: float = 0.0) -> PanelsFile:
-    """What a careful hand would write of a made photo."""
+def whole_grid(number: int, curvature: float = 0.0) -> FacadeGrid:
+    """The true grid of a made photo."""
     photo = made(curvature)[number]
     view = surface_view(named(curvature)[number], surface_of(photo.case))
     columns = tuple(
@@ -47,9 +51,17 @@ def drawn_by_hand(number: int, curvature: float = 0.0) -> PanelsFile:
         GridLine(float(view.from_surface(np.array([[0.0, t]]))[0, 1]), WIDTH_M * view.px_per_m)
         for t in photo.rows_m[::-1]
     )
-    grid: FacadeGrid = facade_grid("Z", view, rows, columns)
-    lens = photo.photo.intrinsics
+    return facade_grid("Z", view, rows, columns)
+
+
+def recorded(number: int, grid: FacadeGrid) -> PanelsFile:
+    lens = made()[number].photo.intrinsics
     return panels_record(Segmentation(NAMES[number], lens.width_px, lens.height_px, (grid,)))
+
+
+def drawn_by_hand(number: int, curvature: float = 0.0) -> PanelsFile:
+    """What a careful hand would write of a made photo."""
+    return recorded(number, whole_grid(number, curvature))
 
 
 def never(photo: PosedPhoto) -> Any:
@@ -72,6 +84,36 @@ def test_given_grids_are_used_and_their_photos_not_searched(curvature: float) ->
     assert [line.width_m for line in facade.columns] == pytest.approx([WIDTH_M] * len(facade.columns), abs=0.01)
     # The hand decides, so that nothing is searched together.
     assert [decision.effect for decision in found.search_decisions["A"]] == ["unrolling by arc length"]
+
+
+@pytest.mark.parametrize("curvature", [0.0, 0.05])
+@pytest.mark.parametrize("open_side", [-1, 0, 1])
+def test_cut_cells_come_back_cut(curvature: float, open_side: int) -> None:
+    photo, truth = named(curvature)[0], made(curvature)[0]
+    surface = surface_of(truth.case)
+    view = surface_view(photo, surface)
+    whole = whole_grid(0, curvature)
+    low, high = np.array([truth.columns_m[0], truth.rows_m[0]]), np.array([truth.columns_m[-1], truth.rows_m[-1]])
+    first, last = view.from_surface(np.array([low, high]))
+    brace = InclinedLine(tuple(first), tuple(last), 6.0, 0.2, 0.9, open_side)
+    cut = facade_grid("A", view, whole.rows, whole.columns, (brace,))
+    record = recorded(0, cut)
+    fit = SurfaceFit(surface, 1e-4 * np.eye(5), 0.02, 100, 1.0)
+    facade = Facade(fit, low, high, Decision("curvature", bool(curvature), "user", "as made", 1.0, 0.5, "px", 0.0), (0,))
+    back = given_grid(record, photo, facade, view, "A")
+    assert back is not None
+    assert [panel.id for panel in back.panels] == [panel.id for panel in cut.panels]
+    assert {len(panel.corners_px) for panel in back.panels} > {4}
+    for one, other in zip(back.panels, cut.panels, strict=True):
+        assert one.corners_px == pytest.approx(other.corners_px, abs=0.3)
+    (line,) = back.inclined
+    assert line.open_side == open_side
+    assert line.width_px == pytest.approx(6.0, abs=0.05)
+
+
+def test_an_inclined_line_needs_both_edges() -> None:
+    with pytest.raises(ValueError, match="two points or more on its left edge and as many on its right one, found 2 "):
+        FileInclined(((0.0, 0.0), (1.0, 1.0)), ((0.0, 1.0),))
 
 
 def test_a_corrected_line_and_a_panel_taken_out_arrive_in_3d() -> None:

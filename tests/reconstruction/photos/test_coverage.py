@@ -7,8 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from planning.catalogue import profile
 from planning.coverage.model import CoverageModel, exact_sections
@@ -24,7 +22,6 @@ from reconstruction.photos.coverage import (
     distances_m,
     distances_to_building_m,
     photo_sections,
-    viewpoints_of,
 )
 from tests.planning.plan_cases import kiosk, solid_triangles
 
@@ -99,24 +96,6 @@ def test_a_rolled_camera_shows_other_panels():
     assert level.any()
     assert upended.any()
     assert (level != upended).any()
-
-
-@given(st.floats(-180, 180), st.floats(-130, 85), st.floats(-80, 80))
-def test_angles_come_back_from_poses(heading, pitch, roll):
-    pose = Pose.looking(np.zeros(3), heading, pitch, roll)
-    arrays, rolls = viewpoints_of([PosedPhoto("a", Path("a"), Intrinsics.of(CAMERA), pose)])
-    again = Pose.looking(np.zeros(3), *np.degrees([arrays.heading_rad[0], arrays.pitch_rad[0], rolls[0]]))
-    assert again.cam_from_enu == pytest.approx(pose.cam_from_enu, abs=1e-5)
-    assert abs(rolls[0]) <= np.pi / 2 + 1e-9
-
-
-def test_a_gimbal_beyond_the_vertical_keeps_its_heading():
-    pose = Pose.looking(np.zeros(3), 40.0, -105.0)
-    arrays, rolls = viewpoints_of([PosedPhoto("a", Path("a"), Intrinsics.of(CAMERA), pose)])
-    assert np.degrees([arrays.heading_rad[0], arrays.pitch_rad[0], rolls[0]]) == pytest.approx((40.0, -105.0, 0.0))
-    down = Pose.looking(np.zeros(3), 40.0, -90.0)
-    arrays, rolls = viewpoints_of([PosedPhoto("a", Path("a"), Intrinsics.of(CAMERA), down)])
-    assert np.degrees([arrays.heading_rad[0], arrays.pitch_rad[0], rolls[0]]) == pytest.approx((40.0, -90.0, 0.0))
 
 
 def test_distances_are_to_the_nearest_panel_in_the_picture():

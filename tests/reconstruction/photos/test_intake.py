@@ -13,7 +13,7 @@ from planning.geodesy.enu import geodetic_from_enu
 from planning.photo_files.folder import read_photos
 from planning.plan import Viewpoint
 from planning.site import panel_corners
-from reconstruction.photos.coverage import achieved_coverage, distances_m, viewpoints_of
+from reconstruction.photos.coverage import achieved_coverage, distances_m
 from reconstruction.photos.lens import LensSource
 from reconstruction.photos.poses import pose_photos
 from reconstruction.photos.quality import check_quality
@@ -93,6 +93,6 @@ def test_a_flight_comes_from_the_card_with_poses_quality_and_coverage(tmp_path):
     assert not whole.missed.any()
     half = achieved_coverage(model, photos.photos[:9], views)
     assert half.missed.sum() == whole.covered - half.covered > 0
-    arrays, rolls = viewpoints_of(photos.photos[:18])
-    np.testing.assert_allclose(np.degrees(arrays.heading_rad), [view.heading_deg for view in views], atol=0.01)
-    np.testing.assert_allclose(np.degrees(rolls), 0.0, atol=0.01)
+    angles = np.array([photo.pose.angles_deg for photo in photos.photos[:18]])
+    np.testing.assert_allclose(angles[:, 0], [view.heading_deg for view in views], atol=0.01)
+    np.testing.assert_allclose(angles[:, 2], 0.0, atol=0.01)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from planning.effects import decide
-from reconstruction.rectify.curvature import Curvature, FittedFacade, Unrolling, bent_by_px, decide_surface
+from reconstruction.rectify.curvature import Curvature, FittedFacade, Unrolling, bent_by_px
 from reconstruction.rectify.fit import fit_cylinder, fit_plane
 from reconstruction.rectify.view import surface_view
 from tests.reconstruction.rectify.scenes import looking_at
@@ -26,8 +26,8 @@ def fitted(curvature: float, seed: int = 0, noise_m: float = 0.02) -> FittedFaca
 def most_bent_px(scene: FittedFacade, curvature: float) -> float:
     """How far true rows and columns are from straight ones in the rectified view that the decision leads to."""
     truth = surface(curvature, lean_rad=0.0)
-    chosen, _ = decide_surface(scene)
-    view = surface_view(scene.photo, chosen)
+    chosen = scene.cylinder if decide(Curvature(), scene).on else scene.plane
+    view = surface_view(scene.photo, chosen.surface)
     lines = []
     for s in np.linspace(-9.0, 9.0, 7):
         column = truth.to_enu(np.column_stack([np.full(9, s), np.linspace(-6.0, 6.0, 9)]))
@@ -62,9 +62,8 @@ def test_a_curvature_within_its_noise_is_not_believed_and_the_user_may_overrule(
     assert not decision.on
     assert decision.size == 0.0
     assert "noise" in decision.reason
-    surface_used, overruled = decide_surface(scene, "on")
-    assert overruled.decided_by == "user"
-    assert surface_used is scene.cylinder.surface
+    overruled = decide(Curvature(), scene, "on")
+    assert (overruled.on, overruled.decided_by) == (True, "user")
 
 
 @pytest.mark.parametrize(("curvature", "on"), [(0.0, False), (1e-4, False), (0.02, True)])
