@@ -13,6 +13,7 @@ from planning.progress import QUIET, Monitor
 from planning.site_import.facades import facade_name
 from reconstruction.cameras import PosedPhoto
 from reconstruction.panels.facades import building_facades
+from reconstruction.panels.findings import facade_findings
 from reconstruction.panels.fusing import LoadPhoto
 from reconstruction.panels.given import files_by_photo
 from reconstruction.panels.record import SolvedFacade
@@ -143,7 +144,7 @@ def find_panels(
                 Finding(Severity.NOTE, "facade-too-small", f"a wall with {len(result.panels)} panel was left out", name)
             )
             continue
-        findings += [*found.findings, *reduced_panels(result)]
+        findings += [*found.findings, *facade_findings(result, photos)]
         solved.append(result)
         fits[name], decisions[name] = facade.fit, facade.curvature
         search_decisions[name] = found.decisions
@@ -151,16 +152,3 @@ def find_panels(
     if not solved:
         raise InfeasibleError("no grid of panels was found on any facade; choose sharper photos taken from the front")
     return FoundPanels(tuple(solved), grids, fits, decisions, tuple(findings), search_decisions)
-
-
-def reduced_panels(facade: SolvedFacade) -> list[Finding]:
-    """What is said of panels whose shape a site cannot hold."""
-    outlines = [panel.outline_enu_m for panel in facade.panels if panel.outline_enu_m is not None]
-    many = [outline for outline in outlines if len(outline) > 4]
-    if not many:
-        return []
-    text = (
-        f"{len(many)} of {len(facade.panels)} panels have more than four corners; a site's panels have four, so that "
-        "the largest four-cornered part of each is kept"
-    )
-    return [Finding(Severity.NOTE, "panels-with-more-corners", text, facade.id, float(len(many)))]

@@ -93,6 +93,11 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
+        "panels repeat every {0} m, and a photo may lie {1} m off (one standard deviation), so that the facade may stand a"
+        " panel off, or photos were matched a panel apart; refine the poses, or compare with a measured corner",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
         "no grid of panels was found on any facade; choose sharper photos taken from the front",
     ),
     QT_TRANSLATE_NOOP("Sentences", "facade {0}: no photo shows a grid with at least one panel"),

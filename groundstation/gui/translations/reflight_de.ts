@@ -8272,6 +8272,10 @@ Take it over?</source>
         <translation>{0} von {1} Scheiben haben mehr als vier Ecken; Scheiben eines Standorts haben vier, deshalb bleibt von jeder das größte Viereck darin</translation>
     </message>
     <message>
+        <source>panels repeat every {0} m, and a photo may lie {1} m off (one standard deviation), so that the facade may stand a panel off, or photos were matched a panel apart; refine the poses, or compare with a measured corner</source>
+        <translation>Scheiben wiederholen sich alle {0} m, und ein Foto kann {1} m daneben liegen (eine Standardabweichung), sodass die Fassade um eine Scheibe versetzt stehen kann oder Fotos um eine Scheibe versetzt zugeordnet wurden; Posen verfeinern oder mit einer eingemessenen Ecke vergleichen</translation>
+    </message>
+    <message>
         <source>no grid of panels was found on any facade; choose sharper photos taken from the front</source>
         <translation>auf keiner Fassade wurde ein Raster von Scheiben gefunden; wählen Sie schärfere Fotos, die von vorn aufgenommen sind</translation>
     </message>

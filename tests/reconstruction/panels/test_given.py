@@ -99,7 +99,9 @@ def test_cut_cells_come_back_cut(curvature: float, open_side: int) -> None:
     cut = facade_grid("A", view, whole.rows, whole.columns, (brace,))
     record = recorded(0, cut)
     fit = SurfaceFit(surface, 1e-4 * np.eye(5), 0.02, 100, 1.0)
-    facade = Facade(fit, low, high, Decision("curvature", bool(curvature), "user", "as made", 1.0, 0.5, "px", 0.0), (0,))
+    facade = Facade(
+        fit, low, high, Decision("curvature", bool(curvature), "user", "as made", 1.0, 0.5, "px", 0.0), (0,)
+    )
     back = given_grid(record, photo, facade, view, "A")
     assert back is not None
     assert [panel.id for panel in back.panels] == [panel.id for panel in cut.panels]

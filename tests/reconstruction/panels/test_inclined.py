@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from groundstation.services.photo_panels import site_facade
 from planning.findings import Severity
 from reconstruction.cameras import PosedPhoto
-from reconstruction.panels.find import reduced_panels
+from reconstruction.panels.findings import reduced_panels
 from reconstruction.panels.record import SolvedFacade
 from reconstruction.panels.solve import solve_facade
 from reconstruction.rectify.fit import SurfaceFit
