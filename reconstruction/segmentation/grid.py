@@ -204,7 +204,7 @@ def find_lines(
         prior = support.reshape(-1, FINE).max(axis=1)
         alike = posterior(Rows.of(axis.picture[rows].T, parameters.n_samples), prior, parameters.beta)
         support = np.maximum(support, np.repeat(alike * prior.max(initial=0.0), FINE))
-    stillness = Stillness.of(axis.spread[_bands(axis, rows)])
+    stillness = Stillness.of(axis.spread[_bands(axis, rows)]) if parameters.use_stillness else None
     evidence = Evidence.of(support, n_panes, parameters.least_seen, stillness)
     limits = SizeLimits(
         parameters.min_panel_px, parameters.max_frame_px, parameters.max_frame_share, float(axis.picture.shape[1])

@@ -51,6 +51,8 @@ class SegmentationParameters:
         and changes no result for the better (docs/segmentation.md).
     use_spacing
         Prefer spacings that repeat, infer lines that are missing from them and drop those that do not fit.
+    use_stillness
+        Count that profiles keep their brightness where glass mirrors something else from place to place.
     find_extent
         Look for the first and last line; off where the picture shows nothing but the facade.
     inclined
@@ -74,6 +76,7 @@ class SegmentationParameters:
     max_tilt_deg: float = 6.0
     use_posterior: bool = False
     use_spacing: bool = True
+    use_stillness: bool = True
     find_extent: bool = True
     inclined: Wish = "auto"
     seed: int = 0
