@@ -2,17 +2,35 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from groundstation.services.given_files import read_given_site
-from groundstation.services.photo_poses import RefineWish, better_poses, still_true
+from groundstation.services.photo_poses import RefinedOutcome, RefineWish, better_poses, refined_summary, still_true
 from planning.findings import Finding
 from planning.photo_files.folder import read_photos
 from planning.photo_files.places import PhotoHeights
 from planning.progress import QUIET, Monitor
 from reconstruction.dataset.prepare import PreparedData, PrepareParameters, prepare
 from reconstruction.photos.poses import pose_photos
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreparedFiles:
+    """A data set that was written.
+
+    Parameters
+    ----------
+    findings
+        About the photos, their poses and the data set.
+    refined
+        What refining the poses brought; None where they were not refined.
+    """
+
+    data: PreparedData
+    findings: tuple[Finding, ...]
+    refined: RefinedOutcome | None
 
 
 def prepare_files(
@@ -25,8 +43,8 @@ def prepare_files(
     colmap: Path | None = None,
     refine: RefineWish | None = None,
     monitor: Monitor = QUIET,
-) -> tuple[PreparedData, tuple[Finding, ...]]:
-    """Write the data set of a folder of photos; the second value are findings about all of them.
+) -> PreparedFiles:
+    """Write the data set of a folder of photos.
 
     Raises
     ------
@@ -38,13 +56,16 @@ def prepare_files(
     posed = pose_photos(read.photos, model.site, folder, heights=heights)
     better = better_poses(posed, folder, colmap, refine, monitor)
     prepared = prepare(better.photos, model, out, parameters, monitor)
-    return prepared, (*read.findings, *still_true(posed.findings, better), *better.findings, *prepared.findings)
+    findings = (*read.findings, *still_true(posed.findings, better), *better.findings, *prepared.findings)
+    return PreparedFiles(prepared, findings, better.refined)
 
 
-def prepared_summary(prepared: PreparedData) -> dict[str, Any]:
+def prepared_summary(prepared: PreparedFiles) -> dict[str, Any]:
     """For `--json`."""
+    data = prepared.data
     return {
-        "dataset": str(prepared.folder),
-        "photos": len(prepared.photos),
-        "effects": {decision.effect: str(decision) for decision in prepared.decisions},
+        "dataset": str(data.folder),
+        "photos": len(data.photos),
+        "effects": {decision.effect: str(decision) for decision in data.decisions},
+        **({} if prepared.refined is None else {"refined": refined_summary(prepared.refined)}),
     }

@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
             options.normal_step, options.points, options.hidden_panels, options.lens_distortion
         )
     refine = refine_wish(options)
-    prepared, findings = run_job(
+    prepared = run_job(
         "prepare",
         lambda context: prepare_files(
             options.photos,
@@ -67,8 +67,8 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(prepared_summary(prepared))
         return 0
-    print(f"{options.out}: {counted(len(prepared.photos), 'photo')} prepared")
-    for decision in prepared.decisions:
+    print(f"{options.out}: {counted(len(prepared.data.photos), 'photo')} prepared")
+    for decision in prepared.data.decisions:
         print(f"  {decision}")
-    print_findings(findings)
+    print_findings(prepared.findings)
     return 0

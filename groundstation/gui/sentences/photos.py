@@ -93,8 +93,8 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "panels repeat every {0} m, and a photo may lie {1} m off (one standard deviation), so that the facade may stand a"
-        " panel off, or photos were matched a panel apart; refine the poses, or compare with a measured corner",
+        "panels repeat every {0} m, and a photo may lie {1} m off (one standard deviation), so that the facade may"
+        " stand a panel off, or photos were matched a panel apart; refine the poses, or compare with a measured corner",
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
