@@ -115,6 +115,8 @@ class ScoreRequest:
         Whether those photos are fronto-parallel.
     masks
         Another method's masks, to be scored instead of what Reflight finds.
+    first_seed
+        Of a made set.
     """
 
     set_name: str
@@ -189,7 +191,8 @@ def photo_set(request: ScoreRequest, n_beside: int = 0) -> PhotoSet:
     name = request.set_name
     if name in MADE_SETS:
         camera = wide_camera(request.width_px, round(0.75 * request.width_px))
-        return made_set(name, request.n_seeds, camera, EXTENT_MARGIN_M if request.is_extent_known else None, n_beside)
+        margin_m = EXTENT_MARGIN_M if request.is_extent_known else None
+        return made_set(name, request.n_seeds, camera, margin_m, n_beside, request.first_seed)
     if name in READERS:
         if request.data is None:
             raise InputError(f"--set {name}: needs the folder of its annotated photos; name it with --data")

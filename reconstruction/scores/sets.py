@@ -89,8 +89,9 @@ def made_set(
     intrinsics: Intrinsics | None = None,
     extent_margin_m: float | None = EXTENT_MARGIN_M,
     n_beside: int = 0,
+    first_seed: int = 0,
 ) -> PhotoSet:
-    """Made facades with strong reflections: one of `MADE_SETS`, seeds 0 to `n_seeds` - 1; see `scored`.
+    """Made facades with strong reflections: one of `MADE_SETS`, `n_seeds` seeds from `first_seed` on; see `scored`.
 
     Parameters
     ----------
@@ -98,15 +99,16 @@ def made_set(
         More photos of each facade, from other places, with poses as good as RTK and a gimbal's angles are.
     """
     shape = MADE_SETS[name]
+    seeds = range(first_seed, first_seed + n_seeds)
 
     def photos() -> Iterator[ScoredPhoto]:
-        for seed in range(n_seeds):
+        for seed in seeds:
             case = random_case(shape, seed, intrinsics)
             photo = scored(make_facade(case), extent_margin_m)
             (view,) = photo.views or ()
             yield replace(photo, beside=tuple(_beside(case, view, number) for number in range(n_beside)))
 
-    return PhotoSet(name, tuple(case_name(shape, seed) for seed in range(n_seeds)), photos)
+    return PhotoSet(name, tuple(case_name(shape, seed) for seed in seeds), photos)
 
 
 def scored(made: MadeFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) -> ScoredPhoto:

@@ -23,7 +23,10 @@ def test_made_photos_are_scored_and_the_worst_shown(reflight, tmp_path):
     with (out / "segmentation-scores.csv").open(newline="") as file:
         assert [row["photo"] for row in csv.DictReader(file)] == ["planar-000", "planar-001"]
     assert all(cv2.imread(path) is not None for path in done.json["pictures"])
-    text = reflight("score", "segmentation", "--seeds", 1, "--width", 480, "--extent-unknown", "-o", out).out
+    options = ("--seeds", 1, "--first-seed", 7, "--width", 480, "--extent-unknown")
+    text = reflight("score", "segmentation", *options, "-o", out).out
+    assert "planar-007" in (out / "segmentation-scores.csv").read_text()
+    assert "--first-seed: expected 0 or more" in reflight("score", "segmentation", "--first-seed", -1, "-o", out).error
     assert "individual mIoU" in text
     assert "coverage, 5 % percentile" in text
 

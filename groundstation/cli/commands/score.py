@@ -65,6 +65,7 @@ def add_set_arguments(parser: Any) -> None:
     add = parser.add_argument_group("photos with truth").add_argument
     add("--set", dest="set_name", choices=SETS, default=SETS[0], help="default: %(default)s")
     add("--seeds", type=int, default=10, metavar="N", help="photos of a made set (default %(default)s)")
+    add("--first-seed", type=int, default=0, metavar="N", help="of a made set (default %(default)s)")
     add("--width", type=int, default=1600, metavar="PX", help="of photos of a made set (default %(default)s)")
     add("--extent-unknown", action="store_true", help="do not tell where the walls of a made set end")
     add("--data", type=Path, metavar="DIR", help="folder of cmp, ecp or offices")
@@ -87,6 +88,8 @@ def request_of(options: argparse.Namespace) -> ScoreRequest:
 
     if options.seeds < 1:
         raise InputError(f"--seeds: expected 1 or more, got {options.seeds}")
+    if options.first_seed < 0:
+        raise InputError(f"--first-seed: expected 0 or more, got {options.first_seed}")
     if not MIN_WIDTH_PX <= options.width <= MAX_WIDTH_PX:
         raise InputError(f"--width: expected {MIN_WIDTH_PX} to {MAX_WIDTH_PX} pixels, got {options.width}")
     return ScoreRequest(
@@ -99,6 +102,7 @@ def request_of(options: argparse.Namespace) -> ScoreRequest:
         options.truth,
         options.rectified,
         parameters=parameters_of(options),
+        first_seed=options.first_seed,
     )
 
 
