@@ -129,6 +129,7 @@ class ScoreRequest:
     is_rectified: bool = False
     masks: Path | None = None
     parameters: SegmentationParameters | None = None
+    first_seed: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
