@@ -24,6 +24,10 @@ BLUR_PX = 0.8
 ALONG_PX = 2.0
 """The same along the edge: faint edges rise above the noise, lines a degree off their axis stay sharp."""
 
+LEAST_THERE = 0.5
+"""Of the steepness of an edge, that a place shows by itself, without what is smoothed in along the edge: lines that end
+at a profile must not run on into it."""
+
 LEAST_STEP = 1.2
 """Grey levels per pixel below which nothing is an edge, whatever the noise: 8-bit rounding makes steps of 1."""
 
@@ -55,10 +59,13 @@ def vertical_edges(grey: Picture, valid: NDArray[np.bool_] | None = None) -> Edg
     smooth = np.asarray(cv2.GaussianBlur(grey, (0, 0), BLUR_PX, sigmaY=ALONG_PX, borderType=cv2.BORDER_REPLICATE))
     across = np.asarray(cv2.Sobel(smooth, cv2.CV_32F, 1, 0, ksize=3, scale=0.125, borderType=cv2.BORDER_REPLICATE))
     along = np.asarray(cv2.Sobel(smooth, cv2.CV_32F, 0, 1, ksize=3, scale=0.125, borderType=cv2.BORDER_REPLICATE))
+    plain = np.asarray(cv2.GaussianBlur(grey, (0, 0), BLUR_PX, borderType=cv2.BORDER_REPLICATE))
+    there = np.asarray(cv2.Sobel(plain, cv2.CV_32F, 1, 0, ksize=3, scale=0.125, borderType=cv2.BORDER_REPLICATE))
     size = np.abs(across)
     threshold = max(LEAST_STEP, NOISE_FACTOR * noise_of(across))
     left, middle, right = size[:, :-2], size[:, 1:-1], size[:, 2:]
     found = (middle > threshold) & (middle >= left) & (middle > right) & (middle > np.abs(along[:, 1:-1]))
+    found &= np.abs(there[:, 1:-1]) > LEAST_THERE * threshold
     is_edge = np.zeros((height, width), bool)
     is_edge[:, 1:-1] = found
     if valid is not None:

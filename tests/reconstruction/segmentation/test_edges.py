@@ -144,3 +144,23 @@ def test_small_ripples_are_no_peaks_and_the_ends_may_be() -> None:
     positions, heights = local_maxima(values, 0.2)
     assert heights.tolist() == [5.0, 4.0, 6.0]
     assert positions[0] == 0.5
+
+
+def test_edges_that_end_at_a_profile_do_not_run_into_it() -> None:
+    picture = np.full((200, 120), 60.0, np.float32)
+    picture[:, 60:] = 190.0
+    picture[95:105] = 60.0  # a profile as dark as the darker side
+    seen = vertical_edges(picture).is_edge[:, 58:62].any(axis=1)
+    assert seen[:93].all()
+    assert seen[107:].all()
+    assert not seen[98:102].any()
+
+
+def test_faint_edges_rise_above_the_noise_and_noise_alone_does_not() -> None:
+    rng = np.random.default_rng(3)
+    noise = rng.normal(100.0, 4.0, (400, 120)).astype(np.float32)
+    faint = noise.copy()
+    faint[:, 60:] += 9.0
+    found, chance = (vertical_edges(grey).is_edge[:, 58:62].any(axis=1).mean() for grey in (faint, noise))
+    assert found > 0.5
+    assert chance < 0.1
