@@ -6,9 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
+from planning.effects import Wish
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels
 from reconstruction.photos.sharpness import sharpness
+from reconstruction.scenes.bundled import bundled_scene
+from reconstruction.scenes.renderer import NEAR_FIELD, Renderer, RenderSettings
 from reconstruction.scores.overlaps import pixel_overlaps
 from reconstruction.scores.raster import index_image
 from reconstruction.segmentation.segment import segment_rectified
@@ -27,6 +30,13 @@ def compile_kernels() -> None:
     segment_rectified(picture)
     index = index_image([np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0]])], 12, 12)
     pixel_overlaps(index, index)
+    court = bundled_scene("court")
+    eastwards = court.panes.corners_enu_m[0].mean(axis=0) + np.array([12.0, 0.0, 0.0])
+    facing = PosedPhoto("", Path(), lens, Pose.looking(eastwards, -90.0, 0.0))
+    wishes: tuple[Wish, ...] = ("on", "off")
+    for near in wishes:
+        settings = RenderSettings(samples=1, wishes={NEAR_FIELD: near}, environment_rows=16)
+        Renderer(court, settings).render(facing)
 
 
 if __name__ == "__main__":

@@ -6,9 +6,12 @@ import argparse
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from planning.errors import InputError
+
+if TYPE_CHECKING:
+    from planning.effects import Wish
 
 LARGEST_SEED = 2**32 - 1
 """PyVRP's generator takes 32 bits."""
@@ -30,6 +33,7 @@ OPTIONS = {
     "normal_step": "--normal-step",
     "n_points": "--points",
     "max_image_size_px": "--refine-size",
+    "width_px": "--width",
 }
 """Options by the name that the records' own checks give a value."""
 
@@ -93,6 +97,31 @@ def _print_profiles() -> None:
             f"wind up to {aircraft.max_wind_m_s:g} m/s; {camera.name}, {camera.image_width_px} x "
             f"{camera.image_height_px}, {camera.focal_length_mm:g} mm, gimbal {low:g} to {high:g} deg"
         )
+
+
+def effect_wishes(texts: Sequence[str], effects: Sequence[str]) -> dict[str, Wish]:
+    """Wishes of `--effects`, by the names of `effects`.
+
+    Raises
+    ------
+    InputError
+        A text is no wish, or names none of the effects.
+    """
+    names = {effect.lower().replace(" ", "-"): effect for effect in effects}
+    states: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
+    all_at_once: dict[str, Wish] = {"auto": "auto", "none": "off", "all": "on"}
+    wishes: dict[str, Wish] = {}
+    for text in (part for given in texts for part in given.split(",")):
+        name, equals, state = text.strip().partition("=")
+        if not equals and name in all_at_once:
+            wishes = dict.fromkeys(names.values(), all_at_once[name])
+        elif name.lower().replace(" ", "-") in names and state in states:
+            wishes[names[name.lower().replace(" ", "-")]] = states[state]
+        else:
+            raise InputError(
+                f"--effects {text}: expected auto, none, all, or NAME=on, off or auto; names are {', '.join(names)}"
+            )
+    return wishes
 
 
 def checked_seed(seed: int) -> int:

@@ -186,7 +186,7 @@ def _pose(photo: PhotoMetadata, origin: Origin, point_enu_m: Array, is_absolute:
     assert photo.lon_deg is not None
     assert photo.gimbal_heading_deg is not None
     assert photo.gimbal_pitch_deg is not None
-    local_from_site = _enu_axes(photo.lat_deg, photo.lon_deg) @ _enu_axes(origin.lat_deg, origin.lon_deg).T
+    local_from_site = enu_axes(photo.lat_deg, photo.lon_deg) @ enu_axes(origin.lat_deg, origin.lon_deg).T
     cam_from_local = cam_from_enu(photo.gimbal_heading_deg, photo.gimbal_pitch_deg, photo.gimbal_roll_deg or 0.0)
     covariance = np.zeros((6, 6))
     covariance[:3, :3] = (local_from_site.T * _position_variances(photo, is_absolute, accuracy)) @ local_from_site
@@ -226,7 +226,7 @@ def _position_variances(photo: PhotoMetadata, is_absolute: bool, accuracy: Accur
     return np.square([east, north, up if is_absolute else accuracy.takeoff_height_m])
 
 
-def _enu_axes(lat_deg: float, lon_deg: float) -> Array:
+def enu_axes(lat_deg: float, lon_deg: float) -> Array:
     """East, north and up at a place, as rows, shape (3, 3), in geocentric axes."""
     lat, lon = math.radians(lat_deg), math.radians(lon_deg)
     sin_lat, cos_lat, sin_lon, cos_lon = math.sin(lat), math.cos(lat), math.sin(lon), math.cos(lon)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.options import checked_seed, number
+from groundstation.cli.options import effect_wishes as wishes_of_effects
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -154,7 +155,7 @@ def _check_link(options: argparse.Namespace) -> None:
 
 
 def effect_wishes(texts: list[str]) -> dict[str, Wish]:
-    """Wishes by the effects' names.
+    """Wishes by the names of the simulation's effects.
 
     Raises
     ------
@@ -163,21 +164,7 @@ def effect_wishes(texts: list[str]) -> dict[str, Wish]:
     """
     from missions.simulator.build import EFFECTS
 
-    names = {effect.name.lower().replace(" ", "-"): effect.name for effect in EFFECTS}
-    states: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
-    all_at_once: dict[str, Wish] = {"auto": "auto", "none": "off", "all": "on"}
-    wishes: dict[str, Wish] = {}
-    for text in (part for given in texts for part in given.split(",")):
-        name, equals, state = text.strip().partition("=")
-        if not equals and name in all_at_once:
-            wishes = dict.fromkeys(names.values(), all_at_once[name])
-        elif name.lower().replace(" ", "-") in names and state in states:
-            wishes[names[name.lower().replace(" ", "-")]] = states[state]
-        else:
-            raise InputError(
-                f"--effects {text}: expected auto, none, all, or NAME=on, off or auto; names are {', '.join(names)}"
-            )
-    return wishes
+    return wishes_of_effects(texts, [effect.name for effect in EFFECTS])
 
 
 def _summary(flown: Flown, options: argparse.Namespace) -> dict[str, Any]:

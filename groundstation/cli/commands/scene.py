@@ -1,0 +1,126 @@
+"""`scene`: photographs of a site that are rendered, with all that is true of them."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundstation.cli.options import add_profile_argument, checked_seed, effect_wishes, in_words_of_options, number
+from planning.errors import InputError
+
+if TYPE_CHECKING:
+    from groundstation.services.scene_photos import RenderedScene, SceneWish
+
+EPILOG = """views (without any of them 24 are planned):
+  --plan PLAN      those of a plan, by its camera
+  --flight FLIGHT  where photos of a flight were really taken; with --plan by its camera, else by --profile's
+  --views N        so many, planned here
+
+effects:
+  --effects auto             what the scene and the views call for (default)
+  --effects none             none of them; --effects all: all
+  --effects panel-tilt=on    one by name; give it several times, also behind none or all
+  Names are printed with each run.
+
+A run that was interrupted goes on where it stopped when the same is asked for again.
+
+examples:
+  scene render planar -o planar.photos --views 12 --width 512
+  scene render office.site.json --plan office.plan.json -o office.photos
+  scene render office.site.json --flight office.flight.json --plan office.plan.json -o flown.photos --seed 3
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser("scene", help="render photos of a site, with their truth")
+    actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
+    listing = actions.add_parser("list", help="list the bundled scenes")
+    listing.set_defaults(run=run_list)
+    listing.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+    render = actions.add_parser(
+        "render",
+        help="render photos and their truth into a folder",
+        description="Render the photos that a plan or flight takes of a site with glass panels, and write for each\n"
+        "its depth, normals, panels, glass, and the picture without and of mirror images alone.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    render.set_defaults(run=run_render)
+    add = render.add_argument
+    add("scene", metavar="SITE|NAME", help="site file, or name of a bundled scene ('scene list')")
+    add("-o", "--out", type=Path, required=True, metavar="DIR", help="folder for the photos")
+    add("--plan", type=Path, metavar="PLAN", help="plan file")
+    add("--flight", type=Path, metavar="FLIGHT", help="flight file, of 'simulate' or 'report'")
+    add("--views", type=int, metavar="N", help="number of views to plan (default 24)")
+    add_profile_argument(render)
+    add("--look", type=Path, metavar="FILE", help="TOML file with glass, frames, surroundings and light of a site")
+    add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
+    add("--width", type=int, default=1024, metavar="PX", help="of the photos (default 1024)")
+    add("--points", type=int, default=100_000, metavar="N", help="points that reconstruction starts from")
+    add("--effects", action="append", default=[], metavar="WISH", help="auto, none, all, or NAME=on|off|auto")
+    add("--tolerance", type=number, default=1.0, metavar="X", help="times each effect's own tolerance (default 1)")
+    add("--jobs", type=int, metavar="N", help="photos rendered side by side (default: one for every four cores)")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run_list(options: argparse.Namespace) -> int:
+    """Print the bundled scenes; returns the exit status."""
+    from groundstation.cli.console import print_json
+    from groundstation.services.scene_photos import BUNDLED_TEXTS
+
+    if options.json:
+        print_json({"scenes": BUNDLED_TEXTS})
+    else:
+        for name, text in BUNDLED_TEXTS.items():
+            print(f"{name:<12} {text}")
+    return 0
+
+
+def run_render(options: argparse.Namespace) -> int:
+    """Render, write and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.scene_photos import photograph_files, rendered_summary
+
+    wish = _wish(options)
+    if options.jobs is not None and options.jobs < 1:
+        raise InputError(f"--jobs: expected 1 or more, got {options.jobs}")
+    rendered = run_job("scene", lambda context: photograph_files(wish, options.out, options.jobs, context))
+    if options.json:
+        print_json(rendered_summary(rendered))
+    else:
+        _print_text(rendered)
+    return 0
+
+
+def _wish(options: argparse.Namespace) -> SceneWish:
+    from groundstation.services.scene_photos import SceneWish
+    from reconstruction.scenes.renderer import EFFECTS, RenderSettings
+
+    wishes = effect_wishes(options.effects, EFFECTS)
+    with in_words_of_options():
+        return SceneWish(
+            scene=options.scene,
+            plan=options.plan,
+            flight=options.flight,
+            n_views=options.views,
+            profile_id=options.profile,
+            look=options.look,
+            seed=checked_seed(options.seed),
+            width_px=options.width,
+            n_points=options.points,
+            settings=RenderSettings(wishes=wishes, tolerance=options.tolerance),
+        )
+
+
+def _print_text(rendered: RenderedScene) -> None:
+    from groundstation.cli.console import counted, print_findings
+    from missions.simulator.build import effects_table
+
+    written = rendered.written
+    kept = f", {written.n_kept} of them kept" if written.n_kept else ""
+    print(f"{written.folder}: {counted(len(written.photos), 'photo')} of '{rendered.scene}'{kept}")
+    print(f"effects:\n{effects_table(written.decisions)}")
+    print(f"rendered in {rendered.seconds:.1f} s")
+    print_findings(rendered.findings)

@@ -1,0 +1,133 @@
+"""Scenes out of sites: panels become panes in their profiles, the building a wall behind them, and streets are laid."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from planning.coverage.sections import PanelFrames, panel_frames
+from planning.mesh import TriangleMesh
+from planning.site import SiteModel, panel_corners, require_panels
+from reconstruction.scenes.look import Look
+from reconstruction.scenes.panorama import panorama
+from reconstruction.scenes.profiles import profile_rings
+from reconstruction.scenes.record import Body, Glass, Layer, Panes, Scene, Sky
+from reconstruction.scenes.surroundings import surround
+from reconstruction.scenes.textures import grain
+from reconstruction.scenes.wall_cut import without_openings
+
+OTHER_COATING = 0.12
+"""How much more or less panes of another batch mirror."""
+
+DUSTY = 0.06
+"""Share of dust on panes that are hard to clean, beyond that of the others."""
+
+DUSTY_PANES = 0.15
+
+ROOM, LAMP, BLIND = (0.05, 0.05, 0.048), (0.3, 0.26, 0.18), (0.42, 0.41, 0.38)
+"""Light of a dim room, a lit one, and a blind in daylight."""
+
+LIT_ROOMS = 0.12
+
+LEAST_AREA_M2 = 1e-10
+"""Smaller triangles are left out: 10 micrometres square."""
+
+
+def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Scene:
+    """A site with all that a photo of it shows.
+
+    The panes are the site's panels themselves. What of the building's mesh lies in their plane or up to 0.3 m before it
+    is cut out behind them (`wall_cut`). Buildings opposite and trees stand among the obstacles of the scene's site, so
+    that flights planned on it keep away from them; the site's hash stays.
+
+    Panes, sky and surroundings draw from generators of their own: the panes of a scene are the same with and without
+    what is near.
+
+    Raises
+    ------
+    InputError
+        The site has no panels.
+    """
+    require_panels(model.site)
+    look = look or Look()
+    panels = _lower_left_first(panel_frames(panel_corners(model.site)))
+    walls, sky, around, glass = (np.random.default_rng([seed, part]) for part in range(4))
+    bodies = [_frames(panels, look)]
+    building = without_openings(model.building, panels)
+    bodies.append(Body("walls", Layer.BUILDING, building, look.wall_albedo, grain(walls, (0.9,) * 3, 0.12, 30.0)))
+    bodies += [
+        Body(f"obstacle-{obstacle.id}", Layer.NEAR, mesh, (0.5, 0.48, 0.45), grain(walls, (0.85,) * 3, 0.3, 15.0))
+        for obstacle, mesh in zip(model.site.obstacles, model.obstacles, strict=True)
+    ]
+    bodies = [replace(body, mesh=_with_area(body.mesh)) for body in bodies]
+    if look.near:
+        surroundings = surround(model, look, around)
+        model, bodies = surroundings.model, [*bodies, *surroundings.bodies]
+    glasses = _glasses(look.glass)
+    return Scene(
+        name=model.site.name,
+        seed=seed,
+        site=model,
+        bodies=tuple(body for body in bodies if len(body.mesh.triangles)),
+        panes=_panes(panels, look, glass),
+        glasses=glasses,
+        sky=_sky(look, sky),
+    )
+
+
+def _frames(panels: PanelFrames, look: Look) -> Body:
+    mesh = profile_rings(panels, look.frame_width_m, look.frame_depth_m)
+    return Body("profiles", Layer.BUILDING, mesh, look.frame_albedo)
+
+
+def _with_area(mesh: TriangleMesh) -> TriangleMesh:
+    """Without triangles that have no normal: imported meshes have some, and so have rings around three-sided panes."""
+    corners = mesh.corners_enu_m
+    crossed = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return TriangleMesh(mesh.vertices_enu_m, mesh.triangles[np.linalg.norm(crossed, axis=1) > 2.0 * LEAST_AREA_M2])
+
+
+def _lower_left_first(panels: PanelFrames) -> PanelFrames:
+    """The same panels, their corners counted from the lower left one, seen from outside."""
+    relative = panels.corners - panels.centroids[:, None]
+    right = np.einsum("mkx,mx->mk", relative, panels.tangents)
+    up = np.einsum("mkx,mx->mk", relative, panels.bitangents)
+    # Shares of the extents, so that of a wide and low panel the lower left corner is found, too.
+    first = (right / np.ptp(right, axis=1)[:, None] + up / np.ptp(up, axis=1)[:, None]).argmin(axis=1)
+    order = (first[:, None] + np.arange(4)) % 4
+    return replace(panels, corners=np.take_along_axis(panels.corners, order[..., None], axis=1))
+
+
+def _glasses(glass: Glass) -> tuple[Glass, ...]:
+    """As it was ordered; hard to clean; replaced by another batch."""
+    other = glass.coating - OTHER_COATING if glass.coating >= OTHER_COATING else glass.coating + OTHER_COATING
+    red, green, blue = glass.tint
+    return (
+        glass,
+        replace(glass, dirt=min(glass.dirt + DUSTY, 0.99)),
+        replace(glass, coating=min(other, 0.99), tint=(0.94 * red, 0.97 * green, min(1.02 * blue, 1.0))),
+    )
+
+
+def _panes(panels: PanelFrames, look: Look, rng: np.random.Generator) -> Panes:
+    n = len(panels)
+    relative = panels.corners - panels.centroids[:, None]
+    halves = np.stack(
+        [np.abs(np.einsum("mkx,mx->mk", relative, axis)).max(axis=1) for axis in (panels.tangents, panels.bitangents)],
+        axis=1,
+    )
+    tilts = np.radians(look.tilt_deg) * rng.normal(size=(n, 2))
+    edge_turns = np.radians(look.bow_deg) * (1.0 + 0.3 * rng.normal(size=(n, 1)))
+    draws = rng.random(n)
+    kinds = np.where(draws < look.replaced, 2, np.where(rng.random(n) < DUSTY_PANES, 1, 0))
+    is_lit = rng.random((n, 1)) < LIT_ROOMS
+    lights = np.where(is_lit, LAMP, ROOM) * rng.uniform(0.5, 1.5, (n, 1))
+    drawn = np.where(rng.random((n, 1)) < look.blinds, rng.uniform(0.15, 1.0, (n, 1)), 0.0)
+    rooms = lights + drawn * (BLIND * rng.uniform(0.8, 1.1, (n, 1)) - lights)
+    return Panes(panels.corners, tilts, edge_turns / halves, kinds.astype(np.int64), np.clip(rooms, 0.0, 1.0))
+
+
+def _sky(look: Look, rng: np.random.Generator) -> Sky:
+    clear = Sky(look.sun_heading_deg, look.sun_elevation_deg)
+    return replace(clear, panorama=panorama(rng, clear, look.clouds, look.skyline_deg))
