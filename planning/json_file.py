@@ -9,6 +9,7 @@ import re
 import tempfile
 import tomllib
 from collections.abc import Iterable
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -138,6 +139,27 @@ def read_toml(path: Path, record: type[Record]) -> Record:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: not valid TOML ({error})") from error
     return to_record(content, record, path)
+
+
+def check_settings(content: dict[str, Any], record: type[Any], path: Path, place: str = "") -> None:
+    """Refuse keys that are no fields of a record.
+
+    Parameters
+    ----------
+    record
+        A dataclass.
+    place
+        Of the keys in the file, with its dot, as `glass.`.
+
+    Raises
+    ------
+    InputError
+        There is such a key; the message names it and those that are known.
+    """
+    known = [field.name for field in fields(record)]
+    unknown = sorted(set(content) - set(known))
+    if unknown:
+        raise InputError(f"{path}: {place}{unknown[0]}: no such setting; known are: {', '.join(known)}")
 
 
 def check_output(path: Path, sources: Iterable[Path] = ()) -> None:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from planning.errors import InputError
-from planning.json_file import read_toml, to_record
+from planning.json_file import check_settings, read_toml, to_record
 from reconstruction.scenes.record import Glass, Rgb
 
 
@@ -107,15 +106,8 @@ def read_look(path: Path) -> Look:
         The file cannot be read, or a key or value is none of ours; the message names it.
     """
     content = read_toml(path, dict[str, Any])
-    _check_keys(path, "", content, Look)
+    check_settings(content, Look, path)
     glass = content.get("glass")
     if isinstance(glass, dict):
-        _check_keys(path, "glass.", glass, Glass)
+        check_settings(glass, Glass, path, "glass.")
     return to_record(content, Look, path)
-
-
-def _check_keys(path: Path, place: str, content: dict[str, Any], record: type[Look] | type[Glass]) -> None:
-    known = [part.name for part in fields(record)]
-    unknown = sorted(set(content) - set(known))
-    if unknown:
-        raise InputError(f"{path}: {place}{unknown[0]}: no such setting; known are: {', '.join(known)}")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from planning.effects import Wish
-from planning.errors import InputError
-from planning.json_file import read_toml, to_record
+from planning.json_file import check_settings, read_toml, to_record
 
 Detector = Literal["gradient", "hough", "lsd", "edlines", "fld"]
 """What finds line segments: our own along the axes of the picture, OpenCV's probabilistic Hough transform (the
@@ -109,8 +108,5 @@ def read_parameters(path: Path) -> SegmentationParameters:
         The file cannot be read, or a key or value is none of ours; the message names it.
     """
     content = read_toml(path, dict[str, Any])
-    known = [field.name for field in fields(SegmentationParameters)]
-    unknown = sorted(set(content) - set(known))
-    if unknown:
-        raise InputError(f"{path}: {unknown[0]}: no such setting; known are: {', '.join(known)}")
+    check_settings(content, SegmentationParameters, path)
     return to_record(content, SegmentationParameters, path)

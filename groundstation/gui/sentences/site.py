@@ -17,6 +17,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "expected a finite number, got NaN or Infinity"),
     QT_TRANSLATE_NOOP("Sentences", "format: expected '{0}', got {1}; is it the right file?"),
     QT_TRANSLATE_NOOP("Sentences", "not valid TOML ({0})"),
+    QT_TRANSLATE_NOOP("Sentences", "no such setting; known are: {0}"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: there is no folder '{0}'; make it first"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: this is a folder; name a file in it"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: the file is write-protected; name another one"),

@@ -6128,6 +6128,10 @@ Take it over?</source>
         <translation>kein gültiges TOML ({0})</translation>
     </message>
     <message>
+        <source>no such setting; known are: {0}</source>
+        <translation>diese Einstellung gibt es nicht; bekannt sind: {0}</translation>
+    </message>
+    <message>
         <source>cannot be written: there is no folder &apos;{0}&apos;; make it first</source>
         <translation>nicht zu schreiben: Es gibt keinen Ordner &apos;{0}&apos;; ihn zuerst anlegen</translation>
     </message>
