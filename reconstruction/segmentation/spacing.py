@@ -36,6 +36,9 @@ CAUTION = (0.0, 6.0)
 """Cost of each edge in the first round, nats; the better end result of both is taken. Reflections of another facade
 bring false lines with sizes of their own, which are counted unless only sure lines are at first."""
 
+BORDER_PX = 6.0
+"""Between the edges that may end a facade, of a profile and of what is beside it."""
+
 ROUNDS = 4
 """Of finding the set and counting its sizes again; real facades settle after two."""
 
@@ -291,23 +294,34 @@ def _sums(gains: Array, costs: _Costs) -> tuple[Array, Array, float]:
     return closed, np.logaddexp(first, opened), float(everything)
 
 
-def _edge_confidences(places: Array, gains: Array, costs: _Costs) -> tuple[Array, Array]:
-    """Probabilities that a panel ends, and that one begins, within two standard deviations of each place."""
+def _edge_probabilities(gains: Array, costs: _Costs) -> tuple[Array, Array]:
+    """Probabilities that a panel ends, and that one begins, at each place."""
     closed, begun, everything = _sums(gains, costs)
     mirror_closed, mirror_begun, _ = _sums(gains[::-1], costs.mirrored())
     ends = np.exp(np.minimum(closed + mirror_begun[::-1] - gains - everything, 0.0))
     begins = np.exp(np.minimum(begun + mirror_closed[::-1] - gains - everything, 0.0))
-    near = np.abs(places[None, :] - places[:, None]) <= 2.0 * SIZE_SIGMA_PX
-    return np.minimum(near @ ends, 1.0), np.minimum(near @ begins, 1.0)
+    return ends, begins
+
+
+def _within(reach_px: float, places: Array, probabilities: Array, at: int) -> float:
+    """Probability of any of the places within reach of one."""
+    near = np.abs(places - places[at]) <= reach_px
+    return min(float(probabilities[near].sum()), 1.0)
 
 
 def _as_frames(pairs: list[tuple[int, int]], places: Array, gains: Array, costs: _Costs) -> tuple[Frame, ...]:
-    """Frames with their confidence: the lesser of its two edges', of the inner one at either end of the facade."""
+    """Frames with their confidence: the lesser of its two edges', of the inner one at either end of the facade.
+
+    There a profile, what it covers and the wall have edges side by side: that one of them ends the facade may be sure,
+    and which of them not.
+    """
     if not pairs:
         return ()
-    ends, begins = _edge_confidences(places, gains, costs)
-    sure = [min(float(ends[first]), float(begins[last])) for first, last in pairs]
-    sure[0], sure[-1] = float(begins[pairs[0][1]]), float(ends[pairs[-1][0]])
+    ends, begins = _edge_probabilities(gains, costs)
+    beside = 2.0 * SIZE_SIGMA_PX
+    sure = [min(_within(beside, places, ends, first), _within(beside, places, begins, last)) for first, last in pairs]
+    sure[0] = _within(BORDER_PX, places, begins, pairs[0][1])
+    sure[-1] = _within(BORDER_PX, places, ends, pairs[-1][0])
     return tuple(
         Frame(float(places[i]), float(places[j]), p, bool(max(gains[i], gains[j]) + costs.still[i, j] <= 0.0))
         for (i, j), p in zip(pairs, sure, strict=True)

@@ -18,6 +18,7 @@ from tests.benchmarks import (
     real_autopilot,
     refined_poses,
     revision,
+    scenes,
     segmentation,
     site_imports,
     speed_profiles,
@@ -53,6 +54,7 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     photo_intake.BENCHMARK,
     refined_poses.BENCHMARK,
     segmentation.BENCHMARK,
+    scenes.BENCHMARK,
     window.BENCHMARK,
     view3d.BENCHMARK,
 )
