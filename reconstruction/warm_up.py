@@ -11,7 +11,8 @@ from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels
 from reconstruction.photos.sharpness import sharpness
 from reconstruction.scenes.bundled import bundled_scene
-from reconstruction.scenes.renderer import NEAR_FIELD, Renderer, RenderSettings
+from reconstruction.scenes.effect_names import NEAR_FIELD
+from reconstruction.scenes.renderer import Renderer, RenderSettings
 from reconstruction.scores.overlaps import pixel_overlaps
 from reconstruction.scores.raster import index_image
 from reconstruction.segmentation.segment import segment_rectified

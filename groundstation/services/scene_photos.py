@@ -35,7 +35,8 @@ from reconstruction.scenes.build import build_scene
 from reconstruction.scenes.bundled import SCENES, bundled_scene
 from reconstruction.scenes.flight_views import WIDTHS_PX, Shot, flown_shots, lens_of, planned_shots, posed_photos
 from reconstruction.scenes.look import read_look
-from reconstruction.scenes.photo_folder import DEFAULT_POINTS, PhotoJob, ScenePhotos, photograph
+from reconstruction.scenes.photo_folder import ScenePhotos, photograph
+from reconstruction.scenes.photographers import DEFAULT_POINTS, PhotoJob
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.renderer import RenderSettings
 from reconstruction.scenes.run_record import RUN_FILE

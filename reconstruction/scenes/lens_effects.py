@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.scenes.renderer import NOISE, VIGNETTING, Photograph
+from reconstruction.scenes.effect_names import NOISE, VIGNETTING
+from reconstruction.scenes.renderer import Photograph
 
 Array = NDArray[np.float64]
 

@@ -18,17 +18,24 @@ from planning.effects import Decision, Wish
 from planning.errors import InputError
 from planning.jit import chunks, run_chunks
 from reconstruction.cameras import PosedPhoto
+from reconstruction.scenes.effect_names import (
+    DISTORTION,
+    DOUBLING,
+    EFFECTS,
+    FRESNEL,
+    NEAR_FIELD,
+    NOISE,
+    SECOND_BOUNCE,
+    SHADOW,
+    TILT,
+    VIGNETTING,
+)
 from reconstruction.scenes.environment import ROWS
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.tracing import Light, Switches, Tracer
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
-
-NEAR_FIELD, FRESNEL, SECOND_BOUNCE = "near-field reflection", "Fresnel", "second bounce"
-TILT, DOUBLING, SHADOW = "panel tilt", "pane doubling", "shadow"
-DISTORTION, VIGNETTING, NOISE = "lens distortion", "vignetting", "noise"
-EFFECTS = (NEAR_FIELD, FRESNEL, SECOND_BOUNCE, TILT, DOUBLING, SHADOW, DISTORTION, VIGNETTING, NOISE)
 
 FINE = 3
 """Rays along each side of a pixel that needs several."""

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.scenes.bundled import SCENES, bundled_scene
+from reconstruction.scenes.effect_names import NEAR_FIELD
 from reconstruction.scenes.effects import decide_effects
 from reconstruction.scenes.lens_effects import grey_levels, metered_exposure
 from reconstruction.scenes.record import Scene
-from reconstruction.scenes.renderer import NEAR_FIELD, Renderer, RenderSettings
+from reconstruction.scenes.renderer import Renderer, RenderSettings
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 
 SIZE_PX, QUICK_SIZE_PX = (512, 384), (96, 72)

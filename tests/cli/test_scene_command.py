@@ -14,7 +14,7 @@ from planning.plan_file import read_plan
 from planning.site_file import read_site
 from reconstruction.photos.poses import pose_photos
 from reconstruction.scenes.bundled import SCENES
-from reconstruction.scenes.renderer import EFFECTS
+from reconstruction.scenes.effect_names import EFFECTS
 
 QUICK = ("--width", 32, "--jobs", 1, "--points", 500)
 

@@ -96,7 +96,8 @@ def run_render(options: argparse.Namespace) -> int:
 
 def _wish(options: argparse.Namespace) -> SceneWish:
     from groundstation.services.scene_photos import SceneWish
-    from reconstruction.scenes.renderer import EFFECTS, RenderSettings
+    from reconstruction.scenes.effect_names import EFFECTS
+    from reconstruction.scenes.renderer import RenderSettings
 
     wishes = effect_wishes(options.effects, EFFECTS)
     with in_words_of_options():

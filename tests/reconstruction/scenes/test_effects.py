@@ -15,11 +15,7 @@ from planning.errors import InputError
 from planning.mesh import box_mesh
 from reconstruction.cameras import PosedPhoto
 from reconstruction.scenes.bundled import bundled_scene
-from reconstruction.scenes.effects import decide_effects
-from reconstruction.scenes.lens_effects import Sensor, developed, grey_levels, metered_exposure, vignette
-from reconstruction.scenes.optics import pane_light
-from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky, Texture
-from reconstruction.scenes.renderer import (
+from reconstruction.scenes.effect_names import (
     DISTORTION,
     DOUBLING,
     EFFECTS,
@@ -30,10 +26,12 @@ from reconstruction.scenes.renderer import (
     SHADOW,
     TILT,
     VIGNETTING,
-    Photograph,
-    Renderer,
-    RenderSettings,
 )
+from reconstruction.scenes.effects import decide_effects
+from reconstruction.scenes.lens_effects import Sensor, developed, grey_levels, metered_exposure, vignette
+from reconstruction.scenes.optics import pane_light
+from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky, Texture
+from reconstruction.scenes.renderer import Photograph, Renderer, RenderSettings
 from tests.reconstruction.scenes.small_scenes import MIRROR, board, facing_south, ground, photo, ramp, scene, with_panes
 
 SUNNY = Sky(sun_heading_deg=180.0, sun_elevation_deg=40.0)

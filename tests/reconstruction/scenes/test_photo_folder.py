@@ -21,8 +21,9 @@ from reconstruction.scenes import photo_folder
 from reconstruction.scenes.build import build_scene
 from reconstruction.scenes.flight_views import Shot, posed_photos
 from reconstruction.scenes.look import Look
-from reconstruction.scenes.photo_folder import PhotoJob, photograph
+from reconstruction.scenes.photo_folder import photograph
 from reconstruction.scenes.photo_layers import BYTES_PER_PIXEL
+from reconstruction.scenes.photographers import PhotoJob
 from reconstruction.scenes.renderer import RenderSettings
 
 LENS = Intrinsics(64, 48, 60.0, 60.0, 32.0, 24.0)
