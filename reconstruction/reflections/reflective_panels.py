@@ -1,0 +1,76 @@
+"""Panels that mirror: what each is made of, the light it mirrors, and the colour a camera makes of both."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import torch
+from torch import Tensor, nn
+
+from reconstruction.reflections.environment_map import EnvironmentMap
+from reconstruction.reflections.glass_rays import GlassRays
+from reconstruction.reflections.harmonics import HarmonicTexture
+from reconstruction.reflections.reflection_mlp import ReflectionMlp
+from reconstruction.reflections.shading import display_from_linear, schlick, shade
+
+ModelName = Literal["mlp", "environment-map", "harmonics"]
+LightModel = ReflectionMlp | EnvironmentMap
+
+REFLECTIVITY, BASE_REFLECTANCE, DIFFUSE_SHARE = 0.8, 0.4, 0.5
+"""R and F0 that every panel starts from, coated glass, and the share of its mean colour that is put down to c."""
+
+
+class ReflectivePanels(nn.Module):
+    """Colours of glass rays by deferred shading (paper Eqs. 19 and 21), in linear light.
+
+    The diffuse colour c changes slowly with place and direction, as that of splats does. Each panel has a reflectivity
+    R and a base reflectance F0 of its own, kept in 0..1 by sigmoids. The camera loses light towards the corners of its
+    pictures by a share that is learned, the same for all photos.
+
+    Parameters
+    ----------
+    diffuse
+        Model of c.
+    light
+        Model of mirrored light L; without one all light is c, as in splatting without reflections.
+    """
+
+    def __init__(self, diffuse: HarmonicTexture, light: LightModel | None) -> None:
+        super().__init__()
+        n_panels = len(diffuse.means)
+        self.diffuse = diffuse
+        self.light = light
+        self.reflectivity = nn.Parameter(torch.full((n_panels, 1), _logit(REFLECTIVITY)))
+        self.base_reflectance = nn.Parameter(torch.full((n_panels, 3), _logit(BASE_REFLECTANCE)))
+        self.corner_loss = nn.Parameter(torch.zeros(()))
+
+    def linear(self, rays: GlassRays) -> Tensor:
+        """Linear light of rays as it reaches the sensor, shape (n, 3)."""
+        panels = rays.panels.long()
+        kept = 1.0 - torch.clamp(self.corner_loss * rays.off_axis, max=0.9)[:, None]
+        diffuse: Tensor = self.diffuse(rays.points, rays.omega_r, panels)
+        if self.light is None:
+            return kept * diffuse
+        fresnel = schlick(torch.sigmoid(self.base_reflectance)[panels], rays.cosines)
+        reflectivity = torch.sigmoid(self.reflectivity)[panels]
+        return kept * shade(diffuse, reflectivity, fresnel, self.light(rays.points, rays.omega_r))
+
+    def forward(self, rays: GlassRays, gain: float = 1.0) -> Tensor:
+        """Colours of rays as photos have them, sRGB, shape (n, 3), above 1 where a photo would be overexposed.
+
+        Parameters
+        ----------
+        gain
+            Exposure of all the rays' photos against that of those learned from.
+        """
+        return display_from_linear(gain * rays.gains[:, None] * self.linear(rays))
+
+
+def expected_reflection(mean: float) -> float:
+    """Light L that makes panels of this mean linear light, with what they start from."""
+    return min(max((1.0 - DIFFUSE_SHARE) * mean / (REFLECTIVITY * BASE_REFLECTANCE), 0.01), 0.99)
+
+
+def _logit(value: float) -> float:
+    return math.log(value / (1.0 - value))

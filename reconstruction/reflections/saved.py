@@ -1,0 +1,124 @@
+"""Trained reflections on the disk: weights as safetensors, and beside them in JSON what they are the weights of."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from safetensors import SafetensorError
+from safetensors.numpy import load, save
+
+from planning.errors import InputError
+from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.progress import QualityPoint
+from reconstruction.reflections.config import Precision, ReflectionConfig
+from reconstruction.reflections.photo_set import PanelPlanes
+from reconstruction.reflections.reflection_mlp import MlpHealth
+from reconstruction.reflections.reflective_panels import ModelName
+from reconstruction.reflections.training import TrainedReflections, untrained_panels
+
+FORMAT = "reflight-reflections/1"
+WEIGHTS, DESCRIPTION = "reflections.safetensors", "reflections.json"
+
+Corner = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class _Saved:
+    model: ModelName
+    config: ReflectionConfig
+    corners_enu_m: tuple[tuple[Corner, Corner, Corner, Corner], ...]
+    exposure: float
+    precision: Precision
+    n_rays: int
+    n_steps: int
+    seconds: float
+    history: tuple[QualityPoint, ...]
+    health: MlpHealth | None
+
+
+def save_reflections(trained: TrainedReflections, folder: Path) -> None:
+    """Write the two files into a folder, which is made where it is missing; the description comes last.
+
+    Raises
+    ------
+    InputError
+        They cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made ({error.strerror or error}); name another folder") from error
+    weights = {name: value.detach().numpy() for name, value in trained.panels.state_dict().items()}
+    write_atomically(folder / WEIGHTS, save(weights))
+    content = {
+        "format": FORMAT,
+        "model": trained.model,
+        "config": asdict(trained.config),
+        "corners_enu_m": trained.planes.corners_enu_m.tolist(),
+        "exposure": trained.exposure,
+        "precision": trained.precision,
+        "n_rays": trained.n_rays,
+        "n_steps": trained.n_steps,
+        "seconds": trained.seconds,
+        "history": [asdict(point) for point in trained.history],
+        "health": None if trained.health is None else asdict(trained.health),
+    }
+    write_atomically(folder / DESCRIPTION, json.dumps(content, indent=1, allow_nan=False).encode())
+
+
+def read_reflections(folder: Path) -> TrainedReflections:
+    """Read what `save_reflections` wrote; it tells the same colours, bit by bit.
+
+    Raises
+    ------
+    InputError
+        A file is missing or damaged, or the weights are not those of the description.
+    """
+    path = folder / DESCRIPTION
+    content = read_json(path)
+    expect_format(content, FORMAT, path)
+    saved = to_record(content, _Saved, path)
+    if not saved.corners_enu_m:
+        raise InputError(f"{path}: corners_enu_m: expected at least one panel")
+    planes = PanelPlanes(np.array(saved.corners_enu_m, float))
+    means = torch.full((len(saved.corners_enu_m), 3), 0.5)
+    panels = untrained_panels(planes, saved.model, saved.config, means, torch.Generator().manual_seed(0))
+    weights = _weights(folder / WEIGHTS)
+    expected = {name: tuple(value.shape) for name, value in panels.state_dict().items()}
+    if {name: value.shape for name, value in weights.items()} != expected:
+        raise InputError(f"{folder / WEIGHTS}: holds the weights of another model than {path.name} describes")
+    if not all(np.isfinite(value).all() for value in weights.values()):
+        raise InputError(f"{folder / WEIGHTS}: holds numbers that are not finite; train again")
+    panels.load_state_dict({name: torch.from_numpy(value) for name, value in weights.items()})
+    panels.eval()
+    return TrainedReflections(
+        panels,
+        saved.model,
+        saved.config,
+        planes,
+        saved.exposure,
+        saved.precision,
+        saved.n_rays,
+        saved.n_steps,
+        saved.seconds,
+        saved.history,
+        saved.health,
+    )
+
+
+def _weights(path: Path) -> dict[str, NDArray[np.float32]]:
+    try:
+        weights = load(path.read_bytes())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except (SafetensorError, KeyError, ValueError) as error:
+        raise InputError(f"{path}: is no safetensors file, or damaged: {error}") from error
+    other = [name for name, value in weights.items() if value.dtype != np.float32]
+    if other:
+        raise InputError(f"{path}: expected float32 numbers, found {weights[other[0]].dtype} in '{other[0]}'")
+    return weights

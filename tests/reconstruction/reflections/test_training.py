@@ -1,0 +1,270 @@
+"""Learning reflections: what is near needs places, what is far does not; the same bits again; ends that are clean."""
+
+import itertools
+from dataclasses import replace
+
+import pytest
+import torch
+
+from planning.errors import OperationCancelled, ReconstructionError
+from reconstruction.reflections.config import LEAST_STEPS, PAPER_STAGES, HighFrequencyStage, ReflectionConfig
+from reconstruction.reflections.glass_rays import GlassRays, glass_rays
+from reconstruction.reflections.losses import high_frequency_loss, ray_errors, ray_loss
+from reconstruction.reflections.photo_set import read_photo_set
+from reconstruction.reflections.reflection_mlp import MlpShape
+from reconstruction.reflections.shading import display_from_linear
+from reconstruction.reflections.training import (
+    faster_precision,
+    mean_square_error,
+    new_panels,
+    psnr_db,
+    train_reflections,
+)
+from tests.reconstruction.reflections.made_folder import far, near, write_folder
+
+SMALL = ReflectionConfig(
+    mlp=MlpShape(40, 4, 4, 3), environment_rows=16, steps=150, batch=768, warm_up=20, precision="float32"
+)
+SHORT = replace(SMALL, steps=12, warm_up=3)
+N_LEARNED = 20
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """The same of a few views of what is near."""
+    return split_of(tmp_path_factory.mktemp("plain") / "photos", near, 4)
+
+
+def split_of(folder, light, n_learned=N_LEARNED):
+    write_folder(folder, light, n_learned + 4)
+    source = read_photo_set(folder)
+    learned, unseen = source.photos[:n_learned], source.photos[n_learned:]
+    return glass_rays(source, learned), glass_rays(source, unseen), source.panels
+
+
+def score(trained, rays):
+    return psnr_db(mean_square_error(trained.panels, rays))
+
+
+def weights(trained):
+    return [value.clone() for value in trained.panels.state_dict().values()]
+
+
+def scores(folder, light, *models):
+    rays, unseen, planes = split_of(folder / "photos", light)
+    return [score(train_reflections(rays, planes, model, SMALL), unseen) for model in models]
+
+
+def test_where_what_is_mirrored_is_near_places_are_needed(tmp_path):
+    mlp, environment_map = scores(tmp_path, near, "mlp", "environment-map")
+    assert mlp > environment_map + 3.0
+
+
+def test_where_it_is_far_directions_are_enough(tmp_path):
+    mlp, environment_map, few_harmonics = scores(tmp_path, far, "mlp", "environment-map", "harmonics")
+    assert environment_map > 33.0
+    assert environment_map > mlp > 29.0
+    assert 20.0 < few_harmonics < mlp
+
+
+@pytest.mark.parametrize("model", ["mlp", "environment-map", "harmonics"])
+@pytest.mark.parametrize("precision", ["float32", "bfloat16"])
+def test_the_same_seed_gives_the_same_bits_and_another_one_does_not(plain, model, precision):
+    rays, unseen, planes = plain
+    config = replace(SHORT, precision=precision)
+    first, again, other = (
+        train_reflections(rays, planes, model, replace(config, seed=seed), unseen=unseen if is_checked else None)
+        for seed, is_checked in ((1, True), (1, False), (2, False))
+    )
+    assert all(torch.equal(a, b) for a, b in zip(weights(first), weights(again), strict=True))
+    assert not all(torch.equal(a, b) for a, b in zip(weights(first), weights(other), strict=True))
+    assert first.precision == precision
+    assert first.n_steps == SHORT.steps
+    assert all(value.dtype == torch.float32 for value in weights(first))
+
+
+def test_the_history_has_times_that_rise_and_ends_with_the_result(plain):
+    rays, unseen, planes = plain
+    trained = train_reflections(rays, planes, "mlp", SHORT, unseen=unseen)
+    times = [point.t_s for point in trained.history]
+    assert times == sorted(times)
+    assert len(times) == SHORT.steps
+    assert trained.history[-1].value == pytest.approx(score(trained, unseen), abs=1e-3)
+    assert trained.history[-1].value > trained.history[0].value
+    assert train_reflections(rays, planes, "mlp", SHORT).history == ()
+
+
+def test_learning_leaves_the_number_of_threads_as_it_was(plain):
+    rays, _, planes = plain
+    before = torch.get_num_threads()
+    train_reflections(rays, planes, "mlp", replace(SHORT, steps=2, threads=before + 1))
+    assert torch.get_num_threads() == before
+
+
+def test_a_time_limit_ends_it_with_what_there_is(plain):
+    rays, unseen, planes = plain
+    ticks = itertools.count()
+    # Every look at the clock is half a second later than the one before.
+    trained = train_reflections(
+        rays, planes, "mlp", replace(SHORT, time_limit_s=2.0), unseen=unseen, clock=lambda: 0.5 * next(ticks)
+    )
+    assert trained.n_steps == 4
+    assert trained.history[-1].t_s == 2.0
+
+
+def test_cancelling_ends_it_at_once(plain):
+    rays, _, planes = plain
+    seen = []
+
+    class Cancelling:
+        def report(self, stage, done, total):
+            seen.append((stage, done, total))
+            if done == 3:
+                raise OperationCancelled
+
+    with pytest.raises(OperationCancelled):
+        train_reflections(rays, planes, "mlp", SHORT, monitor=Cancelling())
+    assert seen[-1] == ("learning reflections", 3, SHORT.steps)
+
+
+def test_a_loss_that_is_no_number_is_an_error_that_says_what_to_do(plain):
+    rays, _, planes = plain
+    broken = replace(rays, cosines=torch.full_like(rays.cosines, float("nan")))
+    with pytest.raises(ReconstructionError, match="step 1 of 12; lower the learning rates"):
+        train_reflections(broken, planes, "mlp", SHORT)
+
+
+def test_an_mlp_whose_rates_are_too_high_dies_and_its_health_says_so(plain):
+    rays, _, planes = plain
+    some = replace(SMALL, steps=60)
+    alive = train_reflections(rays, planes, "mlp", some)
+    dead = train_reflections(rays, planes, "mlp", replace(some, warm_up=0, mlp_rate=0.3))
+    assert alive.health.is_alive
+    assert not dead.health.is_alive
+    assert score(alive, rays) > score(dead, rays) + 2.0
+    assert train_reflections(rays, planes, "environment-map", SHORT).health is None
+
+
+def test_black_white_and_single_colours_are_learned_without_a_number_that_is_none(plain):
+    rays, _, planes = plain
+    for value in (0, 255):
+        flat = replace(rays, colours=torch.full_like(rays.colours, value))
+        for model in ("mlp", "environment-map", "harmonics"):
+            trained = train_reflections(flat, planes, model, SHORT)
+            assert all(weight.isfinite().all() for weight in weights(trained))
+
+
+def test_panels_that_no_ray_shows_start_as_the_others_are_on_average(plain):
+    rays, _, planes = plain
+    some = rays[torch.nonzero(rays.panels < 3).squeeze(1)]
+    panels = new_panels(some, planes, "mlp", SMALL, torch.Generator())
+    means = panels.diffuse.means
+    assert means.isfinite().all()
+    assert ((means[5] > means[:3].min(dim=0).values) & (means[5] < means[:3].max(dim=0).values)).all()
+
+
+def test_no_rays_are_a_wrong_call_and_have_no_error(plain):
+    rays, _, planes = plain
+    with pytest.raises(ValueError, match="at least one"):
+        train_reflections(rays[:0], planes, "mlp", SHORT)
+    panels = new_panels(rays, planes, "mlp", SMALL, torch.Generator())
+    assert mean_square_error(panels, rays[:0]) != mean_square_error(panels, rays[:0])
+
+
+def test_the_vignette_is_learned_where_there_is_one(plain):
+    rays, _, planes = plain
+    found = []
+    for loss in (0.0, 0.3):
+        light = 0.4 * (1.0 - loss * rays.off_axis[:, None].expand(-1, 3))
+        grey = replace(rays, colours=(255.0 * display_from_linear(light)).round().to(torch.uint8))
+        trained = train_reflections(grey, planes, "harmonics", replace(SMALL, steps=80, panel_rate=0.03))
+        found.append(trained.panels.corner_loss.item())
+    # The harmonics of a few views explain some of it.
+    assert found[0] == pytest.approx(0.0, abs=0.02)
+    assert 0.2 < found[1] < 0.32
+
+
+def test_the_precision_that_is_chosen_is_one_of_two_and_stays():
+    shape = MlpShape(16, 2, 2, 2)
+    found = faster_precision(shape, 64, 1)
+    assert found in ("float32", "bfloat16")
+    assert faster_precision(shape, 64, 1) == found
+
+
+def test_the_high_frequency_loss_is_the_mean_of_errors_above_the_threshold():
+    errors = torch.tensor([0.0, 0.1, 0.3, 0.5], requires_grad=True)
+    found = high_frequency_loss(errors, 0.2)
+    found.backward()
+    assert found.item() == pytest.approx(0.4, rel=1e-5)
+    assert errors.grad.tolist() == pytest.approx([0.0, 0.0, 0.5, 0.5], rel=1e-5)
+
+
+def test_with_nothing_above_the_threshold_it_is_0_and_so_is_its_gradient():
+    errors = torch.full((5,), 0.2, requires_grad=True)
+    found = high_frequency_loss(errors, 0.2)
+    found.backward()
+    assert found.item() == 0.0
+    assert errors.grad.tolist() == [0.0] * 5
+
+
+def test_the_loss_of_rays_is_the_mean_per_channel_and_the_weighted_rest():
+    found, truth = torch.tensor([[0.5, 0.5, 0.5], [0.0, 0.0, 0.0]]), torch.tensor([[0.5, 0.2, 0.6], [0.0, 0.0, 0.0]])
+    errors = ray_errors(found, truth)
+    assert errors.tolist() == pytest.approx([0.4, 0.0])
+    assert ray_loss(errors, None).item() == pytest.approx(0.4 / 6)
+    assert ray_loss(errors, HighFrequencyStage(0.2, 10.0)).item() == pytest.approx(0.4 / 6 + 4.0, rel=1e-5)
+
+
+def test_the_papers_schedule_goes_from_its_first_values_to_its_last_in_steps():
+    config = replace(SMALL, high_frequency=PAPER_STAGES)
+    stages = [config.stage(progress) for progress in (0.0, 0.24, 0.25, 0.6, 0.999, 1.0)]
+    assert (stages[0].threshold, stages[0].weight) == (0.2, 1.0)
+    assert (stages[-1].threshold, stages[-1].weight) == (0.09, 10.0)
+    assert stages[0] == stages[1] != stages[2]
+    thresholds = [stage.threshold for stage in stages]
+    assert thresholds == sorted(thresholds, reverse=True)
+    assert SMALL.stage(0.5) is None
+
+
+def test_few_rays_are_looked_at_so_often_and_many_for_so_long():
+    config = ReflectionConfig(steps=1000, batch=8192, passes=9.0)
+    assert config.steps_for(10**9) == 1000
+    assert config.steps_for(500_000) == 550
+    assert config.steps_for(10) == LEAST_STEPS
+    assert replace(config, steps=50).steps_for(10) == 50
+
+
+def test_rates_rise_over_the_warm_up_and_fall_to_their_last_share():
+    rising = [SMALL.rate(step, step / SMALL.steps) for step in range(SMALL.warm_up)]
+    assert rising == sorted(rising)
+    assert rising[0] < 0.06
+    assert SMALL.rate(10**6, 1.0) == pytest.approx(SMALL.last_rate)
+    assert SMALL.rate(SMALL.warm_up, 0.0) == 1.0
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"steps": 0},
+        {"batch": 0},
+        {"threads": 0},
+        {"memory_bytes": 0},
+        {"mlp_rate": 0.0},
+        {"table_rate": float("nan")},
+        {"passes": 0.0},
+        {"panel_rate": float("inf")},
+        {"last_rate": 0.0},
+        {"warm_up": -1},
+        {"held_out": 1.0},
+        {"time_limit_s": 0.0},
+    ],
+)
+def test_settings_that_make_no_sense_are_refused(changes):
+    with pytest.raises(ValueError, match=next(iter(changes))):
+        ReflectionConfig(**changes)
+
+
+def test_rays_are_picked_by_rows_and_slices(plain):
+    rays, _, _ = plain
+    assert isinstance(rays[:5], GlassRays)
+    assert torch.equal(rays[torch.tensor([3, 1])].points, rays.points[[3, 1]])
