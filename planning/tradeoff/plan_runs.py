@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import get_args
 
 from planning.errors import InfeasibleError, InputError
@@ -238,9 +239,16 @@ def common_curves(
 
 def load_kernels(requests: Sequence[PlanRequest]) -> None:
     """Load the compiled kernels that `requests` use, so that the first run timed does not pay for it."""
+    for precision, step_deg in sorted(
+        {(request.precision, request.constraints.section_step_deg) for request in requests}
+    ):
+        _load_kernels(precision, step_deg)
+
+
+@cache
+def _load_kernels(precision: Precision, step_deg: float) -> None:
+    """Once in a process."""
     few = GreedyParameters(n_candidates=50)
-    pairs = {(request.precision, request.constraints.section_step_deg) for request in requests}
-    for precision, step in sorted(pairs):
-        constraints = Constraints(section_step_deg=step, occlusion="on")
-        request = PlanRequest(n_views=2, greedy=few, precision=precision, constraints=constraints, time_budget_s=0.1)
-        plan_flight(SCENES["single-panel"](), request)
+    constraints = Constraints(section_step_deg=step_deg, occlusion="on")
+    request = PlanRequest(n_views=2, greedy=few, precision=precision, constraints=constraints, time_budget_s=0.1)
+    plan_flight(SCENES["single-panel"](), request)

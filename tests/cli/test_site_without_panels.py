@@ -12,6 +12,7 @@ from planning.request import PlanRequest
 from planning.scenes import write_scene
 from planning.site_file import read_site, write_site
 from tests.missions.flight.photo_files import write_photos
+from tests.planning.revision.cases import QUICK
 from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
 
 AT = f"--origin={ORIGIN.lat_deg},{ORIGIN.lon_deg},{ORIGIN.ellipsoid_height_m}"
@@ -22,7 +23,7 @@ def bare(tmp_path_factory):
     """The office without its panels, and what was made of it while it had them; tests must not change it."""
     folder = tmp_path_factory.mktemp("bare")
     site, plan_path = write_scene("office", folder), folder / "office.plan.json"
-    plan_site(site, PlanRequest(n_views=6, time_budget_s=3.0), plan_path)
+    plan_site(site, PlanRequest(n_views=6, greedy=QUICK), plan_path)
     # Without the checksum: a plan that knows its site is refused because that has changed, before panels are asked for.
     plan = replace(read_plan(plan_path), site_sha256="")
     write_plan(plan_path, plan)
@@ -155,5 +156,5 @@ def test_a_coarse_model_becomes_a_site_where_the_user_says_so_and_photos_fill_it
     assert filled.status == 0, filled
     assert filled.json["panels"] == len(made[0].panels) == read_site(found).site.n_panels
     assert read_site(found).site.airspace == model.site.airspace
-    planned = reflight("plan", found, "-o", tmp_path / "p.plan.json", "--views", 8, "--json")
+    planned = reflight("plan", found, "-o", tmp_path / "p.plan.json", "--views", 4, "--candidates", 500, "--json")
     assert planned.json["covered"] > 0

@@ -92,8 +92,8 @@ def test_photos_whose_reports_were_lost_are_told_of_with_what_to_do(reflight, pa
     (record,) = flown_as_planned(plan)
     heard = with_photos(record, lambda photos: (*photos[:2], *photos[3:]))
     write_flight(tmp_path / "flight.json", flight_of(plan, model, (heard,)))
-    out = tmp_path / "topup.plan.json"
-    done = reflight("topup", tmp_path / "flight.json", pane / "plan.json", pane / "site.json", "-o", out, "--json")
+    quick = ("-o", tmp_path / "topup.plan.json", "--time-budget", 1, "--json")
+    done = reflight("topup", tmp_path / "flight.json", pane / "plan.json", pane / "site.json", *quick)
     (finding,) = [finding for finding in done.json["findings"] if finding["code"] == "reports-lost"]
     assert finding["value"] == 1
     assert ".BIN" in finding["message"]

@@ -1,7 +1,5 @@
 """The import dialog: real files looked at before they are taken over, a grid picked in the preview, bad files told."""
 
-import time
-
 import numpy as np
 import pytest
 import trimesh
@@ -11,6 +9,7 @@ from groundstation.services.jobs import JobRunner
 from groundstation.services.session import Session
 from planning.mesh import box_mesh
 from planning.site import Origin
+from tests.gui.driving import turn_until
 
 
 class Dialog:
@@ -30,10 +29,7 @@ class Dialog:
         self.idle()
 
     def idle(self, timeout_s=60.0):
-        end = time.perf_counter() + timeout_s
-        while self.workspace.jobs():
-            self.application.processEvents()
-            assert time.perf_counter() < end, "the job did not end"
+        turn_until(self.application, lambda: not self.workspace.jobs(), timeout_s)
         self.application.processEvents()
 
     def choose(self, box, value):

@@ -16,6 +16,7 @@ from planning.findings import Severity
 from planning.mesh import box_mesh
 from planning.scenes import write_scene
 from planning.site_file import site_sha256
+from tests.gui.driving import turn_until
 from tests.planning.revision.cases import QUICK
 
 
@@ -45,10 +46,7 @@ class Window:
         return self.workspace.document.site.site
 
     def until(self, condition, timeout_s=30.0):
-        end = time.perf_counter() + timeout_s
-        while not condition():
-            self.application.processEvents()
-            assert time.perf_counter() < end, "it did not happen"
+        turn_until(self.application, condition, timeout_s)
 
     def idle(self):
         """Wait for edits to be checked and jobs to end."""

@@ -16,6 +16,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import roof
 from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.planning.revision.cases import QUICK
 from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
 
 TABS = ("site", "plan", "mission", "fly", "photos")
@@ -119,7 +120,8 @@ def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, 
     QTest.mouseClick(photos.use, Qt.MouseButton.LeftButton)
     opened.idle()
     assert opened.site.n_panels == len(made[0].panels)
-    opened.workspace.amend(replace(opened.workspace.document, request=PlanRequest(n_views=6, time_budget_s=2.0)))
+    request = PlanRequest(n_views=4, greedy=QUICK, time_budget_s=1.0)
+    opened.workspace.amend(replace(opened.workspace.document, request=request))
     plan = opened.show("plan")
     QTest.mouseClick(plan._plan_button, Qt.MouseButton.LeftButton)
     opened.idle()
@@ -146,7 +148,7 @@ def test_every_tab_shows_a_site_without_panels(opened):
 
 def test_a_plan_stays_when_the_panels_go_and_says_what_it_lacks(opened):
     model = roof()
-    entry = PlanEntry("plan-1", "First", plan_flight(model, PlanRequest(n_views=4, time_budget_s=2.0)).plan)
+    entry = PlanEntry("plan-1", "First", plan_flight(model, PlanRequest(n_views=4, greedy=QUICK)).plan)
     opened.workspace.session.open(Document(model).with_plan(entry), None)
     opened.show("plan")
     opened.workspace.select(Item(ItemKind.PANEL, "A-0003"))

@@ -1,7 +1,6 @@
 """Jobs, messages and selection as the window sees them: nothing is lost, nothing comes twice, nothing blocks."""
 
 import threading
-import time
 
 import pytest
 
@@ -11,6 +10,7 @@ from groundstation.services.session import Session
 from planning.errors import InputError
 from planning.findings import Severity
 from planning.scenes import single_panel
+from tests.gui.driving import turn_until
 
 
 @pytest.fixture
@@ -37,10 +37,7 @@ def messages(workspace):
 
 
 def wait(application, condition, timeout_s=10.0):
-    end = time.monotonic() + timeout_s
-    while not condition():
-        application.processEvents()
-        assert time.monotonic() < end, "it did not happen in time"
+    turn_until(application, condition, timeout_s)
 
 
 class Gate:

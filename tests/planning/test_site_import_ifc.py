@@ -731,6 +731,7 @@ def test_cancelling_ends_the_worker(tmp_path: Path) -> None:
 # --- the real ones ---
 
 
+@pytest.mark.slow
 def test_the_real_office_has_69_windows_on_four_facades(shared_data: Path) -> None:
     site = import_site(shared_data / "bim" / "office_a.ifc", ImportOptions())
     model = site.model

@@ -9,7 +9,7 @@ import numpy as np
 
 from planning.mesh import TriangleMesh, box_mesh, join, write_mesh
 from planning.site import Origin
-from reconstruction.made_facades.cases import simple_case
+from reconstruction.made_facades.cases import simple_case, wide_camera
 from reconstruction.made_facades.photo_files import write_photos
 from reconstruction.made_facades.record import Disturbances, Layout, MadeFacade
 from reconstruction.made_facades.render import make_facade
@@ -20,12 +20,16 @@ from tests.reconstruction.rectify.scenes import surface_mesh
 ORIGIN = Origin(22.3372, 114.2636, 62.0)
 LAYOUT = Layout(n_rows=5, n_columns=9, panel_width_m=1.5, panel_height_m=2.4, widths="alternating")
 DISTURBED = Disturbances(reflection=0.4, tilt_deg=0.3, clutter=True, blur_px=0.5, noise_grey=2.0)
+CAMERA = wide_camera(960, 720)
 
 
 def made_photos(curvature: float = 0.0, obliques: Sequence[float] = (0.0, 12.0)) -> list[MadeFacade]:
     """Photos of one reflecting wall from several directions."""
     wall = Wall((3.0, -4.0, 0.5), 200.0, curvature)
-    return [make_facade(simple_case(LAYOUT, DISTURBED, wall=wall, seed=7, oblique_deg=angle)) for angle in obliques]
+    return [
+        make_facade(simple_case(LAYOUT, DISTURBED, wall=wall, intrinsics=CAMERA, seed=7, oblique_deg=angle))
+        for angle in obliques
+    ]
 
 
 def coarse_model(wall: Wall) -> TriangleMesh:

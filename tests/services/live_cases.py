@@ -13,13 +13,14 @@ from planning.errors import LinkError
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from tests.planning.plan_cases import kiosk
+from tests.planning.revision.cases import QUICK
 
 
 @cache
 def planned():
     """A site and a plan of six views in one sortie."""
     model = kiosk()
-    return model, plan_flight(model, PlanRequest(n_views=6, time_budget_s=2.0)).plan
+    return model, plan_flight(model, PlanRequest(n_views=6, greedy=QUICK)).plan
 
 
 @cache

@@ -34,13 +34,13 @@ def model():
 
 @pytest.fixture(scope="module")
 def plan(model):
-    return plan_flight(model, PlanRequest(n_views=28, greedy=QUICK)).plan
+    return plan_flight(model, PlanRequest(n_views=14, greedy=QUICK)).plan
 
 
 @cache
 def self_built(profile):
     """A plan over the office for an aircraft of that name."""
-    return plan_flight(office(), PlanRequest(n_views=12, greedy=QUICK, profile_id=profile)).plan
+    return plan_flight(office(), PlanRequest(n_views=6, greedy=QUICK, profile_id=profile)).plan
 
 
 @pytest.fixture(scope="module")

@@ -45,6 +45,7 @@ def settle(application, view):
             assert time.monotonic() < end
             view.grab()
             application.processEvents()
+            time.sleep(0.005)
             calm = calm + 1 if view.is_complete() else 0
 
     return wait

@@ -14,6 +14,7 @@ from missions.model import FileFormat
 from planning.findings import Severity
 from planning.planner import plan_flight
 from planning.request import PlanRequest
+from tests.gui.driving import turn_until
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import QUICK
@@ -172,10 +173,7 @@ def test_hidden_tabs_do_not_check(page, workspace, planned, idle):
 
 def test_cancelling_the_check_leaves_the_page_usable(page, workspace, planned, idle, application):
     workspace.session.open(opened(planned), None)
-    end = time.monotonic() + 20.0
-    while not workspace.jobs():
-        assert time.monotonic() < end
-        application.processEvents()
+    turn_until(application, workspace.jobs, 20.0)
     workspace.cancel(workspace.jobs()[0])
     idle()
     if page.findings.verdict() != "Ready to fly":

@@ -58,7 +58,7 @@ from tests.missions.simulator.ground import ARDUPILOT, ORIGIN, PX4, Ground, Poin
 @cache
 def planned_office() -> Plan:
     """A plan of the office as our planner makes it."""
-    few = GreedyParameters(n_candidates=2000)
+    few = GreedyParameters(n_candidates=2000, improve=False, certify=False)
     return plan_flight(SCENES["office"](), PlanRequest(n_views=20, greedy=few, time_budget_s=5.0)).plan
 
 

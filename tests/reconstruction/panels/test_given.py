@@ -156,13 +156,13 @@ def test_files_of_other_photos_and_sizes_are_refused_in_words() -> None:
     model = coarse_model(made()[0].case.wall)
     with pytest.raises(InputError, match=r"'c\.jpg' are given, which is none of the 2 photos"):
         find_panels(named(), model, never, given={"c.jpg": drawn_by_hand(0)})
-    with pytest.raises(InputError, match="for 10 x 1200 pixels, but it has 1600 x 1200"):
+    with pytest.raises(InputError, match="for 10 x 720 pixels, but it has 960 x 720"):
         find_panels(named(), model, never, given={"a.jpg": replace(drawn_by_hand(0), width_px=10)})
     (facade,) = drawn_by_hand(0).facades
     bare = replace(facade, vertical_lines=(FileLine(()), *facade.vertical_lines[1:]))
     with pytest.raises(InputError, match=r"vertical_lines\[0\] of a panels file has no point on the facade"):
         find_panels(named(), model, never, given={"a.jpg": replace(drawn_by_hand(0), facades=(bare,))})
-    empty = PanelsFile("reflight-panels/1", "a.jpg", 1600, 1200, drawn_by_hand(0).pixel_convention, ())
+    empty = PanelsFile("reflight-panels/1", "a.jpg", 960, 720, drawn_by_hand(0).pixel_convention, ())
     found = find_panels(named(), model, never, given={"a.jpg": empty, "b.jpg": drawn_by_hand(1)})
     assert len(found.facades[0].panels) == len(made()[1].panels)
 
