@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from typing import Any, TypeVar
 
-from planning.errors import InputError
+from planning.cluster import cluster_client
 from planning.jit import n_threads
 from planning.progress import QUIET, Monitor
 
@@ -64,16 +64,10 @@ def sweep(
 def _on_cluster(
     function: Callable[..., Result], arguments: Sequence[tuple[Any, ...]], address: str, monitor: Monitor
 ) -> list[Result]:
-    try:
-        from distributed import Client
+    with cluster_client(address) as client:
+        # Only now is it known that Dask is there.
         from distributed import as_completed as completed
-    except ImportError as error:
-        raise InputError(f"a cluster ({address}) needs Dask: pip install 'reflight[cluster]'") from error
-    try:
-        client = Client(address, timeout="10s")
-    except (OSError, ValueError, TimeoutError) as error:
-        raise InputError(f"no Dask scheduler answers at {address} ({error})") from error
-    with client:
+
         futures = [client.submit(function, *a, pure=False) for a in arguments]
         for done, _ in enumerate(completed(futures)):
             monitor.report("running on the cluster", done + 1, len(arguments))

@@ -1,15 +1,16 @@
-"""Who renders the photos of a scene: this process, or several side by side."""
+"""Who renders the photos of a scene: this process, several side by side, or the workers of a cluster."""
 
 from __future__ import annotations
 
 import hashlib
 import multiprocessing
 import signal
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +22,13 @@ from planning.json_file import write_atomically
 from planning.progress import Monitor
 from reconstruction.cameras import PosedPhoto
 from reconstruction.dataset.grow import grown_corners
-from reconstruction.photos.write import photo_jpeg
+from reconstruction.photos.write import Circumstances, photo_jpeg
 from reconstruction.scenes.lens_effects import developed
+from reconstruction.scenes.mitsuba_renderer import renderer_of
 from reconstruction.scenes.photo_layers import facade_mask, layer_contents, layer_file
 from reconstruction.scenes.record import Scene
-from reconstruction.scenes.renderer import Renderer, RenderSettings
+from reconstruction.scenes.renderer import RenderSettings
+from reconstruction.scenes.taking import USUAL_TAKING, Capture, Moment, Taking
 
 DEFAULT_POINTS = 100_000
 """As many as `prepare` writes."""
@@ -44,7 +47,7 @@ class PhotoJob:
     Parameters
     ----------
     photos
-        Of straight cameras; each `path` is in the folder's `images`.
+        Where the cameras really are; each `path` is in the folder's `images`.
     made_from
         What else to tell about where scene and views are from, as plain JSON values; a run that is gone on with must
         be made from the same.
@@ -52,6 +55,10 @@ class PhotoJob:
         Content of other files that belong into the folder, by their names.
     n_points
         On the building and what is near, that reconstruction starts from.
+    taking, moments
+        How photos are taken, and how each came about; without moments, all are taken hovering, in one sortie.
+    captures
+        Of each photo, once effects are decided; without, it is taken hovering and tells its true pose.
     """
 
     scene: Scene
@@ -60,6 +67,15 @@ class PhotoJob:
     made_from: Mapping[str, Any]
     companions: Mapping[str, bytes] = field(default_factory=dict)
     n_points: int = DEFAULT_POINTS
+    taking: Taking = USUAL_TAKING
+    moments: tuple[Moment, ...] = ()
+    captures: tuple[Capture, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("moments", "captures"):
+            n = len(getattr(self, name))
+            if n not in (0, len(self.photos)):
+                raise ValueError(f"{name}: expected one for each of {len(self.photos)} photos, or none, got {n}")
 
 
 class Photographer:
@@ -67,73 +83,112 @@ class Photographer:
 
     def __init__(self, job: PhotoJob, folder: Path, exposure: float) -> None:
         self._job, self._folder, self._exposure = job, folder, exposure
-        self._renderer = Renderer(job.scene, job.settings)
+        self._renderer = renderer_of(job.scene, job.settings)
         self._grown = grown_corners(job.scene.site.site.facades)
+        self._moments = job.moments or (Moment(),) * len(job.photos)
+        self._captures = job.captures or tuple(map(Capture.still, job.photos))
 
-    def take(self, number: int) -> dict[str, str]:
-        """Render a photo and write its files; returns their checksums by path in the folder."""
-        job, photo = self._job, self._job.photos[number]
+    def take(self, number: int) -> dict[str, bytes]:
+        """Render a photo; returns the content of its files by path in the folder."""
+        job, photo, capture = self._job, self._job.photos[number], self._captures[number]
         seed = int(np.random.SeedSequence([job.scene.seed, number]).generate_state(1)[0])
-        taken = self._renderer.render(photo, seed)
+        taken = self._renderer.render(photo, seed, capture.moved_enu_m)
         site = job.scene.site.site
         assert photo.taken_at is not None
-        jpeg = photo_jpeg(developed(taken, self._exposure), photo, site.origin, photo.taken_at, site.home_enu_m[2])
+        picture = developed(taken, self._exposure * capture.exposure, job.taking.sensor)
+        told, position = replace(photo, pose=capture.told), job.taking.position
+        how = Circumstances(
+            position.fix == "rtk", position.total_m, capture.exposure_s, self._moments[number].velocity_enu_m_s
+        )
+        home_up_m = site.home_enu_m[2] + capture.told_higher_m
+        jpeg = photo_jpeg(picture, told, site.origin, photo.taken_at, home_up_m, how)
         contents = {photo.path: jpeg}
         mask = facade_mask(photo, self._grown, taken.depth_m)
         for layer, content in layer_contents(taken, mask).items():
             contents[layer_file(self._folder, layer, photo.name)] = content
-        for path, content in contents.items():
-            write_atomically(path, content)
-        return {
-            path.relative_to(self._folder).as_posix(): hashlib.sha256(content).hexdigest()
-            for path, content in contents.items()
-        }
+        return {path.relative_to(self._folder).as_posix(): content for path, content in contents.items()}
+
+
+def written(folder: Path, contents: Mapping[str, bytes]) -> dict[str, str]:
+    """Checksums of a photo's files by path in the folder, where they are now."""
+    for path, content in contents.items():
+        write_atomically(folder / path, content)
+    return {path: hashlib.sha256(content).hexdigest() for path, content in contents.items()}
 
 
 _IN_THIS_PROCESS: list[Photographer] = []
 """The photographer of a process that does nothing else."""
 
 
-def _begin_process(job: PhotoJob, folder: Path, exposure: float) -> None:
+def _begin_process(photographer: Callable[[], Photographer]) -> None:
     # Ctrl-C goes to all processes of a terminal; the first one decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _IN_THIS_PROCESS.append(Photographer(job, folder, exposure))
+    _IN_THIS_PROCESS.append(photographer())
 
 
-def _take(number: int) -> dict[str, str]:
-    return _IN_THIS_PROCESS[-1].take(number)
+def _take(number: int, folder: Path) -> dict[str, str]:
+    return written(folder, _IN_THIS_PROCESS[-1].take(number))
 
 
 def photographed(
-    job: PhotoJob, folder: Path, exposure: float, numbers: Sequence[int], n_processes: int | None, monitor: Monitor
+    job: PhotoJob,
+    folder: Path,
+    exposure: float,
+    numbers: Sequence[int],
+    n_processes: int | None,
+    monitor: Monitor,
+    cluster: Any = None,
 ) -> Generator[tuple[int, dict[str, str]], None, None]:
-    """Numbers of photos as they are done, with their files."""
+    """Numbers of photos as they are done, with their files.
+
+    Parameters
+    ----------
+    cluster
+        Client of a Dask cluster whose workers take the photos, in place of processes.
+    """
     if not numbers:
         return
+    photographer = partial(Photographer, job, folder, exposure)
     n_processes = min(max(1, n_threads() // CORES_EACH) if n_processes is None else n_processes, len(numbers))
-    if n_processes <= 1:
-        photographer = Photographer(job, folder, exposure)
+    if cluster is not None:
+        # It needs Dask, which nobody else does.
+        from reconstruction.scenes.cluster_photographers import photographed_by
+
+        yield from photographed_by(cluster, photographer, job, folder, numbers, monitor)
+    elif n_processes <= 1:
+        alone = photographer()
         for done, number in enumerate(numbers, len(job.photos) - len(numbers)):
             monitor.report("rendering photos", done, len(job.photos))
-            yield number, photographer.take(number)
-        return
-    with _pool(job, folder, exposure, n_processes) as pool:
+            yield number, written(folder, alone.take(number))
+    else:
+        yield from _side_by_side(photographer, job, folder, numbers, n_processes, monitor)
+
+
+def _side_by_side(
+    photographer: Callable[[], Photographer],
+    job: PhotoJob,
+    folder: Path,
+    numbers: Sequence[int],
+    n_processes: int,
+    monitor: Monitor,
+) -> Iterator[tuple[int, dict[str, str]]]:
+    with _pool(photographer, folder, n_processes) as pool:
         # No more are handed out than are rendered, so that a cancelled run has little to wait for.
         begun, left = list(numbers[:n_processes]), list(numbers[n_processes:])
-        waiting: dict[Future[dict[str, str]], int] = {pool.submit(_take, number): number for number in begun}
+        waiting: dict[Future[dict[str, str]], int] = {pool.submit(_take, number, folder): number for number in begun}
         while waiting:
             monitor.report("rendering photos", len(job.photos) - len(waiting) - len(left), len(job.photos))
             for future in wait(waiting, PATIENCE_S, FIRST_COMPLETED).done:
                 if left:
                     following = left.pop(0)
-                    waiting[pool.submit(_take, following)] = following
+                    waiting[pool.submit(_take, following, folder)] = following
                 yield waiting.pop(future), future.result()
 
 
 @contextmanager
-def _pool(job: PhotoJob, folder: Path, exposure: float, n_processes: int) -> Iterator[ProcessPoolExecutor]:
+def _pool(photographer: Callable[[], Photographer], folder: Path, n_processes: int) -> Iterator[ProcessPoolExecutor]:
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(n_processes, context, _begin_process, (job, folder, exposure))
+    pool = ProcessPoolExecutor(n_processes, context, _begin_process, (photographer,))
     try:
         yield pool
     except BrokenProcessPool as error:

@@ -37,7 +37,7 @@ def test_cancelling_ends_the_sweep():
 def test_cluster_gives_the_same_results():
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0"
     ) as cluster:
         assert sweep(math.sqrt, ARGUMENTS, address=cluster.scheduler_address) == [3.0, 1.0, 2.0, 4.0]
 
