@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.jit import chunks, run_chunks
+from reconstruction.scenes.ambient import Ambient, Gather
 from reconstruction.scenes.geometry import Geometry
 from reconstruction.scenes.record import Layer, Panes, Scene
 from reconstruction.scenes.shading import MattLight, SkyLight, look_up
@@ -36,13 +37,18 @@ class Environment:
         What keeps the sun away, the building with it; None for no shadows.
     rows
         Of the picture, which is twice as wide.
+    gather
+        As in `Ambient`; None for light of open sky.
     """
 
-    def __init__(self, scene: Scene, sky: SkyLight, shadows: Geometry | None, rows: int) -> None:
+    def __init__(
+        self, scene: Scene, sky: SkyLight, shadows: Geometry | None, rows: int, gather: Gather | None = None
+    ) -> None:
         self._sky = sky
         around = tuple(body for body in scene.bodies if body.layer is not Layer.BUILDING)
         self._geometry = Geometry(replace(scene, bodies=around, panes=_no_panes()))
-        self._matt = MattLight(around, self._geometry, sky, shadows)
+        ambient = None if gather is None else Ambient(self._geometry, gather)
+        self._matt = MattLight(around, self._geometry, sky, shadows, ambient)
         self._middle = facade_middle_enu_m(scene)
         self._rows = rows
         strips = run_chunks(self._strip, chunks(rows, ROWS_AT_ONCE))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -11,6 +12,9 @@ from numpy.typing import NDArray
 from planning.jit import kernel
 from reconstruction.scenes.geometry import Geometry
 from reconstruction.scenes.record import Body, Sky, Texture
+
+if TYPE_CHECKING:
+    from reconstruction.scenes.ambient import Ambient
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -72,10 +76,19 @@ class MattLight:
         The bodies, and the geometry that counts their triangles.
     shadows
         What keeps the sun away; None for a sun that reaches everything.
+    ambient
+        Light but for the sun's; None for that of open sky and even ground.
     """
 
-    def __init__(self, bodies: tuple[Body, ...], geometry: Geometry, sky: SkyLight, shadows: Geometry | None) -> None:
-        self._sky, self._shadows = sky, shadows
+    def __init__(
+        self,
+        bodies: tuple[Body, ...],
+        geometry: Geometry,
+        sky: SkyLight,
+        shadows: Geometry | None,
+        ambient: Ambient | None = None,
+    ) -> None:
+        self._sky, self._shadows, self._ambient = sky, shadows, ambient
         self._albedo = np.array([body.albedo for body in bodies], float).reshape(-1, 3)
         self._rights, self._ups = texture_axes(geometry.normals_enu)
         textures = {id(body.texture): body.texture for body in bodies if body.texture is not None}
@@ -103,16 +116,20 @@ class MattLight:
             points_enu_m, numbers, self._rights[triangles], self._ups[triangles], width,
             self._texels, self._levels, self._scales,
         )  # fmt: skip
-        return albedo * self.arriving(points_enu_m, normals_enu)
+        return albedo * self.arriving(points_enu_m, normals_enu, triangles)
 
-    def arriving(self, points_enu_m: Array, normals_enu: Array) -> Array:
-        """Light of sun and sky on surfaces, each shape (n, 3)."""
+    def arriving(self, points_enu_m: Array, normals_enu: Array, triangles: Index) -> Array:
+        """Light, shape (n, 3), on points of triangles of the geometry, from the side that unit normals point to."""
         share = np.maximum(normals_enu @ self._sky.sun_direction_enu, 0.0)
         if self._shadows is not None and self._sky.sun.any():
             faces = np.flatnonzero(share)
             lit = self._shadows.is_lit(points_enu_m[faces], normals_enu[faces], self._sky.sun_direction_enu)
             share[faces[~lit]] = 0.0
-        return np.asarray(share[:, None] * self._sky.sun + self._sky.on(normals_enu))
+        if self._ambient is None:
+            rest = self._sky.on(normals_enu)
+        else:
+            rest = self._ambient.on(points_enu_m, normals_enu, triangles)
+        return np.asarray(share[:, None] * self._sky.sun + rest)
 
 
 def texture_axes(normals_enu: Array) -> tuple[Array, Array]:
