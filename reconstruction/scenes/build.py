@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planning.coverage.sections import PanelFrames, panel_frames
 from planning.mesh import TriangleMesh
 from planning.site import SiteModel, panel_corners, require_panels
 from reconstruction.scenes.look import Look
 from reconstruction.scenes.panorama import panorama
-from reconstruction.scenes.profiles import profile_rings
-from reconstruction.scenes.record import Body, Glass, Layer, Panes, Scene, Sky
+from reconstruction.scenes.profiles import edge_neighbours, profile_rings
+from reconstruction.scenes.record import Body, Glass, Interiors, Layer, Panes, Scene, Sky
+from reconstruction.scenes.rooms import furnished, shared_rooms
 from reconstruction.scenes.surroundings import surround
 from reconstruction.scenes.textures import grain
 from reconstruction.scenes.wall_cut import without_openings
@@ -52,7 +55,7 @@ def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Sc
     require_panels(model.site)
     look = look or Look()
     panels = _lower_left_first(panel_frames(panel_corners(model.site)))
-    walls, sky, around, glass = (np.random.default_rng([seed, part]) for part in range(4))
+    walls, sky, around, glass, inside = (np.random.default_rng([seed, part]) for part in range(5))
     bodies = [_frames(panels, look)]
     building = without_openings(model.building, panels)
     bodies.append(Body("walls", Layer.BUILDING, building, look.wall_albedo, grain(walls, (0.9,) * 3, 0.12, 30.0)))
@@ -65,14 +68,16 @@ def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Sc
         surroundings = surround(model, look, around)
         model, bodies = surroundings.model, [*bodies, *surroundings.bodies]
     glasses = _glasses(look.glass)
+    panes, interiors = _panes(panels, look, glass, inside)
     return Scene(
         name=model.site.name,
         seed=seed,
         site=model,
         bodies=tuple(body for body in bodies if len(body.mesh.triangles)),
-        panes=_panes(panels, look, glass),
+        panes=panes,
         glasses=glasses,
         sky=_sky(look, sky),
+        interiors=interiors,
     )
 
 
@@ -110,7 +115,9 @@ def _glasses(glass: Glass) -> tuple[Glass, ...]:
     )
 
 
-def _panes(panels: PanelFrames, look: Look, rng: np.random.Generator) -> Panes:
+def _panes(
+    panels: PanelFrames, look: Look, rng: np.random.Generator, inside: np.random.Generator
+) -> tuple[Panes, Interiors]:
     n = len(panels)
     relative = panels.corners - panels.centroids[:, None]
     halves = np.stack(
@@ -118,14 +125,40 @@ def _panes(panels: PanelFrames, look: Look, rng: np.random.Generator) -> Panes:
         axis=1,
     )
     tilts = np.radians(look.tilt_deg) * rng.normal(size=(n, 2))
-    edge_turns = np.radians(look.bow_deg) * (1.0 + 0.3 * rng.normal(size=(n, 1)))
+    bows = np.radians(look.bow_deg) * (1.0 + 0.3 * rng.normal(size=(n, 1))) / halves
+    if look.curved_glass:
+        bows = bows + facade_bows_per_m(panels)
     draws = rng.random(n)
     kinds = np.where(draws < look.replaced, 2, np.where(rng.random(n) < DUSTY_PANES, 1, 0))
     is_lit = rng.random((n, 1)) < LIT_ROOMS
     lights = np.where(is_lit, LAMP, ROOM) * rng.uniform(0.5, 1.5, (n, 1))
     drawn = np.where(rng.random((n, 1)) < look.blinds, rng.uniform(0.15, 1.0, (n, 1)), 0.0)
-    rooms = lights + drawn * (BLIND * rng.uniform(0.8, 1.1, (n, 1)) - lights)
-    return Panes(panels.corners, tilts, edge_turns / halves, kinds.astype(np.int64), np.clip(rooms, 0.0, 1.0))
+    blind_lights = np.array(BLIND) * rng.uniform(0.8, 1.1, (n, 1))
+    panes = Panes(panels.corners, tilts, bows, kinds.astype(np.int64), np.zeros((n, 3)))
+    first = shared_rooms(panes, inside)
+    interiors, rooms = furnished(panes, first, is_lit[:, 0], lights, drawn[:, 0], blind_lights, inside)
+    return replace(panes, rooms=rooms), interiors
+
+
+def facade_bows_per_m(panels: PanelFrames) -> NDArray[np.float64]:
+    """Curvature of the facade at each panel, to the right and upwards, shape (m, 2): how neighbours turn.
+
+    Of panels whose corners lie on a cylinder it is 1 / radius. Edges without a neighbour, or with one around a corner
+    (`profiles.LEAST_COSINE`), count for nothing.
+    """
+    neighbours = edge_neighbours(panels)[1]
+    away = panels.centroids[neighbours] - panels.centroids[:, None]
+    turned = panels.normals[neighbours]
+    bows = np.zeros((len(panels), 2))
+    for k, axis in enumerate((panels.tangents, panels.bitangents)):
+        along = np.einsum("mkx,mx->mk", away, axis)
+        # Beside the panel in this direction, and not above or below it.
+        lengths = np.linalg.norm(away, axis=2)
+        counts = (neighbours >= 0) & (np.abs(along) > math.sqrt(0.5) * lengths)
+        turns = np.einsum("mkx,mx->mk", turned, axis) * np.sign(along)
+        curvatures = np.divide(turns, lengths, out=np.zeros_like(turns), where=counts)
+        bows[:, k] = curvatures.sum(axis=1) / np.maximum(counts.sum(axis=1), 1)
+    return bows
 
 
 def _sky(look: Look, rng: np.random.Generator) -> Sky:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.effects import Assessment
-from reconstruction.scenes.effect_names import DOUBLING, FRESNEL, NEAR_FIELD, SECOND_BOUNCE, TILT
+from reconstruction.scenes.effect_names import CURVATURE, DOUBLING, FRESNEL, NEAR_FIELD, SECOND_BOUNCE, TILT
 from reconstruction.scenes.effect_terms import (
     NO_GLASS,
     SECONDS_PER_ANGLE,
@@ -24,9 +24,14 @@ from reconstruction.scenes.effect_terms import (
 )
 from reconstruction.scenes.effects_probe import Probe
 from reconstruction.scenes.environment import ROWS
+from reconstruction.scenes.pane_surfaces import half_sides_m
 from reconstruction.scenes.tracing import Switches
 
 Array = NDArray[np.float64]
+
+
+NEAREST_M = 1e-3
+"""Closer things are taken to be this far away."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +98,7 @@ class SecondBounce:
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """Displacement of mirror images by panes that are not quite flat in their facade."""
+    """Displacement of mirror images by panes that are not quite parallel to their facade."""
 
     tolerance: float = TOLERANCE_PX
     name = TILT
@@ -105,9 +110,34 @@ class Tilt:
         if not len(seen):
             return Assessment(0.0, NO_GLASS, 0.0)
         share = np.where(seen.is_sky, 1.0, 1.0 / (1.0 + seen.sight_m / seen.path_m))
-        reason = f"panes are turned by up to {np.degrees(seen.tilts_rad.max()):.2f} degrees"
+        reason = f"panes are tilted by up to {np.degrees(seen.tilts_rad.max()):.2f} degrees"
         cost = cost_s(probe, probe.glass_share, SECONDS_PER_ANGLE)
         return Assessment(probe.displacement_px(2.0 * share * seen.tilts_rad), reason, cost)
+
+
+@dataclass(frozen=True, slots=True)
+class Curvature:
+    """Displacement of mirror images by panes that are bowed, which makes them smaller or larger, too."""
+
+    tolerance: float = TOLERANCE_PX
+    name = CURVATURE
+    unit = "px"
+
+    def assess(self, probe: Probe) -> Assessment:
+        """Against where flat panes show the same, followed with the rays of the probe."""
+        seen, bows = probe.mirrored, probe.scene.panes.bows_per_m
+        if not len(seen):
+            return Assessment(0.0, NO_GLASS, 0.0)
+        turns = np.degrees(np.arctan(np.abs(bows) * half_sides_m(probe.scene.panes, probe.geometry.pane_frames)))
+        most = float(turns[seen.met.panes].max())
+        if most == 0.0:
+            return Assessment(0.0, "the panes are flat", 0.0)
+        # As of a spherical mirror's image, seen from s and t away: 1 / (1 + 2 s t / (R (s + t))).
+        between = 1.0 / (1.0 / np.maximum(seen.sight_m, NEAREST_M) + 1.0 / np.maximum(seen.path_m, NEAREST_M))
+        size = np.median(1.0 / np.abs(1.0 + 2.0 * between * bows[seen.met.panes, 0]))
+        reason = f"panes turn by up to {most:.2f} degrees to their edges; mirror images appear {size:.2f} times as wide"
+        cost = cost_s(probe, probe.glass_share, SECONDS_PER_ANGLE)
+        return Assessment(probe.displacement_px(probe.bent_rad()), reason, cost)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,11 @@ from reconstruction.scenes.environment import facade_middle_enu_m
 from reconstruction.scenes.geometry import Geometry, Meeting
 from reconstruction.scenes.lens_effects import DARKEST, MIDDLE_GREY, grey_levels
 from reconstruction.scenes.optics import mirrored
+from reconstruction.scenes.pane_surfaces import PaneSurfaces
 from reconstruction.scenes.record import Layer, Scene
-from reconstruction.scenes.tracing import Switches, Tracer
+from reconstruction.scenes.shading import SkyLight
+from reconstruction.scenes.taking import USUAL_TAKING, Moment, Taking
+from reconstruction.scenes.tracing import Switches, Tracer, layer_mask
 
 Array = NDArray[np.float64]
 
@@ -35,6 +38,8 @@ class Mirrored:
     ----------
     focal_px
         Of their photos, shape (n,).
+    directions_enu
+        Of the rays, unit, shape (n, 3).
     met, after
         Meetings of the rays with panes, and of the mirrored rays with what comes then.
     sight_m, path_m
@@ -42,7 +47,7 @@ class Mirrored:
     cosines
         Of the angle of incidence, shape (n,).
     tilts_rad
-        Angles between the panes' real and flat normals, shape (n,).
+        Angles by which the panes are tilted, shape (n,).
     parallax_rad
         Angle between where a thing is mirrored and where a picture taken from the facade's middle shows it, shape (n,);
         0 for the sky and for the building itself.
@@ -51,6 +56,7 @@ class Mirrored:
     """
 
     focal_px: Array
+    directions_enu: Array
     met: Meeting
     after: Meeting
     sight_m: Array
@@ -69,20 +75,57 @@ class Mirrored:
         return ~np.isfinite(self.path_m)
 
 
-class Probe:
-    """Rays spread over the photos of a flight."""
+@dataclass(frozen=True, slots=True)
+class SurroundingsLight:
+    """What light from around changes.
 
-    def __init__(self, scene: Scene, photos: Sequence[PosedPhoto]) -> None:
+    Parameters
+    ----------
+    change_grey
+        In the pictures, root mean square.
+    share
+        Of an open sky's light that reaches the places seen, on average.
+    n_places
+        That light was gathered for.
+    """
+
+    change_grey: float
+    share: float
+    n_places: int
+
+
+class Probe:
+    """Rays spread over the photos of a flight.
+
+    Parameters
+    ----------
+    moments
+        Of each photo; without any, all are taken hovering.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        photos: Sequence[PosedPhoto],
+        taking: Taking = USUAL_TAKING,
+        moments: Sequence[Moment] = (),
+    ) -> None:
         self.scene, self.photos = scene, tuple(photos)
-        self._geometry = Geometry(scene)
+        self.taking, self.moments = taking, tuple(moments) or (Moment(),) * len(self.photos)
+        self.geometry = Geometry(scene)
         chosen = np.unique(np.linspace(0, len(photos) - 1, min(N_PHOTOS, len(photos))).round().astype(int))
-        rays = [_spread(photos[k]) for k in chosen]
+        rays = [spread(photos[k]) for k in chosen]
         self._origins, self._directions = (np.concatenate([r[i] for r in rays]) for i in (0, 1))
         self._focal_px = np.concatenate([np.full(len(r[0]), r[2]) for r in rays])
+        self.met = self.geometry.meet(self._origins, self._directions)
+        """What the rays met first."""
         self.mirrored = self._follow()
         light = self._light(Switches())
-        self._exposure = MIDDLE_GREY / max(float(light.mean()), DARKEST)
-        self._grey = grey_levels(self._exposure * light)
+        self.exposure = MIDDLE_GREY / max(float(light.mean()), DARKEST)
+        """Factor that brings the pictures to middle grey."""
+        self.lights = tuple(np.split(light, np.cumsum([len(r[0]) for r in rays])[:-1]))
+        """Of each photo's rays, shape (n, 3)."""
+        self._grey = grey_levels(self.exposure * light)
 
     @property
     def n_pixels(self) -> int:
@@ -95,38 +138,77 @@ class Probe:
         return len(self.mirrored) / max(len(self._origins), 1)
 
     def change_without(self, switches: Switches) -> float:
-        """Root mean square, in grey levels, of what switching off changes in the pictures."""
-        change = grey_levels(self._exposure * self._light(switches)) - self._grey
+        """Root mean square, in grey levels, of what switching off changes in the pictures; without the sun's disc."""
+        change = grey_levels(self.exposure * self._light(switches)) - self._grey
         return float(np.sqrt((change**2).mean()))
+
+    def surroundings_light(self) -> SurroundingsLight:
+        """Light from around as it reaches places, against that of open sky and even ground."""
+        tracer = Tracer(self.scene, Switches(sun_glare=False), self.geometry)
+        change = grey_levels(self.exposure * self._traced(tracer)) - self._grey
+        seen = self.met.at(self.met.bodies >= 0)
+        assert tracer.ambient is not None
+        reaches = tracer.ambient.on(seen.points_enu_m, seen.normals_enu, seen.triangles).sum()
+        is_open = SkyLight(self.scene.sky).on(seen.normals_enu).sum()
+        share = float(reaches / is_open) if is_open > 0.0 else 1.0
+        return SurroundingsLight(float(np.sqrt((change**2).mean())), share, tracer.ambient.n_places)
 
     def displacement_px(self, angles_rad: Array) -> float:
         """Of mirror images that move by angles, shape (number of mirrored rays,); 0 where no glass is seen."""
         return float(np.quantile(self.mirrored.focal_px * angles_rad, QUANTILE)) if len(angles_rad) else 0.0
 
+    def hidden_share(self) -> float:
+        """Of the rays to the facade, those that something near stands before."""
+        is_near, is_facade = (layer_mask(self.scene, layer) for layer in (Layer.NEAR, Layer.BUILDING))
+        behind = self.geometry.beyond(self.met, self._directions, is_near, is_facade)
+        n_hidden = (behind.triangles != self.met.triangles).sum()
+        n_facade = (is_facade[behind.bodies] & (behind.triangles >= 0)).sum()
+        return float(n_hidden / max(n_facade, 1))
+
+    def bent_rad(self) -> Array:
+        """Angles between what bowed panes mirror and where flat ones would show it, for all rays that meet panes."""
+        seen, frames = self.mirrored, self.geometry.pane_frames
+        surfaces = PaneSurfaces(self.scene.panes, frames, tilt=False)
+        met, normals = surfaces.meet(seen.met, seen.directions_enu)
+        flat, which = met.normals_enu, met.panes
+        out = mirrored(seen.directions_enu, normals)
+        depths = np.maximum(-surfaces.heights_m(met.points_enu_m, which, flat), 0.0)
+        starts, _ = self.geometry.leaving(met.points_enu_m, out, flat, depths)
+        after = self.geometry.meet(starts, out)
+        off_plane = np.einsum("nk,nk->n", after.points_enu_m - frames.middles_enu_m[which], flat)
+        origins = seen.met.points_enu_m - seen.sight_m[:, None] * seen.directions_enu
+        image = after.points_enu_m - 2.0 * off_plane[:, None] * flat - origins
+        image = np.where(np.isfinite(after.distance_m)[:, None], image, mirrored(out, flat))
+        return _angles(seen.directions_enu, image)
+
     def _light(self, switches: Switches) -> Array:
-        found = Tracer(self.scene, switches, self._geometry).trace(
-            self._origins, self._directions, 1.0 / float(self._focal_px.mean())
-        )
+        # Rays spread out miss the sun, or meet it as if it filled their part of the picture. What reaches a place from
+        # around takes longer than all else here, and changes other effects little.
+        alone = replace(switches, sun_glare=False, sky_occlusion=False)
+        return self._traced(Tracer(self.scene, alone, self.geometry))
+
+    def _traced(self, tracer: Tracer) -> Array:
+        found = tracer.trace(self._origins, self._directions, 1.0 / float(self._focal_px.mean()))
         return found.diffuse + found.reflection
 
     def _follow(self) -> Mirrored:
-        met = self._geometry.meet(self._origins, self._directions)
-        rows = met.panes >= 0
-        met = Meeting(*(getattr(met, name)[rows] for name in Meeting.__slots__))
+        rows = self.met.panes >= 0
+        met = self.met.at(rows)
         directions, flat = self._directions[rows], met.normals_enu
         out = mirrored(directions, flat)
-        starts, ahead = self._geometry.leaving(met.points_enu_m, out, flat)
-        after = self._geometry.meet(starts, out)
+        starts, ahead = self.geometry.leaving(met.points_enu_m, out, flat)
+        after = self.geometry.meet(starts, out)
         path = ahead + after.distance_m
-        tilted = Tracer(self.scene, Switches(), self._geometry).mirror_normals(met, np.ones(len(path), np.bool_))
+        _, tilted = PaneSurfaces(self.scene.panes, self.geometry.pane_frames, bow=False).meet(met, directions)
         # The last entry is that of body -1: sky or panes.
         around = np.array([*(body.layer is not Layer.BUILDING for body in self.scene.bodies), False])
         is_around = around[after.bodies]
         middle = facade_middle_enu_m(self.scene) if len(path) else np.zeros(3)
         parallax = np.where(is_around, _angles(out, after.points_enu_m - middle), 0.0)
         cosines = np.abs(np.einsum("nk,nk->n", directions, flat))
+        tilts = _angles(tilted, flat)
         return Mirrored(
-            self._focal_px[rows], met, after, met.distance_m, path, cosines, _angles(tilted, flat), parallax, is_around
+            self._focal_px[rows], directions, met, after, met.distance_m, path, cosines, tilts, parallax, is_around
         )
 
 
@@ -135,7 +217,7 @@ def _angles(a: Array, b: Array) -> Array:
     return np.asarray(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), np.einsum("nk,nk->n", a, b)))
 
 
-def _spread(photo: PosedPhoto) -> tuple[Array, Array, float]:
+def spread(photo: PosedPhoto) -> tuple[Array, Array, float]:
     """Origins and directions, each shape (n, 3), of rays spread over a photo, and its focal length in pixels."""
     lens = photo.intrinsics
     step = max(lens.width_px, lens.height_px) / RAYS_ALONG

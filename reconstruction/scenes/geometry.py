@@ -6,7 +6,7 @@ images lie where optics puts them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from reconstruction.scenes.record import Panes, Scene
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 LIFT_M, LIFT = 1e-3, 1e-6
 """Least height above a surface at which light that leaves it starts, and that as a share of the scene's radius: eight
@@ -29,6 +30,9 @@ LONGEST_START = 50.0
 AGREE = 1e-4
 """Relative difference, on top of a lift, between the exact distance and Embree's. Where they differ by more the ray
 lies in the plane, which then has no exact distance."""
+
+MOST_PASSED = 64
+"""Surfaces that a ray passes through at most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,6 +55,17 @@ class Meeting:
     bodies: Index
     panes: Index
     triangles: Index
+
+    def at(self, rows: Index | Mask) -> Meeting:
+        """Of some of the rays."""
+        return Meeting(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+    def with_rows(self, rows: Index, others: Meeting) -> Meeting:
+        """With other meetings of some of the rays."""
+        whole = [getattr(self, field.name).copy() for field in fields(self)]
+        for values, field in zip(whole, fields(self), strict=True):
+            values[rows] = getattr(others, field.name)
+        return Meeting(*whole)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,6 +103,8 @@ class Geometry:
         corners = mesh.corners_enu_m
         normals = _unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
         normals[sum(counts) :] = np.repeat(self.pane_frames.normals, 2, axis=0)
+        self.corners_enu_m = corners.copy()
+        """Of the triangles, shape (t, 3, 3)."""
         corners[sum(counts) :, 0] = np.repeat(self.pane_frames.middles_enu_m, 2, axis=0)
         self.normals_enu = normals
         """Of the triangles, shape (t, 3), as they are wound; 0 where one has no area."""
@@ -97,6 +114,10 @@ class Geometry:
         self._middle = 0.5 * (used.min(axis=0) + used.max(axis=0))
         self._radius_m = float(np.linalg.norm(used - self._middle, axis=1).max())
         self._lift_m = max(LIFT_M, LIFT * self._radius_m)
+
+    def above(self, points_enu_m: Array, normals_enu: Array) -> Array:
+        """Where rays start that leave points on surfaces in any direction, shape (n, 3)."""
+        return points_enu_m + 2.0 * self._lift_m * normals_enu
 
     def meet(self, origins_enu_m: Array, directions_enu: Array) -> Meeting:
         """First meetings of rays, both shape (n, 3), unit directions."""
@@ -112,19 +133,49 @@ class Geometry:
         bodies, panes = self._body[which], self._pane[which]
         return Meeting(distance + skipped, points, normals, bodies, panes, which)
 
-    def leaving(self, points_enu_m: Array, directions_enu: Array, normals_enu: Array) -> tuple[Array, Array]:
+    def beyond(self, met: Meeting, directions_enu: Array, is_passed: Mask, is_wanted: Mask) -> Meeting:
+        """What rays meet behind bodies that they pass through, where that is something wanted; else what they met.
+
+        Parameters
+        ----------
+        is_passed, is_wanted
+            By body, and at last by pane, shape (number of bodies + 1,).
+        """
+        rows = going = np.flatnonzero(is_passed[met.bodies] & (met.triangles >= 0))
+        found = met.at(rows)
+        # Each step passes one surface; a crown of leaves has the most of them.
+        for _ in range(MOST_PASSED):
+            if not len(going):
+                break
+            at = np.searchsorted(rows, going)
+            starts, ways = found.points_enu_m[at] + self._lift_m * directions_enu[going], directions_enu[going]
+            then = self.meet(starts, ways)
+            then = replace(then, distance_m=then.distance_m + found.distance_m[at] + self._lift_m)
+            found = found.with_rows(at, then)
+            going = going[is_passed[then.bodies] & (then.triangles >= 0)]
+        wanted = (found.triangles >= 0) & is_wanted[found.bodies]
+        return met.with_rows(rows[wanted], found.at(np.flatnonzero(wanted)))
+
+    def leaving(
+        self, points_enu_m: Array, directions_enu: Array, normals_enu: Array, depths_m: Array | float = 0.0
+    ) -> tuple[Array, Array]:
         """Starts, and lengths of the way to them, of rays that leave a surface, shapes (n, 3) and (n,).
 
         They move along the ray, which shifts no mirror image.
+
+        Parameters
+        ----------
+        depths_m
+            How far behind the triangles that were met the points lie, shape (n,) or ().
         """
-        rising, lift = np.einsum("nk,nk->n", directions_enu, normals_enu), self._lift_m
+        rising, lift = np.einsum("nk,nk->n", directions_enu, normals_enu), self._lift_m + depths_m
         ahead = lift * np.minimum(1.0 / np.maximum(rising, 1.0 / LONGEST_START), LONGEST_START)
         sideways = np.maximum(lift - ahead * rising, 0.0)
         return points_enu_m + ahead[:, None] * directions_enu + sideways[:, None] * normals_enu, ahead
 
     def is_lit(self, points_enu_m: Array, normals_enu: Array, towards_enu: Array) -> NDArray[np.bool_]:
         """Whether nothing stands between points, shape (n, 3), on surfaces and far away in one direction, (n,)."""
-        starts = points_enu_m + 2.0 * self._lift_m * normals_enu
+        starts = self.above(points_enu_m, normals_enu)
         directions = np.broadcast_to(towards_enu, starts.shape)
         return ~self._caster.cast(starts, directions).is_hit
 

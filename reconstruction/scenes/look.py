@@ -29,6 +29,9 @@ class Look:
     bow_deg
         How far the normal turns from the middle of a pane to its edges, on average: sealed units bulge with the
         pressure in them. From pane to pane it varies by 30 %.
+    curved_glass
+        Panes are curved as their facade is, so that side by side they make one smooth surface: bent glass on a round
+        tower. Otherwise facades are faceted.
     frame_width_m
         Of profiles where panels meet without a gap, or end. A gap between panels is filled by its profile.
     frame_depth_m
@@ -56,6 +59,7 @@ class Look:
     replaced: float = 0.05
     tilt_deg: float = 0.2
     bow_deg: float = 0.15
+    curved_glass: bool = False
     frame_width_m: float = 0.06
     frame_depth_m: float = 0.05
     frame_albedo: Rgb = (0.16, 0.16, 0.17)

@@ -75,6 +75,13 @@ def edge_gaps(panels: PanelFrames) -> tuple[Array, Array]:
 
     Edges are those from a corner to the next; inf and 1 where no panel follows within `WIDEST_GAP_M`.
     """
+    gaps, neighbours = edge_neighbours(panels)
+    cosines = np.einsum("mx,mkx->mk", panels.normals, panels.normals[neighbours])
+    return gaps, np.where(neighbours >= 0, np.clip(cosines, -1.0, 1.0), 1.0)
+
+
+def edge_neighbours(panels: PanelFrames) -> tuple[Array, NDArray[np.int64]]:
+    """Distance from each edge to the next panel, and which panel that is, both shape (m, 4); inf and -1 for none."""
     from scipy.spatial import KDTree
 
     starts = panels.corners.reshape(-1, 3)
@@ -100,8 +107,8 @@ def edge_gaps(panels: PanelFrames) -> tuple[Array, Array]:
     best = distances.argmin(axis=1)
     rows = np.arange(n_edges)
     gaps = distances[rows, best]
-    found = np.where(np.isfinite(gaps), np.clip(cosines[rows, best], -1.0, 1.0), 1.0)
-    return gaps.reshape(-1, 4), found.reshape(-1, 4)
+    neighbours = np.where(np.isfinite(gaps), owners[others[rows, best]], -1)
+    return gaps.reshape(-1, 4), neighbours.reshape(-1, 4)
 
 
 def _moved_corners(panels: PanelFrames, offsets_m: Array) -> Array:

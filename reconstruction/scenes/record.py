@@ -51,8 +51,9 @@ class Body:
     albedo
         Share of light sent back; multiplies the texture.
     texture
-        Laid on each face: to the right along the level direction in the face (east on level faces), upwards along the
-        steepest (north on level faces), counted from the origin.
+        Laid on each face: to the right along the level direction in the face, upwards along the steepest, counted from
+        the origin. On level faces these are east and north, also where they look down: seen from below, the picture
+        is its mirror image.
     """
 
     name: str
@@ -105,12 +106,18 @@ class Glass:
 class Panes:
     """The panes of a scene, in the order of the site's panels.
 
-    The unit normal at u metres to the right of a pane's middle and v metres above it, as seen from outside, is along
+    At u metres to the right of a pane's middle and v metres above it, as seen from outside, its glass stands before the
+    flat pane by
+
+        z = bow_right (a^2 - u^2) / 2 + bow_up (b^2 - v^2) / 2 - tilt_right u - tilt_up v,
+
+    where corners reach to u = a and v = b at most, and its unit normal is along
 
         n + (tilt_right + bow_right u) right + (tilt_up + bow_up v) up,
 
-    with n, right and up of the flat pane: a tilt turns the whole pane, a bow is a curvature. Its points stay where the
-    flat pane's are.
+    with n, right and up of the flat pane: a tilt turns the whole pane about its middle, a bow is a curvature (1 / R of
+    a cylinder of radius R that the corners lie on; the angle of its normal is atan(u / R) in place of asin(u / R)).
+    What is seen through its outline is that of the flat pane.
 
     Parameters
     ----------
@@ -138,6 +145,51 @@ class Panes:
             "bows_per_m": (m, 2),
             "glass": (m,),
             "rooms": (m, 3),
+        }
+        for name, shape in expected.items():
+            if getattr(self, name).shape != shape:
+                raise ValueError(f"{name}: expected shape {shape}, got {getattr(self, name).shape}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Interiors:
+    """What is behind the panes, one room for each; neighbours may show parts of the same one.
+
+    A room is a box behind its pane, in the pane's frame: u to the right and v upwards from its middle, w backwards.
+
+    Parameters
+    ----------
+    rooms_m
+        Shape (m, 5): left and right side, floor, ceiling, and depth.
+    furniture_m
+        Shape (m, k, 6): blocks that stand on the floor, each from left to right, its height, from w to w, and its
+        light as a share of the walls'; those without height are none.
+    lamps
+        Shape (m,): how many times brighter than its ceiling a room's lamps are.
+    lights
+        Shape (m, 3): of the back wall at the window; all else in the room is a share of it.
+    blinds
+        Shape (m,): share of the pane, from above, that a blind covers.
+    blind_lights
+        Shape (m, 3): of the blinds' slats where they are brightest.
+    """
+
+    rooms_m: Array
+    furniture_m: Array
+    lamps: Array
+    lights: Array
+    blinds: Array
+    blind_lights: Array
+
+    def __post_init__(self) -> None:
+        m, k = self.furniture_m.shape[:2]
+        expected = {
+            "rooms_m": (m, 5),
+            "furniture_m": (m, k, 6),
+            "lamps": (m,),
+            "lights": (m, 3),
+            "blinds": (m,),
+            "blind_lights": (m, 3),
         }
         for name, shape in expected.items():
             if getattr(self, name).shape != shape:
@@ -187,6 +239,8 @@ class Scene:
         Everything matt: walls and frames of the building, the ground, what stands around.
     glasses
         Kinds of glass that `panes.glass` counts.
+    interiors
+        Of the panes; without, each shows the mean light of its room alone.
     """
 
     name: str
@@ -196,3 +250,4 @@ class Scene:
     panes: Panes
     glasses: tuple[Glass, ...]
     sky: Sky
+    interiors: Interiors | None = None

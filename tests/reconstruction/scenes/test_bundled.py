@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 from functools import cache
 
 import numpy as np
@@ -15,7 +16,7 @@ from planning.site import panel_corners, panel_triangles
 from planning.space import free_space
 from reconstruction.ray_casting import RayCaster
 from reconstruction.scenes.bundled import SCENES, bundled_scene
-from reconstruction.scenes.record import Layer, Scene
+from reconstruction.scenes.record import Interiors, Layer, Scene
 
 scene_of = cache(bundled_scene)
 
@@ -26,6 +27,7 @@ MOST_TRIANGLES = 60_000
 def arrays(scene: Scene) -> Iterator[np.ndarray]:
     yield from (scene.panes.corners_enu_m, scene.panes.tilts_rad, scene.panes.bows_per_m)
     yield from (scene.panes.glass, scene.panes.rooms, scene.sky.panorama)
+    yield from (getattr(scene.interiors, field.name) for field in fields(Interiors))
     for body in scene.bodies:
         yield from (body.mesh.vertices_enu_m, body.mesh.triangles, np.array(body.albedo))
         if body.texture is not None:
@@ -80,6 +82,10 @@ def test_everything_is_finite_and_sends_back_no_more_light_than_it_gets(name: st
     assert panorama.dtype == np.float32
     assert panorama.shape[1:] == (2 * panorama.shape[0], 3)
     assert 0.0 <= panorama.min() <= panorama.max() <= 1.0
+    assert all(
+        array.min() >= 0.0 for array in (scene.panes.rooms, scene.interiors.lights, scene.interiors.blind_lights)
+    )
+    assert scene.panes.rooms.max() <= 1.0
     assert ((scene.panes.glass >= 0) & (scene.panes.glass < len(scene.glasses))).all()
     assert sum(len(body.mesh.triangles) for body in scene.bodies) + 2 * len(scene.panes.glass) < MOST_TRIANGLES
 
@@ -118,6 +124,8 @@ def test_far_scenes_differ_by_what_is_near_alone(name: str) -> None:
         np.testing.assert_array_equal(one.mesh.vertices_enu_m, other.mesh.vertices_enu_m)
     for part in ("corners_enu_m", "tilts_rad", "bows_per_m", "glass", "rooms"):
         np.testing.assert_array_equal(getattr(near.panes, part), getattr(far.panes, part))
+    for field in fields(Interiors):
+        np.testing.assert_array_equal(getattr(near.interiors, field.name), getattr(far.interiors, field.name))
     distances = mirrored(near, bodies_of(near, Layer.NEAR, Layer.GROUND))
     assert np.mean(distances < 80.0) > 0.7, "near things dominate what is mirrored"
     assert not np.isfinite(mirrored(far, bodies_of(far, *Layer))).any()
