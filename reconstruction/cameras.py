@@ -140,7 +140,7 @@ class Intrinsics:
         """Directions, shape (n, 3), camera axes, z = 1, that fall on pixels, shape (n, 2)."""
         points = np.atleast_2d(np.asarray(pixels, float))
         x, y = (points[:, 0] - self.cx_px) / self.fx_px, (points[:, 1] - self.cy_px) / self.fy_px
-        if not self.is_straight:
+        if not self.is_straight and len(points):  # OpenCV gives nothing back for no points
             criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, UNDISTORT_STEPS, UNDISTORT_TOLERANCE)
             seen = np.column_stack([x, y]).reshape(-1, 1, 2)
             straight = np.asarray(

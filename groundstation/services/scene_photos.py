@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -12,34 +13,40 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from groundstation.services.flight_shots import shots_of_flight
 from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.planning import plan_document_site
-from groundstation.services.top_up import flown_plan
-from missions.flight.flight_file import Flight, read_flight
-from missions.flight.matching import PhotoRef
-from missions.flight.poses import pose_of_photo, taken_poses
-from missions.flight.record import TakenPhoto
 from planning.catalogue import profile
+from planning.cluster import cluster_client
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.geometry.solids import Solids
 from planning.mesh import join, ply_bytes
-from planning.plan import Camera, Constraints, Plan, Viewpoint
+from planning.plan import Camera, Constraints, Plan
 from planning.plan_file import plan_to_json, read_plan
 from planning.progress import QUIET, Monitor
 from planning.request import GreedyParameters, PlanRequest
 from planning.site import SiteModel
 from planning.site_file import is_planned_on, site_bytes, site_sha256
-from reconstruction.cameras import PosedPhoto
+from reconstruction.cameras import Intrinsics, PosedPhoto
 from reconstruction.scenes.build import build_scene
 from reconstruction.scenes.bundled import SCENES, bundled_scene
-from reconstruction.scenes.flight_views import WIDTHS_PX, Shot, flown_shots, lens_of, planned_shots, posed_photos
+from reconstruction.scenes.flight_views import (
+    WIDTHS_PX,
+    Shot,
+    lens_of,
+    moments,
+    planned_shots,
+    posed_photos,
+)
 from reconstruction.scenes.look import read_look
+from reconstruction.scenes.mitsuba_plugins import mitsuba
 from reconstruction.scenes.photo_folder import ScenePhotos, photograph
 from reconstruction.scenes.photographers import DEFAULT_POINTS, PhotoJob
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.renderer import RenderSettings
-from reconstruction.scenes.run_record import RUN_FILE
+from reconstruction.scenes.run_record import RUN_FILE, check_folder
+from reconstruction.scenes.taking import USUAL_TAKING, Taking, read_taking
 
 SITE_FILE, PLAN_FILE = "site.json", "plan.json"
 """Written beside the photos: the site with what the scene adds to it, and the plan that was made for them."""
@@ -79,8 +86,8 @@ class SceneWish:
         To be planned where neither is given.
     profile_id
         Whose camera takes photos that no plan says the camera of.
-    look
-        File with the look of a site's scene.
+    look, camera
+        Files with the look of a site's scene, and with how photos are taken.
     """
 
     scene: str
@@ -89,6 +96,7 @@ class SceneWish:
     n_views: int | None = None
     profile_id: str = DEFAULT_PROFILE
     look: Path | None = None
+    camera: Path | None = None
     seed: int = 0
     width_px: int | None = DEFAULT_WIDTH_PX
     n_points: int = DEFAULT_POINTS
@@ -125,25 +133,48 @@ class _Views:
 
 
 def photograph_files(
-    wish: SceneWish, folder: Path, n_processes: int | None = None, monitor: Monitor = QUIET
+    wish: SceneWish,
+    folder: Path,
+    n_processes: int | None = None,
+    monitor: Monitor = QUIET,
+    *,
+    address: str | None = None,
 ) -> RenderedScene:
     """Render the photos of a plan or flight over a site or a bundled scene into a folder.
+
+    Parameters
+    ----------
+    address
+        Scheduler of a Dask cluster that renders in place of processes, such as `tcp://10.0.0.5:8786`.
 
     Raises
     ------
     InputError
-        A file cannot be read or belongs to another site, there is no such scene, or as `photograph` says.
+        A file cannot be read or belongs to another site, there is no such scene, no cluster answers, Mitsuba is
+        wished for and not installed, or as `photograph` says.
     InfeasibleError
         Views were to be planned, and none is possible.
     """
-    started_s = time.perf_counter()
     if wish.n_views is not None and (wish.plan is not None or wish.flight is not None):
         raise InputError("a number of views is for scenes without a plan or flight; leave it out, or them")
+    check_folder(folder)
+    if wish.settings.mitsuba_rays is not None:
+        mitsuba()
+    with nullcontext() if address is None else cluster_client(address) as cluster:
+        return _photographed(wish, folder, n_processes, monitor, cluster)
+
+
+def _photographed(
+    wish: SceneWish, folder: Path, n_processes: int | None, monitor: Monitor, cluster: Any
+) -> RenderedScene:
+    started_s = time.perf_counter()
     monitor.report("building the scene", 0, 1)
-    scene, made_from = _given_scene(wish)
+    taking = USUAL_TAKING if wish.camera is None else read_taking(wish.camera)
+    scene, made_from = given_scene(wish)
     written_site, companions = _as_written(scene.site)
     views = _views(wish, scene.site, written_site, folder, monitor)
-    photos = posed_photos(views.shots, lens_of(views.camera, wish.width_px), folder / "images")
+    lens = _lens(wish, views.camera, taking)
+    photos = posed_photos(views.shots, lens, folder / "images")
     findings = (*views.findings, *_walled_in(photos, scene.site))
     job = PhotoJob(
         scene,
@@ -152,13 +183,28 @@ def photograph_files(
         {**made_from, **views.made_from},
         {**companions, **views.companions},
         wish.n_points,
+        taking,
+        moments(views.shots, taking),
     )
-    written = photograph(job, folder, n_processes, monitor)
+    written = photograph(job, folder, n_processes, monitor, cluster=cluster)
     return RenderedScene(scene.name, written, findings, time.perf_counter() - started_s)
 
 
-def _given_scene(wish: SceneWish) -> tuple[Scene, dict[str, Any]]:
-    """The scene, and what it is made from."""
+def _lens(wish: SceneWish, camera: Camera, taking: Taking) -> Intrinsics:
+    try:
+        return lens_of(camera, wish.width_px, taking)
+    except InputError as error:
+        raise InputError(f"{wish.camera}: {error}") from error
+
+
+def given_scene(wish: SceneWish) -> tuple[Scene, dict[str, Any]]:
+    """The scene, and what it is made from.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or there is no such scene.
+    """
     path = Path(wish.scene)
     if wish.scene in SCENES and not path.is_file():  # a folder of photos is easily named after its scene
         if wish.look is not None:
@@ -194,9 +240,9 @@ def _as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
 
 
 def _views(wish: SceneWish, model: SiteModel, written: SiteModel, folder: Path, monitor: Monitor) -> _Views:
-    plan = None if wish.plan is None else _given_plan(wish.plan, model)
+    plan = None if wish.plan is None else plan_of_site(wish.plan, model)
     if wish.flight is not None:
-        return _flown(wish, plan, model)
+        return _flown(wish, wish.flight, plan, model)
     if plan is not None and wish.plan is not None:
         is_current = is_planned_on(plan.site_sha256, model) or is_planned_on(plan.site_sha256, written)
         findings = () if is_current else (SITE_CHANGED,)
@@ -212,7 +258,14 @@ SITE_CHANGED = Finding(
 )
 
 
-def _given_plan(path: Path, model: SiteModel) -> Plan:
+def plan_of_site(path: Path, model: SiteModel) -> Plan:
+    """The plan in a file.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or belongs to another site.
+    """
     plan, site = read_given_plan(path), model.site
     if plan.site != site.name or (plan.origin is not None and plan.origin != site.origin):
         raise InputError(
@@ -220,6 +273,12 @@ def _given_plan(path: Path, model: SiteModel) -> Plan:
             "was made for, or another plan"
         )
     return plan
+
+
+def planned_photos(wish: SceneWish, scene: Scene, folder: Path, monitor: Monitor = QUIET) -> tuple[PosedPhoto, ...]:
+    """Photos from views that are planned here, around what the scene has beside the building, to lie in `folder`."""
+    plan = _planned_here(wish, _as_written(scene.site)[0], folder, monitor)
+    return posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), folder)
 
 
 def _planned_here(wish: SceneWish, model: SiteModel, folder: Path, monitor: Monitor) -> Plan:
@@ -232,47 +291,11 @@ def _planned_here(wish: SceneWish, model: SiteModel, folder: Path, monitor: Moni
     return plan_document_site(model, request, monitor=monitor).plan
 
 
-def _flown(wish: SceneWish, plan: Plan | None, model: SiteModel) -> _Views:
-    assert wish.flight is not None
-    flight, site = read_flight(wish.flight), model.site
-    if flight.site != site.name or flight.origin != site.origin:
-        raise InputError(
-            f"{wish.flight}: this is a flight over '{flight.site}', and not over '{site.name}' at its origin; name the "
-            "site that was flown over"
-        )
-    poses = _poses(flight, plan, model)
-    n_photos = sum(len(record.photos) for record in flight.sorties)
-    if not poses:
-        raise InputError(
-            f"{wish.flight}: none of its {n_photos} photos says where the camera looked; name the plan that was flown "
-            "as well (--plan)"
-        )
-    sorties = [
-        [(poses[ref], photo.time_s) for ref, photo in _photos_of(flight, number) if ref in poses]
-        for number in range(len(flight.sorties))
-    ]
+def _flown(wish: SceneWish, flight: Path, plan: Plan | None, model: SiteModel) -> _Views:
+    shots, findings = shots_of_flight(flight, plan, model)
     camera = profile(wish.profile_id).camera if plan is None else plan.camera
-    findings = (_without_direction(n_photos - len(poses), n_photos),) if len(poses) < n_photos else ()
-    made_from = {"flight": wish.flight.name, "plan": None if wish.plan is None else wish.plan.name}
-    return _Views(flown_shots(sorties), camera, made_from, {}, findings)
-
-
-def _poses(flight: Flight, plan: Plan | None, model: SiteModel) -> dict[PhotoRef, Viewpoint]:
-    """Poses of all photos whose direction is known."""
-    if plan is not None:
-        return taken_poses(plan, flight.sorties, flown_plan(flight, plan, model).matching)
-    refs = (pair for number in range(len(flight.sorties)) for pair in _photos_of(flight, number))
-    poses = ((ref, pose_of_photo(photo, None)) for ref, photo in refs)
-    return {ref: pose for ref, pose in poses if pose is not None}
-
-
-def _photos_of(flight: Flight, record: int) -> Iterator[tuple[PhotoRef, TakenPhoto]]:
-    return ((PhotoRef(record, number), photo) for number, photo in enumerate(flight.sorties[record].photos))
-
-
-def _without_direction(n: int, n_all: int) -> Finding:
-    text = f"{n} of {n_all} photos do not say where the camera looked, and are left out; name the plan that was flown"
-    return Finding(Severity.WARNING, "photo-direction", text, "", float(n), 0.0, "photos")
+    made_from = {"flight": flight.name, "plan": None if wish.plan is None else wish.plan.name}
+    return _Views(shots, camera, made_from, {}, findings)
 
 
 def _walled_in(photos: Sequence[PosedPhoto], model: SiteModel) -> Iterator[Finding]:

@@ -49,8 +49,10 @@ def write_records(
 def transforms(photos: Sequence[PosedPhoto]) -> dict[str, Any]:
     """Content of nerfstudio's transforms.json (docs.nerf.studio, "Data conventions").
 
-    Facade masks do not stand under its `mask_path`, whose black pixels are not trained on.
+    Facade masks do not stand under its `mask_path`, whose black pixels are not trained on. Where a picture is not
+    straight, the camera model is its OPENCV.
     """
+    is_straight = all(photo.intrinsics.is_straight for photo in photos)
     frames = []
     for photo in photos:
         lens, pose = photo.intrinsics, np.eye(4)
@@ -68,10 +70,12 @@ def transforms(photos: Sequence[PosedPhoto]) -> dict[str, Any]:
                 "fl_y": lens.fy_px,
                 "cx": lens.cx_px,
                 "cy": lens.cy_px,
+                **({} if is_straight else dict(zip(("k1", "k2", "p1", "p2", "k3"), lens.distortion, strict=True))),
                 "transform_matrix": pose.tolist(),
             }
         )
-    return {"camera_model": "PINHOLE", "ply_file_path": "points.ply", "frames": frames}
+    model = "PINHOLE" if is_straight else "OPENCV"
+    return {"camera_model": model, "ply_file_path": "points.ply", "frames": frames}
 
 
 def _description(

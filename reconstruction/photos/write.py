@@ -7,12 +7,15 @@ thousandth of a degree: angles count from the north and the vertical of the phot
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from datetime import datetime
+from fractions import Fraction
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.frames import Vec3
 from planning.geodesy.enu import geodetic_from_enu
 from planning.photo_files.exif import Tag
 from planning.photo_files.exif_writing import Content, Ratio, exif_content
@@ -41,6 +44,35 @@ SECONDS_PARTS, METRES_PARTS = 10_000_000, 10_000
 ABOVE_ELLIPSOID, BELOW_ELLIPSOID = b"\2", b"\3"
 """EXIF 3.0's references of a height."""
 
+RTK_SINGLE = 16
+"""DJI's flag of a position without corrections."""
+
+FINEST = 100_000
+"""Largest denominator of an exposure time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Circumstances:
+    """What a photo tells of how it was taken, beside its camera.
+
+    Parameters
+    ----------
+    is_rtk_fixed
+        Whether the receiver had an RTK fix; otherwise none at all.
+    std_m
+        Standard deviations of its position, horizontally per axis and vertically.
+    exposure_s, velocity_enu_m_s
+        How long the shutter was open, and how the aircraft moved; None where they are not told.
+    """
+
+    is_rtk_fixed: bool = True
+    std_m: tuple[float, float] = (0.02, 0.03)
+    exposure_s: float | None = None
+    velocity_enu_m_s: Vec3 | None = None
+
+
+USUAL = Circumstances()
+
 
 def photo_name(number: int, taken_at: datetime) -> str:
     """Name of a flight's photo, numbered from 1, as DJI's cameras give it."""
@@ -48,9 +80,14 @@ def photo_name(number: int, taken_at: datetime) -> str:
 
 
 def photo_jpeg(
-    picture: NDArray[np.uint8], photo: PosedPhoto, origin: Origin, taken_at: datetime, home_up_m: float = 0.0
+    picture: NDArray[np.uint8],
+    photo: PosedPhoto,
+    origin: Origin,
+    taken_at: datetime,
+    home_up_m: float = 0.0,
+    how: Circumstances = USUAL,
 ) -> bytes:
-    """A JPEG file with RTK position, gimbal angles and a calibrated lens.
+    """A JPEG file with position, gimbal angles and a calibrated lens.
 
     Parameters
     ----------
@@ -65,9 +102,9 @@ def photo_jpeg(
     lat, lon, height = (float(part[0]) for part in geodetic_from_enu(origin, photo.pose.position_enu_m[None]))
     above_home_m = float(photo.pose.position_enu_m[2]) - home_up_m
     local = _at_its_place(photo.pose, origin, lat, lon)
-    properties = _properties(photo.intrinsics, local, (lat, lon, height), above_home_m, taken_at)
+    properties = _properties(photo.intrinsics, local, (lat, lon, height), above_home_m, taken_at) | _flown(how)
     xmp = " ".join(f'{name}="{value}"' for name, value in properties.items()).encode()
-    exif = exif_content(_tags(photo.intrinsics, (lat, lon, height), taken_at))
+    exif = exif_content(_tags(photo.intrinsics, (lat, lon, height), taken_at) | _exposed(how))
     segments = _segment(EXIF_HEAD + exif) + _segment(XMP_HEAD + XMP_START + xmp + XMP_END)
     # They come right after the two bytes that every JPEG file begins with.
     return encoded[:2] + segments + encoded[2:]
@@ -95,11 +132,6 @@ def _properties(
         "drone-dji:ImageSource": "WideCamera",
         "drone-dji:GpsLatitude": f"{lat:+.9f}",
         "drone-dji:GpsLongitude": f"{lon:+.9f}",
-        "drone-dji:RtkFlag": str(RTK_FIXED),
-        "drone-dji:RtkStdLon": "0.02",
-        "drone-dji:RtkStdLat": "0.02",
-        "drone-dji:RtkStdHgt": "0.03",
-        "drone-dji:AltitudeType": "RtkAlt",
         "drone-dji:AbsoluteAltitude": f"{height:+.4f}",
         "drone-dji:RelativeAltitude": f"{above_home_m:+.4f}",
         "drone-dji:GimbalYawDegree": f"{heading_deg:+.4f}",
@@ -113,6 +145,27 @@ def _properties(
         "drone-dji:CalibratedOpticalCenterX": f"{lens.cx_px:.4f}",
         "drone-dji:CalibratedOpticalCenterY": f"{lens.cy_px:.4f}",
     }
+
+
+def _flown(how: Circumstances) -> dict[str, str]:
+    horizontal_m, vertical_m = how.std_m
+    told = {
+        "drone-dji:RtkFlag": str(RTK_FIXED if how.is_rtk_fixed else RTK_SINGLE),
+        "drone-dji:RtkStdLon": f"{horizontal_m:.5f}",
+        "drone-dji:RtkStdLat": f"{horizontal_m:.5f}",
+        "drone-dji:RtkStdHgt": f"{vertical_m:.5f}",
+        "drone-dji:AltitudeType": "RtkAlt" if how.is_rtk_fixed else "GpsFusionAlt",
+    }
+    if how.velocity_enu_m_s is not None:
+        east, north, up = how.velocity_enu_m_s
+        for axis, speed in (("X", north), ("Y", east), ("Z", -up)):
+            told[f"drone-dji:Flight{axis}Speed"] = f"{speed:+.3f}"
+    return told
+
+
+def _exposed(how: Circumstances) -> dict[Tag, Content]:
+    exposure = Fraction(how.exposure_s or 0.0).limit_denominator(FINEST)
+    return {Tag.EXPOSURE_TIME: ((exposure.numerator, exposure.denominator),)} if exposure > 0 else {}
 
 
 def _dewarp(lens: Intrinsics) -> str:

@@ -12,27 +12,37 @@ from planning.errors import InputError
 from reconstruction.cameras import PosedPhoto
 from reconstruction.scenes.effect_terms import TOLERANCE_GREY, TOLERANCE_PX
 from reconstruction.scenes.effects_camera import Distortion, Noise, Vignetting
-from reconstruction.scenes.effects_light import Shadow
-from reconstruction.scenes.effects_mirror import Doubling, Fresnel, NearField, SecondBounce, Tilt
+from reconstruction.scenes.effects_flight import ExposureChanges, GimbalError, MotionBlur, PositionError
+from reconstruction.scenes.effects_light import Interior, Occlusion, Shadow
+from reconstruction.scenes.effects_mirror import Curvature, Doubling, Fresnel, NearField, SecondBounce, Tilt
 from reconstruction.scenes.effects_probe import Probe
+from reconstruction.scenes.effects_sky import SkyOcclusion
+from reconstruction.scenes.effects_sun import SunGlare
 from reconstruction.scenes.lens_effects import USUAL_SENSOR, Sensor
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.renderer import RenderSettings
+from reconstruction.scenes.taking import USUAL_TAKING, Moment, Taking
 
 
 def effects(tolerance: float = 1.0, sensor: Sensor = USUAL_SENSOR) -> tuple[Effect[Probe], ...]:
     """All of them; `tolerance` multiplies that of each."""
     px, grey = tolerance * TOLERANCE_PX, tolerance * TOLERANCE_GREY
-    light = (NearField(px), Fresnel(grey), SecondBounce(grey), Tilt(px), Doubling(px), Shadow(grey))
-    return (*light, Distortion(px), Vignetting(sensor, grey), Noise(sensor, grey))
+    mirrors = (NearField(px), Fresnel(grey), SecondBounce(grey), Tilt(px), Curvature(px), Doubling(px))
+    light = (*mirrors, Shadow(grey), Interior(grey), SunGlare(grey), Occlusion(grey), SkyOcclusion(grey))
+    camera = (Distortion(px), Vignetting(sensor, grey), Noise(sensor, grey))
+    return (*light, *camera, MotionBlur(px), ExposureChanges(grey), PositionError(px), GimbalError(px))
 
 
 def decide_effects(
-    scene: Scene, photos: Sequence[PosedPhoto], settings: RenderSettings, sensor: Sensor = USUAL_SENSOR
+    scene: Scene,
+    photos: Sequence[PosedPhoto],
+    settings: RenderSettings,
+    taking: Taking = USUAL_TAKING,
+    moments: Sequence[Moment] = (),
 ) -> dict[str, Decision]:
     """What is simulated in photographs of a scene, and why, by the effects' names.
 
-    `settings.decided` takes the decisions' values.
+    `settings.decided` takes the decisions' values. Without moments, all photos are taken hovering.
 
     Raises
     ------
@@ -41,6 +51,6 @@ def decide_effects(
     """
     if not photos:
         raise InputError("effects are decided by the photos of a flight; expected at least one, got none")
-    probe = Probe(scene, photos)
-    chosen, wishes = effects(settings.tolerance, sensor), settings.wishes
+    probe = Probe(scene, photos, taking, moments)
+    chosen, wishes = effects(settings.tolerance, taking.sensor), settings.wishes
     return {effect.name: decide(effect, probe, wishes.get(effect.name, "auto")) for effect in chosen}

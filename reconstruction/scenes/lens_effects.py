@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.scenes.effect_names import NOISE, VIGNETTING
+from planning.jit import chunks
+from reconstruction.scenes.effect_names import NOISE, SUN_GLARE, VIGNETTING
+from reconstruction.scenes.lens_glare import bloomed
 from reconstruction.scenes.renderer import Photograph
 
 Array = NDArray[np.float64]
@@ -16,8 +18,17 @@ Array = NDArray[np.float64]
 MIDDLE_GREY = 0.18
 """What exposure meters bring a picture's mean to (ISO 2720), of the light that is white."""
 
+LEAST_E = 0.01
+"""Of electrons and gains: with less, a white pixel is all noise."""
+
+ROWS_AT_ONCE = 256
+"""Bounds the memory of developing: 32 MB for each step at 5280 columns."""
+
 DARKEST = 1e-6
 """Mean light below which a picture is not brightened any more."""
+
+METER_STEPS, METER_TOLERANCE = 100, 1e-4
+"""Of the iteration that finds an exposure, which gets closer from below, and where it ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +57,10 @@ class Sensor:
     def __post_init__(self) -> None:
         if not 0.0 <= self.corner_loss < 1.0:
             raise ValueError(f"corner_loss: expected 0 to below 1, got {self.corner_loss}")
-        if not (self.full_well_e > 0.0 and self.read_noise_e >= 0.0 and self.gain > 0.0):
-            raise ValueError("full_well_e, gain: expected more than 0; read_noise_e: expected at least 0")
+        for name in ("full_well_e", "gain", "read_noise_e"):
+            value, least = getattr(self, name), 0.0 if name == "read_noise_e" else LEAST_E
+            if not (math.isfinite(value) and value >= least):
+                raise ValueError(f"{name}: expected at least {least:g}, got {value}")
 
     @property
     def white_e(self) -> float:
@@ -64,9 +77,18 @@ USUAL_SENSOR = Sensor()
 
 
 def metered_exposure(photograph: Photograph) -> float:
-    """Factor that brings the mean light of a photograph to middle grey."""
-    mean = float(photograph.linear.mean(dtype=np.float64))
-    return MIDDLE_GREY / max(mean, DARKEST)
+    """Factor that brings the mean light of a photograph to middle grey.
+
+    A meter is a sensor, too: what is brighter than white counts as white, so that the sun makes no picture black.
+    """
+    exposure = MIDDLE_GREY / max(float(photograph.linear.mean(dtype=np.float64)), DARKEST)
+    for _ in range(METER_STEPS):
+        mean = float(np.minimum(photograph.linear, 1.0 / exposure).mean(dtype=np.float64))
+        brighter = MIDDLE_GREY / max(mean, DARKEST)
+        if brighter <= exposure * (1.0 + METER_TOLERANCE):
+            break
+        exposure = brighter
+    return exposure
 
 
 def vignette(height_px: int, width_px: int, corner_loss: float) -> Array:
@@ -99,11 +121,17 @@ def developed(
     factor = metered_exposure(photograph) if exposure is None else exposure
     if not (math.isfinite(factor) and factor > 0.0):
         raise ValueError(f"exposure: expected more than 0, got {factor}")
-    light = photograph.linear.astype(np.float64) * factor
-    if VIGNETTING in photograph.in_camera:
-        height, width = photograph.panel.shape
-        light *= vignette(height, width, sensor.corner_loss)[..., None]
-    if NOISE in photograph.in_camera:
-        # Shot noise of so many electrons is normal to all intents.
-        light += sensor.noise(light) * np.random.default_rng(photograph.seed).standard_normal(light.shape)
-    return np.ascontiguousarray(np.rint(grey_levels(light))[..., ::-1].astype(np.uint8))
+    height, width = photograph.panel.shape
+    glare = bloomed(photograph.linear * np.float64(factor)) if SUN_GLARE in photograph.in_camera else None
+    falloff = vignette(height, width, sensor.corner_loss) if VIGNETTING in photograph.in_camera else None
+    picture = np.empty((height, width, 3), np.uint8)
+    rng = np.random.default_rng(photograph.seed)
+    for start, stop in chunks(height, ROWS_AT_ONCE):
+        light = photograph.linear[start:stop] * np.float64(factor) if glare is None else glare[start:stop]
+        if falloff is not None:
+            light = light * falloff[start:stop, :, None]
+        if NOISE in photograph.in_camera:
+            # Shot noise of so many electrons is normal to all intents.
+            light = light + sensor.noise(light) * rng.standard_normal(light.shape)
+        picture[start:stop] = np.rint(grey_levels(light))[..., ::-1]
+    return picture

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import json
 import shutil
-import statistics
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -27,8 +27,9 @@ from reconstruction.cameras import PosedPhoto
 from reconstruction.dataset.points import start_points
 from reconstruction.dataset.records import transforms, write_records
 from reconstruction.ray_casting import RayCaster
+from reconstruction.scenes.effect_names import DISTORTION
 from reconstruction.scenes.effects import decide_effects
-from reconstruction.scenes.lens_effects import metered_exposure
+from reconstruction.scenes.exposing import captures_of, common_exposure
 from reconstruction.scenes.photo_layers import (
     ARRAYS,
     BYTES_PER_PIXEL,
@@ -37,11 +38,8 @@ from reconstruction.scenes.photo_layers import (
 )
 from reconstruction.scenes.photographers import PhotoJob, photographed
 from reconstruction.scenes.record import Layer, Scene
-from reconstruction.scenes.renderer import Renderer
-from reconstruction.scenes.run_record import kept_photos, run_record, write_run
-
-N_METERED, METERED_PX = 8, 64
-"""Photos that the exposure is measured on, and how wide they are rendered for it."""
+from reconstruction.scenes.run_record import captures_record, kept_photos, run_record, write_run
+from reconstruction.scenes.taking import Moment
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,57 +52,57 @@ class ScenePhotos:
     n_kept: int
 
 
-def photograph(job: PhotoJob, folder: Path, n_processes: int | None = None, monitor: Monitor = QUIET) -> ScenePhotos:
+def photograph(
+    job: PhotoJob, folder: Path, n_processes: int | None = None, monitor: Monitor = QUIET, *, cluster: Any = None
+) -> ScenePhotos:
     """Render the photos that the folder lacks, and write what belongs to all of them.
 
     Parameters
     ----------
     n_processes
         That render side by side; one for every four cores by default.
+    cluster
+        Client of a Dask cluster (`planning.cluster`) whose workers render instead.
 
     Raises
     ------
     InputError
         There are no photos, the folder holds something else or photos of another run, or it has no room.
     ReconstructionError
-        A process ended before its photo was done.
+        A process ended before its photo was done; a cluster is gone, or cannot render one.
     OperationCancelled
         From `monitor`; photos that are complete stay, and the same call goes on with the others.
     """
     if not job.photos:
         raise InputError("there are no views to photograph; name a plan or flight that has some")
     monitor.report("deciding on effects", 0, 1)
-    decisions = tuple(decide_effects(job.scene, job.photos, job.settings).values())
+    job = replace(job, moments=job.moments or (Moment(),) * len(job.photos))
+    found = decide_effects(job.scene, job.photos, job.settings, job.taking, job.moments)
+    decisions = tuple(found.values())
+    if not found[DISTORTION].on:
+        straight = tuple(replace(photo, intrinsics=photo.intrinsics.straight()) for photo in job.photos)
+        job = replace(job, photos=straight)
     decided = replace(job, settings=job.settings.decided(decisions))
-    run = run_record(job.scene, job.photos, job.settings, decisions, job.made_from)
+    run = run_record(job, decisions)
     files = kept_photos(folder, run)
     missing = [number for number, photo in enumerate(job.photos) if photo.name not in files]
     _check_room(folder, job.photos, len(missing))
     _make_folders(folder)
-    run["exposure"] = exposure = _exposure(decided)
+    exposure = common_exposure(decided)
+    decided = replace(decided, captures=captures_of(decided, exposure, monitor))
+    run |= {"exposure": exposure, "captures": captures_record(decided)}
     write_run(folder, run, files)
     for name, content in job.companions.items():
         write_atomically(folder / name, content)
     n_kept = len(files)
     # Closed at once where the user cancels, so that no process goes on.
-    with closing(photographed(decided, folder, exposure, missing, n_processes, monitor)) as rendered:
+    with closing(photographed(decided, folder, exposure, missing, n_processes, monitor, cluster)) as rendered:
         for number, written in rendered:
             files[job.photos[number].name] = written
             write_run(folder, run, files)
     _write_records(job, folder, decisions, monitor)
     write_run(folder, run, files, is_complete=True)
     return ScenePhotos(folder, job.photos, decisions, n_kept)
-
-
-def _exposure(job: PhotoJob) -> float:
-    """One for all photos, as pilots lock it: middle grey on average over some of them, rendered small."""
-    renderer = Renderer(job.scene, job.settings)
-    factors = []
-    for photo in job.photos[:: -(-len(job.photos) // N_METERED)]:
-        lens = photo.intrinsics
-        small = lens.scaled(METERED_PX, max(1, round(METERED_PX * lens.height_px / lens.width_px)))
-        factors.append(metered_exposure(renderer.render(replace(photo, intrinsics=small))))
-    return statistics.harmonic_mean(factors)
 
 
 def _mesh(scene: Scene, layers: Sequence[Layer]) -> TriangleMesh:
@@ -129,9 +127,14 @@ def _check_room(folder: Path, photos: Sequence[PosedPhoto], n_missing: int) -> N
     free = shutil.disk_usage(there).free
     if needed > free:
         raise InputError(
-            f"{folder}: {n_missing} photos with their truth take about {needed / 1e9:.1f} GB, and {free / 1e9:.1f} GB "
+            f"{folder}: {n_missing} photos with their truth take about {_size_text(needed)}, and {_size_text(free)} "
             "are free there; make room, name a folder on another disk, or ask for smaller pictures (--width)"
         )
+
+
+def _size_text(n_bytes: int) -> str:
+    size, unit = next(((size, unit) for size, unit in ((1e9, "GB"), (1e6, "MB")) if n_bytes >= size), (1e3, "kB"))
+    return f"{n_bytes / size:.1f} {unit}"
 
 
 def _write_records(job: PhotoJob, folder: Path, decisions: Sequence[Decision], monitor: Monitor) -> None:

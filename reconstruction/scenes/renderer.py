@@ -1,7 +1,8 @@
 """Photographs of a scene by ray casting, with what is true of each pixel.
 
 One ray is sent through the middle of each pixel. Where a pixel differs from its neighbours its light is the mean over
-several rays through its area instead; what is true of it stays that of its middle.
+several rays through its area instead, and over the exposure where the camera moves; what is true of it stays that of
+its middle, at the middle of the exposure.
 """
 
 from __future__ import annotations
@@ -19,18 +20,25 @@ from planning.errors import InputError
 from planning.jit import chunks, run_chunks
 from reconstruction.cameras import PosedPhoto
 from reconstruction.scenes.effect_names import (
+    CURVATURE,
     DISTORTION,
     DOUBLING,
     EFFECTS,
     FRESNEL,
+    INTERIOR,
+    MOTION_BLUR,
     NEAR_FIELD,
     NOISE,
+    OCCLUSION,
     SECOND_BOUNCE,
     SHADOW,
+    SKY_OCCLUSION,
+    SUN_GLARE,
     TILT,
     VIGNETTING,
 )
 from reconstruction.scenes.environment import ROWS
+from reconstruction.scenes.motion_blur import moved_px, n_times, times, varies, windows
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.tracing import Light, Switches, Tracer
 
@@ -47,6 +55,9 @@ RAYS_AT_ONCE = 1 << 15
 
 MOST_ROWS = 8192
 """Of the picture of the surroundings: 2 GB."""
+
+MOST_RAYS = 1 << 20
+"""Through a pixel, by Mitsuba."""
 
 MOST_PANES = np.iinfo(np.uint16).max - 1
 
@@ -66,6 +77,8 @@ class RenderSettings:
     environment_rows
         Of the picture of the surroundings that takes the near field's place where that is left out: finer or sooner
         there.
+    mitsuba_rays
+        Through each pixel, where the light is Mitsuba's; None for that of `Renderer`.
 
     Raises
     ------
@@ -77,6 +90,7 @@ class RenderSettings:
     wishes: Mapping[str, Wish] = field(default_factory=dict)
     tolerance: float = 1.0
     environment_rows: int = ROWS
+    mitsuba_rays: int | None = None
 
     def __post_init__(self) -> None:
         unknown = [name for name in self.wishes if name not in EFFECTS]
@@ -89,6 +103,8 @@ class RenderSettings:
 
         if not 2 <= self.environment_rows <= MOST_ROWS:
             raise InputError(f"environment_rows: expected 2 to {MOST_ROWS}, got {self.environment_rows}")
+        if self.mitsuba_rays is not None and not 1 <= self.mitsuba_rays <= MOST_RAYS:
+            raise InputError(f"rays: expected 1 to {MOST_RAYS} through each pixel, got {self.mitsuba_rays}")
 
     def decided(self, decisions: Iterable[Decision]) -> RenderSettings:
         """With decisions in place of what was left to scene and flight."""
@@ -101,7 +117,8 @@ class RenderSettings:
     @property
     def switches(self) -> Switches:
         """Of the effects of light."""
-        return Switches(*map(self.is_on, (NEAR_FIELD, FRESNEL, SECOND_BOUNCE, TILT, DOUBLING, SHADOW)))
+        first = (NEAR_FIELD, FRESNEL, SECOND_BOUNCE, TILT, DOUBLING, SHADOW)
+        return Switches(*map(self.is_on, (*first, CURVATURE, INTERIOR, SUN_GLARE, OCCLUSION, SKY_OCCLUSION)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,7 +138,7 @@ class Photograph:
     panel
         1 + number of the panel, 0 for none.
     in_camera
-        Effects that it gets when it is developed: `VIGNETTING`, `NOISE`.
+        Effects that it gets when it is developed: `SUN_GLARE`, `VIGNETTING`, `NOISE`.
     seed
         Of the noise.
     """
@@ -153,25 +170,29 @@ class Renderer:
         self._settings = settings
         self._tracer = Tracer(scene, settings.switches, environment_rows=settings.environment_rows)
 
-    def render(self, photo: PosedPhoto, seed: int = 0) -> Photograph:
+    def render(self, photo: PosedPhoto, seed: int = 0, moved_enu_m: Array | None = None) -> Photograph:
         """Take a photograph; the same for any number of threads.
 
         Parameters
         ----------
         seed
             Of the noise that the photograph gets when it is developed.
+        moved_enu_m
+            How far the camera moves while its shutter is open, shape (3,); its pose is that of the middle.
         """
         if not self._settings.is_on(DISTORTION):
             photo = replace(photo, intrinsics=photo.intrinsics.straight())
         middles = self._middles(photo)
         samples = self._settings.samples
-        if samples == "auto":
+        if moved_enu_m is not None and np.any(moved_enu_m) and self._settings.is_on(MOTION_BLUR):
+            self._blur(photo, middles, moved_enu_m)
+        elif samples == "auto":
             rough = np.flatnonzero(_needs_detail(middles.linear, middles.panel))
             self._refine(photo, middles, rough, FINE)
         elif samples > 1:
             everywhere = np.arange(middles.panel.size)
             self._refine(photo, middles, everywhere, samples)
-        in_camera = frozenset(filter(self._settings.is_on, (VIGNETTING, NOISE)))
+        in_camera = frozenset(filter(self._settings.is_on, (SUN_GLARE, VIGNETTING, NOISE)))
         return replace(middles, in_camera=in_camera, seed=seed)
 
     def _middles(self, photo: PosedPhoto) -> Photograph:
@@ -196,29 +217,60 @@ class Renderer:
         run_chunks(work, chunks(height * width, RAYS_AT_ONCE))
         return taken
 
-    def _refine(self, photo: PosedPhoto, taken: Photograph, pixels: NDArray[np.int64], side: int) -> None:
+    def _blur(self, photo: PosedPhoto, taken: Photograph, moved_enu_m: Array) -> None:
+        """Put the mean over area and exposure into all pixels over which detail passes."""
+        way = moved_px(photo, moved_enu_m, taken.depth_m)
+        window = windows(*way)
+        samples, n = self._settings.samples, n_times(*way, window)
+        rough = varies(taken.linear, taken.panel, window, DETAIL) if samples == "auto" else np.ones(n.shape, np.bool_)
+        for count in np.unique(n).tolist():
+            pixels = np.flatnonzero(rough & (n == count))
+            self._refine(photo, taken, pixels, FINE if samples == "auto" else samples, moved_enu_m, count)
+
+    def _refine(
+        self,
+        photo: PosedPhoto,
+        taken: Photograph,
+        pixels: NDArray[np.int64],
+        side: int,
+        moved_enu_m: Array | None = None,
+        n_moments: int = 1,
+    ) -> None:
         """Put the mean over `side` x `side` rays, evenly over the pixel's area, into pixels, shape (n,).
 
-        Rays at random places within those parts scored 2 to 7 dB less against the area's average.
+        Rays at random places within those parts scored 2 to 7 dB less against the area's average. Of a camera that
+        moves, each part's rays are sent at so many moments.
         """
         width = photo.intrinsics.width_px
         linear, diffuse, reflection = (a.reshape(-1, 3) for a in (taken.linear, taken.diffuse, taken.reflection))
         parts = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(1, -1, 2)
+        shifts = None
+        if moved_enu_m is not None:
+            parts = np.repeat(parts, n_moments, axis=1)
+            shifts = times(side, n_moments).reshape(-1, 1) * moved_enu_m
 
         def work(start: int, stop: int) -> None:
             chosen = pixels[start:stop]
             corners: Array = np.stack([chosen % width, chosen // width], axis=1).astype(np.float64)
             places = np.asarray(corners[:, None] + (parts + 0.5) / side, np.float64)
-            light, _ = self._light(photo, places.reshape(-1, 2), side)
+            moved = None if shifts is None else np.tile(shifts, (len(chosen), 1))
+            light, _ = self._light(photo, places.reshape(-1, 2), side, moved)
             diffuse[chosen] = light.diffuse.reshape(len(chosen), -1, 3).mean(axis=1)
             reflection[chosen] = light.reflection.reshape(len(chosen), -1, 3).mean(axis=1)
             linear[chosen] = diffuse[chosen] + reflection[chosen]
 
-        run_chunks(work, chunks(len(pixels), max(1, RAYS_AT_ONCE // (side * side))))
+        run_chunks(work, chunks(len(pixels), max(1, RAYS_AT_ONCE // parts.shape[1])))
 
-    def _light(self, photo: PosedPhoto, places_px: Array, side: int) -> tuple[Light, Array]:
-        """Light at places in the picture, shape (n, 2), and the rays' cosines with the optical axis, shape (n,)."""
+    def _light(
+        self, photo: PosedPhoto, places_px: Array, side: int, moved_enu_m: Array | None = None
+    ) -> tuple[Light, Array]:
+        """Light at places in the picture, shape (n, 2), and the rays' cosines with the optical axis, shape (n,).
+
+        `moved_enu_m`, shape (n, 3), is how far the camera is from its pose.
+        """
         origins, directions = photo.rays(places_px)
+        if moved_enu_m is not None:
+            origins = origins + moved_enu_m
         beam_rad = 1.0 / (side * math.sqrt(photo.intrinsics.fx_px * photo.intrinsics.fy_px))
         return self._tracer.trace(origins, directions, beam_rad), directions @ photo.pose.forward_enu
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -14,9 +14,8 @@ import numpy as np
 from planning.effects import Decision
 from planning.errors import InputError
 from planning.json_file import expect_format, read_json, write_atomically
-from reconstruction.cameras import PosedPhoto
+from reconstruction.scenes.photographers import PhotoJob
 from reconstruction.scenes.record import Scene
-from reconstruction.scenes.renderer import RenderSettings
 
 SCENE_PHOTOS_FORMAT = "reflight-scene-photos/1"
 RUN_FILE = "scene.json"
@@ -24,7 +23,7 @@ RUN_FILE = "scene.json"
 Files = dict[str, dict[str, str]]
 """For each complete photo, SHA-256 of its files by their paths in the folder."""
 
-SAME = ("made_from", "settings", "camera", "photos", "scene", "seed", "scene_sha256")
+SAME = ("made_from", "settings", "taking", "camera", "photos", "scene", "seed", "scene_sha256")
 """What two runs must have in common to be one; what says most to a user comes first."""
 
 LONGEST = 60
@@ -34,22 +33,17 @@ RunRecord = dict[str, Any]
 """Content of `scene.json` but for what changes while it is made."""
 
 
-def run_record(
-    scene: Scene,
-    photos: Sequence[PosedPhoto],
-    settings: RenderSettings,
-    decisions: Sequence[Decision],
-    made_from: Mapping[str, Any],
-) -> RunRecord:
+def run_record(job: PhotoJob, decisions: Sequence[Decision]) -> RunRecord:
     """What a run is made from; the cameras of all photos are alike."""
-    lens = photos[0].intrinsics
+    scene, lens = job.scene, job.photos[0].intrinsics
     record = {
         "format": SCENE_PHOTOS_FORMAT,
         "scene": scene.name,
         "seed": scene.seed,
-        "made_from": dict(made_from),
+        "made_from": dict(job.made_from),
         "scene_sha256": checksum(scene),
-        "settings": asdict(settings),
+        "settings": asdict(job.settings),
+        "taking": asdict(job.taking),
         "effects": [asdict(decision) for decision in decisions],
         "camera": asdict(lens),
         "photos": [
@@ -58,12 +52,28 @@ def run_record(
                 "taken_at": None if photo.taken_at is None else photo.taken_at.isoformat(),
                 "position_enu_m": photo.pose.position_enu_m.tolist(),
                 "cam_from_enu": photo.pose.cam_from_enu.tolist(),
+                **asdict(moment),
             }
-            for photo in photos
+            for photo, moment in zip(job.photos, job.moments, strict=True)
         ],
     }
     # As it will be read back: lists in place of tuples.
     return dict(json.loads(json.dumps(record, allow_nan=False)))
+
+
+def captures_record(job: PhotoJob) -> dict[str, Any]:
+    """By photo: how it was exposed, and what it tells of its pose."""
+    return {
+        photo.name: {
+            "exposure": capture.exposure,
+            "exposure_s": capture.exposure_s,
+            "moved_enu_m": capture.moved_enu_m.tolist(),
+            "told_position_enu_m": capture.told.position_enu_m.tolist(),
+            "told_cam_from_enu": capture.told.cam_from_enu.tolist(),
+            "told_higher_m": capture.told_higher_m,
+        }
+        for photo, capture in zip(job.photos, job.captures, strict=True)
+    }
 
 
 def checksum(scene: Scene) -> str:
@@ -90,22 +100,31 @@ def _parts(value: Any) -> Iterator[bytes]:
         yield repr(value).encode()
 
 
+def check_folder(folder: Path) -> None:
+    """Say before anything is built for it that photos cannot go into a folder.
+
+    Raises
+    ------
+    InputError
+        It is a file, or holds something else.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: expected a folder, found a file; name a folder for the photos")
+    if folder.exists() and not (folder / RUN_FILE).is_file() and any(folder.iterdir()):
+        raise InputError(f"{folder}: is not empty, and has no {RUN_FILE} of photos to go on with; name a new folder")
+
+
 def kept_photos(folder: Path, run: RunRecord) -> Files:
     """Photos of the same run that are complete in the folder, with their files.
 
     Raises
     ------
     InputError
-        The folder holds something else, or photos of another run.
+        As for `check_folder`, or the folder holds photos of another run.
     """
+    check_folder(folder)
     path = folder / RUN_FILE
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder}: expected a folder, found a file; name a folder for the photos")
     if not path.is_file():
-        if folder.exists() and any(folder.iterdir()):
-            raise InputError(
-                f"{folder}: is not empty, and has no {RUN_FILE} of photos to go on with; name a new folder"
-            )
         return {}
     found = read_json(path)
     expect_format(found, SCENE_PHOTOS_FORMAT, path)
@@ -160,5 +179,6 @@ def write_run(folder: Path, run: RunRecord, files: Files, is_complete: bool = Fa
     InputError
         It cannot be written.
     """
-    content = run | {"complete": is_complete, "files": files}
+    # Sorted: photos that are rendered side by side are done in any order.
+    content = run | {"complete": is_complete, "files": dict(sorted(files.items()))}
     write_atomically(folder / RUN_FILE, json.dumps(content, indent=1).encode())

@@ -1,6 +1,7 @@
 """`scene`: what it lists, renders and refuses."""
 
 import json
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -121,6 +122,9 @@ def test_views_are_planned_where_none_are_named_and_the_plan_is_kept(reflight, t
         (("planar", "--views", 0), "--views: expected 1 to 20000"),
         (("planar", "--points", -1), "--points: expected 0 or more"),
         (("planar", "--jobs", 0), "--jobs: expected 1 or more"),
+        (("planar", "--jobs", 2, "--cluster", "tcp://10.0.0.5:8786"), "--jobs is for this machine"),
+        (("planar", "--rays", 8), "--rays is for Mitsuba; add --renderer mitsuba"),
+        (("planar", "--renderer", "mitsuba", "--rays", 0), "rays: expected 1 to 1048576 through each pixel"),
         (("planar", "--seed", -1), "--seed: expected 0 to"),
         (("planar", "--tolerance", 0), "tolerance: expected"),
         (("planar", "--effects", "rain=on"), "names are near-field-reflection, fresnel"),
@@ -142,10 +146,26 @@ def test_what_cannot_be_rendered_is_said_in_one_line_and_nothing_is_written(
     assert not (tmp_path / "out").exists()
 
 
-def test_a_folder_of_something_else_is_left_alone(render, pane, tmp_path):
+def test_mitsuba_is_asked_for_before_anything_else_is_done(reflight, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "mitsuba", None)
+    failed = reflight("scene", "render", "planar", "-o", tmp_path / "out", "--renderer", "mitsuba")
+    assert "Mitsuba is not installed; install it (pip install 'reflight[mitsuba]')" in failed.error
+    assert not (tmp_path / "out").exists()
+
+
+def test_photos_by_mitsuba_are_no_part_of_a_run_without_it(render, pane):
+    pytest.importorskip("mitsuba", reason="the optional extra 'mitsuba' is not installed")
+    judged = ("--renderer", "mitsuba", "--rays", 1)
+    assert render("--plan", pane / "plan.json", *judged, "--json").json["photos"] == 6
+    assert render("--plan", pane / "plan.json", *judged, "--json").json["kept"] == 6
+    assert "settings.mitsuba_rays is 1 there" in render("--plan", pane / "plan.json").error
+
+
+def test_a_folder_of_something_else_is_left_alone_whatever_the_scene(render, reflight, pane, tmp_path):
     (tmp_path / "photos").mkdir()
     (tmp_path / "photos" / "letter.txt").write_text("Dear")
     assert "is not empty, and has no scene.json" in render("--plan", pane / "plan.json").error
+    assert "is not empty" in reflight("scene", "render", "nowhere", "-o", tmp_path / "photos").error
     assert [path.name for path in (tmp_path / "photos").iterdir()] == ["letter.txt"]
 
 
@@ -154,3 +174,60 @@ def test_views_inside_buildings_opposite_are_told(reflight, pane, changed, tmp_p
     done = reflight("scene", "render", pane / "site.json", "--plan", plan, "-o", tmp_path / "out", *QUICK)
     assert done.status == 0, done.err
     assert "stand inside buildings opposite" in done.err
+
+
+def test_a_camera_file_says_how_photos_are_taken(render, flown, tmp_path):
+    camera = tmp_path / "camera.toml"
+    camera.write_text("speed_m_s = 30.0\nshutter_s = 0.02\ndistortion = [-0.1, 0.02, 0, 0, 0]\n")
+    out = tmp_path / "photos"
+    done = render("--flight", flown, "--camera", camera, "--effects", "motion-blur=on", "--json", out=out)
+    assert done.status == 0, done.err
+    assert {effect["effect"]: effect["on"] for effect in done.json["effects"]}["motion blur"]
+    record = json.loads((out / "scene.json").read_text())
+    assert record["taking"]["speed_m_s"] == 30.0
+    for photo in record["photos"]:
+        assert np.linalg.norm(photo["velocity_enu_m_s"]) == pytest.approx(30.0)
+        assert np.linalg.norm(record["captures"][photo["name"]]["moved_enu_m"]) == pytest.approx(0.6)
+    assert {photo.exposure_s for photo in read_photos(out / "images").photos} == {0.02}
+
+
+def test_a_camera_file_with_a_mistake_is_refused_before_anything_is_written(render, tmp_path):
+    camera = tmp_path / "camera.toml"
+    camera.write_text("shutter = 0.02\n")
+    failed = render("--views", 1, "--camera", camera)
+    assert failed.status == 1
+    assert "shutter: no such setting; known are: shutter_s" in failed.err
+    camera.write_text("distortion = [-0.6, 0, 0, 0, 0]\n")
+    assert "camera.toml: distortion: [-0.6, 0.0, 0.0, 0.0, 0.0] folds the picture" in render("--camera", camera).err
+    assert not (tmp_path / "photos").exists()
+
+
+def test_a_cluster_renders_the_photos_that_one_process_renders(reflight, render, pane, look, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    render("--plan", pane / "plan.json")
+    arguments = (
+        "scene",
+        "render",
+        pane / "site.json",
+        "-o",
+        tmp_path / "other",
+        "--look",
+        look,
+        *QUICK[:2],
+        *QUICK[4:],
+    )
+    assert "no Dask scheduler answers at nowhere" in reflight(*arguments, "--cluster", "nowhere").error
+    assert not (tmp_path / "other").exists()
+    workers = {"threads_per_worker": 1, "processes": False, "dashboard_address": ":0"}
+    with distributed.LocalCluster(n_workers=1, **workers) as cluster:
+        done = reflight(*arguments, "--plan", pane / "plan.json", "--cluster", cluster.scheduler_address)
+    assert done.status == 0, done.err
+    assert (tmp_path / "other" / "scene.json").read_bytes() == (tmp_path / "photos" / "scene.json").read_bytes()
+
+
+def test_a_plan_without_views_is_refused(render, changed, pane, tmp_path):
+    plan = changed(pane / "plan.json", "viewpoints", [])
+    content = json.loads(plan.read_text())
+    plan.write_text(json.dumps(content | {"sorties": []}))
+    assert "there are no views to photograph" in render("--plan", plan).error
+    assert not (tmp_path / "photos").exists()

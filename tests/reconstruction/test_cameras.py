@@ -107,3 +107,9 @@ def test_impossible_cameras_are_refused(bad: dict[str, float]) -> None:
 def test_a_pose_that_is_no_rotation_is_refused() -> None:
     with pytest.raises(ValueError, match="rotation"):
         Pose(np.zeros(3), np.diag([1.0, 1.0, 2.0]))
+
+
+def test_a_bent_camera_has_no_rays_for_no_pixels() -> None:
+    bent = Intrinsics(64, 48, 60.0, 60.0, 32.0, 24.0, (-0.1, 0.0, 0.0, 0.0, 0.0))
+    assert bent.rays(np.zeros((0, 2))).shape == (0, 3)
+    assert bent.pixels(np.zeros((0, 3))).shape == (0, 2)

@@ -12,6 +12,8 @@ from planning.errors import InputError
 if TYPE_CHECKING:
     from groundstation.services.scene_photos import RenderedScene, SceneWish
 
+DEFAULT_RAYS = 64
+
 EPILOG = """views (without any of them 24 are planned):
   --plan PLAN      those of a plan, by its camera
   --flight FLIGHT  where photos of a flight were really taken; with --plan by its camera, else by --profile's
@@ -28,6 +30,8 @@ A run that was interrupted goes on where it stopped when the same is asked for a
 examples:
   scene render planar -o planar.photos --views 12 --width 512
   scene render office.site.json --plan office.plan.json -o office.photos
+  scene render office.site.json --plan office.plan.json -o office.photos --camera m3e.toml
+  scene render court -o judged.photos --views 2 --width 256 --renderer mitsuba --rays 256
   scene render office.site.json --flight office.flight.json --plan office.plan.json -o flown.photos --seed 3
 """
 
@@ -56,12 +60,21 @@ def add_parser(subparsers: Any) -> None:
     add("--views", type=int, metavar="N", help="number of views to plan (default 24)")
     add_profile_argument(render)
     add("--look", type=Path, metavar="FILE", help="TOML file with glass, frames, surroundings and light of a site")
+    add("--camera", type=Path, metavar="FILE", help="TOML file with shutter, speed, exposure, lens and pose errors")
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
     add("--width", type=int, default=1024, metavar="PX", help="of the photos (default 1024)")
     add("--points", type=int, default=100_000, metavar="N", help="points that reconstruction starts from")
     add("--effects", action="append", default=[], metavar="WISH", help="auto, none, all, or NAME=on|off|auto")
     add("--tolerance", type=number, default=1.0, metavar="X", help="times each effect's own tolerance (default 1)")
+    add(
+        "--renderer",
+        choices=("embedded", "mitsuba"),
+        default="embedded",
+        help="what makes the light (default embedded)",
+    )
+    add("--rays", type=int, metavar="N", help=f"through each pixel, by Mitsuba (default {DEFAULT_RAYS})")
     add("--jobs", type=int, metavar="N", help="photos rendered side by side (default: one for every four cores)")
+    add("--cluster", metavar="ADDRESS", help="render on a Dask cluster, such as tcp://10.0.0.5:8786")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -86,7 +99,12 @@ def run_render(options: argparse.Namespace) -> int:
     wish = _wish(options)
     if options.jobs is not None and options.jobs < 1:
         raise InputError(f"--jobs: expected 1 or more, got {options.jobs}")
-    rendered = run_job("scene", lambda context: photograph_files(wish, options.out, options.jobs, context))
+    if options.jobs is not None and options.cluster is not None:
+        raise InputError("--jobs is for this machine; leave it out, or --cluster")
+    rendered = run_job(
+        "scene",
+        lambda context: photograph_files(wish, options.out, options.jobs, context, address=options.cluster),
+    )
     if options.json:
         print_json(rendered_summary(rendered))
     else:
@@ -100,6 +118,9 @@ def _wish(options: argparse.Namespace) -> SceneWish:
     from reconstruction.scenes.renderer import RenderSettings
 
     wishes = effect_wishes(options.effects, EFFECTS)
+    if options.rays is not None and options.renderer != "mitsuba":
+        raise InputError("--rays is for Mitsuba; add --renderer mitsuba, or leave it out")
+    rays = DEFAULT_RAYS if options.rays is None else options.rays
     with in_words_of_options():
         return SceneWish(
             scene=options.scene,
@@ -108,10 +129,15 @@ def _wish(options: argparse.Namespace) -> SceneWish:
             n_views=options.views,
             profile_id=options.profile,
             look=options.look,
+            camera=options.camera,
             seed=checked_seed(options.seed),
             width_px=options.width,
             n_points=options.points,
-            settings=RenderSettings(wishes=wishes, tolerance=options.tolerance),
+            settings=RenderSettings(
+                wishes=wishes,
+                tolerance=options.tolerance,
+                mitsuba_rays=rays if options.renderer == "mitsuba" else None,
+            ),
         )
 
 
