@@ -30,12 +30,28 @@ def phrasebook() -> Phrasebook:
         project,
         refine,
         report,
+        scenes,
         site,
         site_import,
         stages,
     )
 
-    tables = (dji, fly, insight, mission, parts, photos, plan, project, refine, report, site, site_import, stages)
+    tables = (
+        dji,
+        fly,
+        insight,
+        mission,
+        parts,
+        photos,
+        plan,
+        project,
+        refine,
+        report,
+        scenes,
+        site,
+        site_import,
+        stages,
+    )
     return Phrasebook(source for table in tables for source in table.SENTENCES)
 
 

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from groundstation.gui.desk import Desk
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.questions import Answer, Questions
+from groundstation.gui.screenshots_camera import camera_states, rendered_photo
 from groundstation.gui.stage import StagePage
 from groundstation.services.document import Item, ItemKind
 from groundstation.services.live_sortie import TakeOff
@@ -216,6 +217,7 @@ class _Photographer(QObject):
         self._take("plan-viewpoint")
         window.stage.show_page(StagePage.CAMERA)
         self._take("plan-camera")
+        camera_states(self._desk, self._take, self._wait_until_idle)
         window.stage.show_page(StagePage.SCENE)
         site = workspace.document.site
         assert site is not None
@@ -306,6 +308,8 @@ class _Photographer(QObject):
                 desk.window.show_tab(tab)
                 self._wait_until_idle()
                 self._take(f"{name}-{tab}")
+            desk.window.show_tab("plan")
+            rendered_photo(desk, f"{name}-photo", self._take, self._wait_until_idle)
         desk.choose(language=Language.ENGLISH)
 
     def _photos(self) -> None:

@@ -153,9 +153,11 @@ class Stage(QWidget):
     def camera_page(self) -> CameraPreview:
         """The camera preview; made when it is first wanted."""
         if self._camera is None:
+            from groundstation.gui.camera_preview.photo_desk import PhotoDesk
             from groundstation.gui.camera_preview.preview import CameraPreview
 
             self._camera = CameraPreview(self)
+            self.photo_desk = PhotoDesk(self._workspace, self._camera, self)
             self._camera.set_units(self._workspace.units)
             self._camera.viewpointShown.connect(self._follow_camera)
             self._pages.addWidget(self._camera)

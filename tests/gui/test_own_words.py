@@ -22,6 +22,7 @@ from groundstation.gui.sentences import (
     project,
     refine,
     report,
+    scenes,
     site,
     site_import,
     stages,
@@ -44,7 +45,7 @@ from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
-FROM_SOURCES = (dji, fly, insight, mission, photos, plan, project, refine, report, site, site_import, stages)
+FROM_SOURCES = (dji, fly, insight, mission, photos, plan, project, refine, report, scenes, site, site_import, stages)
 """Tables of whole sentences; `parts` holds words and what Python says."""
 
 NOT_SHOWN = {
@@ -66,6 +67,7 @@ NOT_SHOWN = {
     "reconstruction/panels/given.py": "panels files are read on the command line",
     "reconstruction/panels_file.py": "panels files are read on the command line",
     "reconstruction/rectify/polynomial.py": "the polynomial is asked for on the command line",
+    "reconstruction/scenes/taking.py": "how photos are taken is read from files on the command line",
     "reconstruction/segmentation/parameters.py": "settings are read from files on the command line",
     "reconstruction/segmentation/pictures.py": "the window decodes its photos itself",
     "missions/simulator/ardupilot_scheduler.py": "texts of an autopilot, which no vehicle translates",
@@ -117,6 +119,10 @@ NO_SENTENCE = {
     "said on the command line only": (
         *("{0}; what was flown before is in {1}", "sortie {0}: ", ", asked for"),
         "{0}nothing was recorded: the vehicle sent no positions in flight",
+        "effects are decided by the photos of a flight; expected at least one, got none",
+        *("there is no effect '{0}'; expected one of {1}", "tolerance: expected a factor above 0, got {0}"),
+        *("samples: expected 1 to 32 along a pixel's side, or auto, got {0}", "expected 2 to {0}, got {1}"),
+        "rays: expected 1 to {0} through each pixel, got {1}",
         "the site has no building mesh, and panels are found on one; name a mesh instead",
         "the site would be written over the file it is imported from; name another file",
         *(

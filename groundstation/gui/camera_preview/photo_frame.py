@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QRect
+from PySide6.QtCore import QRect, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
@@ -11,7 +11,15 @@ from groundstation.gui.view3d.canvas import Canvas
 
 
 class PhotoFrame(QWidget):
-    """Canvas and overlay in the middle, bars beside or above them."""
+    """Canvas and overlay in the middle, bars beside or above them.
+
+    Signals
+    -------
+    fitted()
+        The picture has another size.
+    """
+
+    fitted = Signal()
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -38,3 +46,4 @@ class PhotoFrame(QWidget):
         self.canvas.setGeometry(place)
         self.overlay.setGeometry(place)
         self.overlay.raise_()
+        self.fitted.emit()

@@ -2,40 +2,39 @@
 
 from __future__ import annotations
 
-import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QElapsedTimer, QEvent, Qt, QTimer, Signal
-from PySide6.QtGui import QHideEvent, QShortcut
+from PySide6.QtGui import QHideEvent, QImage, QShortcut, QShowEvent
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
 from groundstation.gui.camera_preview.flight import CameraFlight, CameraPose, camera_flight
+from groundstation.gui.camera_preview.panel_lines import panel_lines
+from groundstation.gui.camera_preview.photo_box import PhotoBox
+from groundstation.gui.camera_preview.photo_figures import figures, place_text
 from groundstation.gui.camera_preview.photo_frame import PhotoFrame
+from groundstation.gui.camera_preview.photo_overlay import Lines
 from groundstation.gui.camera_preview.photo_scene import (
     BACKDROP,
+    COVERED_PX,
+    PANEL_OUTLINE,
     covered_outlines,
     panel_colours,
     panel_faces,
     panel_outlines,
 )
-from groundstation.gui.camera_preview.seen_panels import (
-    NearestPanel,
-    SiteSight,
-    covered_by_view,
-    nearest_covered,
-    site_sight,
-)
+from groundstation.gui.camera_preview.seen_panels import SiteSight, covered_by_view, site_sight
 from groundstation.gui.own_words import own_words
 from groundstation.gui.theme import colours
 from groundstation.gui.view3d.canvas import Canvas, image_array
 from groundstation.gui.view3d.layers import Drawable, Layer
 from groundstation.gui.view3d.pinhole import Pinhole, photo_pinhole
 from groundstation.gui.view3d.site_scene import SiteScene, site_scene
-from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit
+from groundstation.services.units import UnitSystem, minutes_text
 from planning.errors import InfeasibleError
-from planning.frames import heading_difference_rad
-from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
+from planning.plan import Camera, Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.site import SiteModel
 
 SPEEDS = (1, 2, 5, 10, 20)
@@ -49,16 +48,27 @@ STEPS_PER_S = 10
 SKY_LIGHT, SKY_DARK = "#dbe9f4", "#27323b"
 
 
+class Shot(NamedTuple):
+    """A photo that is to be seen as it will be: of what, by which camera, from where."""
+
+    site: SiteModel
+    camera: Camera
+    pose: CameraPose
+
+
 class CameraPreview(QWidget):
-    """What the camera sees from a viewpoint, and on the way.
+    """What the camera sees from a viewpoint, and on the way: drawn as lines, or as a photo that others render.
 
     Signals
     -------
     viewpointShown(str)
         A fly-through has come to this viewpoint.
+    shotChanged()
+        Another photo may be wanted than before, or none.
     """
 
     viewpointShown = Signal(str)  # noqa: N815  (Qt's own way of naming)
+    shotChanged = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -72,8 +82,11 @@ class CameraPreview(QWidget):
         self._pose: CameraPose | None = None
         self._time_s = 0.0
         self._units = UnitSystem.METRIC
+        self.box = PhotoBox()
+        self._is_seen = False
+        self._picture: QImage | None = None
+        self._pictured: NDArray[np.int64] = np.zeros(0, np.int64)
         self._frame = PhotoFrame(self)
-        self._text = QLabel()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._advance)
         self._clock = QElapsedTimer()
@@ -83,8 +96,14 @@ class CameraPreview(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
-        layout.addWidget(self._frame, 1)
+        above = QHBoxLayout()
+        above.addWidget(self._frame, 1)
+        above.addWidget(self.box)
+        layout.addLayout(above, 1)
         layout.addLayout(self._controls())
+        self._frame.fitted.connect(self._draw_pose)
+        self.box.valueChanged.connect(lambda _is_photo: self._draw_pose())
+        self.box.outlinesChanged.connect(self._draw_picture)
         self._dress()
         self._update_controls()
 
@@ -167,8 +186,33 @@ class CameraPreview(QWidget):
         position, heading, pitch = self._pose
         return photo_pinhole(position, heading, pitch, self._plan.camera, float(self._frame.canvas.width()))
 
+    def shot(self) -> Shot | None:
+        """The photo that is to be seen; None where lines are, nobody looks, or a flight plays."""
+        if not (self.box.value() and self._is_seen) or self.is_playing():
+            return None
+        if self._pose is None or self._plan is None or self._scene is None:
+            return None
+        return Shot(self._scene.model, self._plan.camera, self._pose)
+
+    def width_px(self) -> int:
+        """Pixels of the screen that a photo is shown wide."""
+        return int(self._frame.canvas.width() * self.devicePixelRatio())
+
+    def show_picture(self, picture: QImage | None, panels: NDArray[np.int64]) -> None:
+        """Show a rendered photo, with the numbers of the panels in it, shape (k,); None shows lines again."""
+        self._picture, self._pictured = picture, panels
+        self._draw_picture()
+
+    def show_note(self, text: str) -> None:
+        """Say something about the photo, in the picture."""
+        self._frame.overlay.show_note(text)
+
+    def note(self) -> str:
+        """What is said about the photo."""
+        return self._frame.overlay.note()
+
     def picture(self) -> NDArray[np.uint8]:
-        """The photo without what is drawn over it, shape (height, width, 3)."""
+        """The lines without what is drawn over them, shape (height, width, 3)."""
         return self._frame.canvas.picture()
 
     def screenshot(self) -> NDArray[np.uint8]:
@@ -233,10 +277,18 @@ class CameraPreview(QWidget):
 
     # Qt
 
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Somebody looks."""
+        super().showEvent(event)
+        self._is_seen = True
+        self.shotChanged.emit()
+
     def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802
-        """Nobody looks: stop the flight."""
+        """Nobody looks: stop the flight, render nothing."""
         super().hideEvent(event)
+        self._is_seen = False
         self._play.setChecked(False)
+        self.shotChanged.emit()
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Follow the theme."""
@@ -248,6 +300,7 @@ class CameraPreview(QWidget):
             self._dress()
             self._draw_backdrop()
             self._paint_panels(covered)
+            self._draw_picture()
 
     # Drawing
 
@@ -302,42 +355,33 @@ class CameraPreview(QWidget):
         if view is None:
             text = self.tr("No plan yet: make or open one, then choose a viewpoint.")
             self._frame.overlay.show_photo(None, text)
-            return
-        self._frame.canvas.look_through(view)
-        self._frame.overlay.show_photo(view, self._figures(view))
+        else:
+            self._frame.canvas.look_through(view)
+            self._frame.overlay.show_photo(view, self._figures(view))
+        self.shotChanged.emit()
+        if self._picture is not None:
+            self._draw_picture()
+
+    def _draw_picture(self) -> None:
+        """The rendered photo, with outlines of the panels in it where they are wanted."""
+        view, sight, look = self.pinhole(), self._sight, colours()
+        lines = []
+        if self._picture is not None and view is not None and sight is not None and self.box.outlines.isChecked():
+            is_covered = self._covered[self._pictured]
+            for panels, colour, width in (
+                (self._pictured[~is_covered], PANEL_OUTLINE, 1.0),
+                (self._pictured[is_covered], look.open, COVERED_PX),
+            ):
+                lines.append(Lines(panel_lines(sight.frames.corners[panels], view), colour, width))
+        self._frame.overlay.show_picture(self._picture, lines)
 
     def _figures(self, view: Pinhole) -> str:
         if self._sight is None or self._plan is None:
             return ""
-        nearest = nearest_covered(self._sight, self._plan, view.eye_enu_m, self._covered)
-        name = self._place_text()
-        if nearest is None:
-            return self.tr("{0}: covers no panel").format(name)
-        return self.tr("{0}: covers {1} panels\n{2}").format(
-            name, int(self._covered.sum()), self._nearest_text(nearest, view)
-        )
-
-    def _place_text(self) -> str:
-        if self._viewpoint is None:
-            return self.tr("before the first photo")
-        if self._pose is not None and _is_at(self._pose, self._viewpoint):
-            return self._viewpoint.id
-        return self.tr("on the way from {0}").format(self._viewpoint.id)
-
-    def _nearest_text(self, nearest: NearestPanel, view: Pinhole) -> str:
-        length, sampling = length_unit(self._units), sampling_unit(self._units)
-        width, height = (2.0 * half * nearest.distance_m for half in (view.half_width, view.half_height))
-        return self.tr(
-            "nearest panel {0}: {1} away, {2} per pixel, seen at {3:.0f}° from its normal\n"
-            "picture at this distance: {4} x {5}"
-        ).format(
-            self._panel_ids[nearest.panel],
-            length.text(nearest.distance_m),
-            sampling.text(nearest.sampling_m),
-            nearest.incidence_deg,
-            length.text(width),
-            length.text(height),
-        )
+        place = place_text(self._viewpoint, self._pose)
+        told = figures(self._sight, self._panel_ids, self._plan, view, self._covered, place, self._units)
+        # Over a photo the rest would hide what it is looked at for.
+        return told.partition("\n")[0] if self.box.value() else told
 
     # Playing
 
@@ -389,11 +433,13 @@ class CameraPreview(QWidget):
         flight = self._flight()
         if not is_playing or flight is None:
             self._timer.stop()
+            self.shotChanged.emit()
             return
         if self._time_s >= flight.duration_s:
             self._time_s = 0.0
         self._clock.start()
         self._timer.start(FRAME_MS)
+        self.shotChanged.emit()
 
     def _advance(self) -> None:
         self.advance(self._clock.restart() / 1000.0)
@@ -428,11 +474,3 @@ def _viewpoint_of(plan: Plan | None, viewpoint_id: str) -> Viewpoint | None:
     if plan is None or not plan.viewpoints:
         return None
     return next((found for found in plan.viewpoints if found.id == viewpoint_id), plan.viewpoints[0])
-
-
-def _is_at(pose: CameraPose, viewpoint: Viewpoint) -> bool:
-    """Whether a pose is that of a viewpoint, to a centimetre and a tenth of a degree."""
-    away_m = float(np.linalg.norm(pose.position_enu_m - np.array(viewpoint.position_enu_m)))
-    turned = heading_difference_rad(pose.heading_rad, math.radians(viewpoint.heading_deg))
-    tilted = pose.pitch_rad - math.radians(viewpoint.gimbal_pitch_deg)
-    return away_m < 0.01 and max(abs(float(turned)), abs(tilted)) < math.radians(0.1)

@@ -96,4 +96,10 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "{0}: done"),
     QT_TRANSLATE_NOOP("Sentences", "wind"),
     QT_TRANSLATE_NOOP("Sentences", "multipath"),
+    QT_TRANSLATE_NOOP("Sentences", "Fresnel"),
+    QT_TRANSLATE_NOOP("Sentences", "curvature"),
+    QT_TRANSLATE_NOOP("Sentences", "shadow"),
+    QT_TRANSLATE_NOOP("Sentences", "vignetting"),
+    QT_TRANSLATE_NOOP("Sentences", "noise"),
+    QT_TRANSLATE_NOOP("Sentences", "px"),
 )

@@ -893,6 +893,57 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
+    <name>EffectsWindow</name>
+    <message>
+        <source>Effects of the photo</source>
+        <translation>Effekte des Fotos</translation>
+    </message>
+    <message>
+        <source>Effect</source>
+        <translation>Effekt</translation>
+    </message>
+    <message>
+        <source>Simulated</source>
+        <translation>Simuliert</translation>
+    </message>
+    <message>
+        <source>on</source>
+        <translation>an</translation>
+    </message>
+    <message>
+        <source>off</source>
+        <translation>aus</translation>
+    </message>
+    <message>
+        <source>Size</source>
+        <translation>Größe</translation>
+    </message>
+    <message>
+        <source>Off below</source>
+        <translation>Aus unter</translation>
+    </message>
+    <message>
+        <source>Why</source>
+        <translation>Warum</translation>
+    </message>
+    <message>
+        <source>An effect is simulated where the picture would change by more than its limit without it: here a picture of {0} x {1} pixels. Not in previews, because it takes long: {2}.</source>
+        <translation>Ein Effekt wird simuliert, wo sich das Bild ohne ihn um mehr als seine Grenze ändern würde: hier ein Bild von {0} x {1} Pixeln. Nicht in der Vorschau, weil es lange dauert: {2}.</translation>
+    </message>
+    <message>
+        <source>{0:.3g} {1}</source>
+        <translation>{0:.3g} {1}</translation>
+    </message>
+    <message>
+        <source>No photo is shown.</source>
+        <translation>Es wird kein Foto gezeigt.</translation>
+    </message>
+    <message>
+        <source>The coarse picture has all effects of light; the scene is asked for the fine one.</source>
+        <translation>Das grobe Bild hat alle Effekte des Lichts; für das feine wird die Szene befragt.</translation>
+    </message>
+</context>
+<context>
     <name>ExportDialog</name>
     <message>
         <source>Export mission files</source>
@@ -1920,6 +1971,65 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>LightBox</name>
+    <message>
+        <source>Sun by direction</source>
+        <translation>Sonne nach Richtung</translation>
+    </message>
+    <message>
+        <source>Sun by date and time</source>
+        <translation>Sonne nach Zeit</translation>
+    </message>
+    <message>
+        <source>Say where the sun stands, or when the photo is taken</source>
+        <translation>Angeben, wo die Sonne steht oder wann das Foto entsteht</translation>
+    </message>
+    <message>
+        <source>Heading of the sun</source>
+        <translation>Richtung der Sonne</translation>
+    </message>
+    <message>
+        <source>Where the sun stands, clockwise from north</source>
+        <translation>Wo die Sonne steht, von Nord im Uhrzeigersinn</translation>
+    </message>
+    <message>
+        <source>Elevation of the sun</source>
+        <translation>Höhe der Sonne</translation>
+    </message>
+    <message>
+        <source>How high the sun stands above the horizon</source>
+        <translation>Wie hoch die Sonne über dem Horizont steht</translation>
+    </message>
+    <message>
+        <source>Date and time</source>
+        <translation>Datum und Uhrzeit</translation>
+    </message>
+    <message>
+        <source>By this computer&apos;s clock and time zone</source>
+        <translation>Nach Uhr und Zeitzone dieses Rechners</translation>
+    </message>
+    <message>
+        <source>Made-up street</source>
+        <translation>Erdachte Straße</translation>
+    </message>
+    <message>
+        <source>Buildings opposite, trees, cars and people, drawn at random; without them the building stands alone</source>
+        <translation>Häuser gegenüber, Bäume, Autos und Menschen, ausgelost; ohne sie steht das Gebäude allein</translation>
+    </message>
+    <message>
+        <source>Open a site first: the sun is looked for above it.</source>
+        <translation>Zuerst einen Standort öffnen: Die Sonne wird über ihm gesucht.</translation>
+    </message>
+    <message>
+        <source>Sun at {0:.0f}°, {1:.0f}°: below the horizon. No shadows, but a bright sky.</source>
+        <translation>Sonne bei {0:.0f}°, {1:.0f}°: untergegangen. Keine Schatten, aber heller Himmel.</translation>
+    </message>
+    <message>
+        <source>Sun at {0:.0f}°, {1:.0f}° high.</source>
+        <translation>Sonne bei {0:.0f}°, {1:.0f}° hoch.</translation>
+    </message>
+</context>
+<context>
     <name>LinkBand</name>
     <message>
         <source>LINK LOST. It is opened again; the aircraft goes on by itself.</source>
@@ -2640,6 +2750,76 @@ Blickrichtung: {3}</translation>
     <message>
         <source>The two are not the same yet.</source>
         <translation>Beide stimmen noch nicht überein.</translation>
+    </message>
+</context>
+<context>
+    <name>PhotoBox</name>
+    <message>
+        <source>Lines</source>
+        <translation>Linien</translation>
+    </message>
+    <message>
+        <source>Photo</source>
+        <translation>Foto</translation>
+    </message>
+    <message>
+        <source>Building, panels and what is covered, drawn at once</source>
+        <translation>Gebäude, Scheiben und was abgedeckt ist, sofort gezeichnet</translation>
+    </message>
+    <message>
+        <source>As photographed: what the glass will mirror from here</source>
+        <translation>Wie fotografiert: was das Glas von hier aus spiegeln wird</translation>
+    </message>
+    <message>
+        <source>Outlines</source>
+        <translation>Umrisse</translation>
+    </message>
+    <message>
+        <source>Panels&apos; outlines over the photo, thick where this view covers them</source>
+        <translation>Umrisse der Scheiben über dem Foto, dick, wo diese Aufnahme sie abdeckt</translation>
+    </message>
+    <message>
+        <source>Effects ...</source>
+        <translation>Effekte ...</translation>
+    </message>
+    <message>
+        <source>What is simulated in this photo, what is not, and why</source>
+        <translation>Was in diesem Foto simuliert ist, was nicht, und warum</translation>
+    </message>
+</context>
+<context>
+    <name>PhotoDesk</name>
+    <message>
+        <source>This site has no panels yet, and nothing to mirror in them.</source>
+        <translation>Dieser Standort hat noch keine Scheiben, in denen sich etwas spiegeln könnte.</translation>
+    </message>
+    <message>
+        <source>The photo waits for: {0}</source>
+        <translation>Das Foto wartet auf: {0}</translation>
+    </message>
+    <message>
+        <source>Render the photo</source>
+        <translation>Foto rendern</translation>
+    </message>
+    <message>
+        <source>The photo could not be rendered: {0}</source>
+        <translation>Das Foto ließ sich nicht rendern: {0}</translation>
+    </message>
+    <message>
+        <source>The photo was cancelled; choose Photo again to render it.</source>
+        <translation>Das Foto wurde abgebrochen; „Foto“ noch einmal wählen, um es zu rendern.</translation>
+    </message>
+    <message>
+        <source>The camera stands inside something here: a building opposite, a tree or an obstacle. Take the made-up street away, or move the viewpoint.</source>
+        <translation>Die Kamera steht hier in etwas darin: in einem Haus gegenüber, einem Baum oder Hindernis. Die erdachte Straße wegnehmen oder den Aufnahmepunkt verschieben.</translation>
+    </message>
+    <message>
+        <source>Coarse picture; the fine one follows.</source>
+        <translation>Grobes Bild; das feine folgt.</translation>
+    </message>
+    <message>
+        <source>{0} ({1:.0f} %)</source>
+        <translation>{0} ({1:.0f} %)</translation>
     </message>
 </context>
 <context>
@@ -5210,6 +5390,30 @@ Take it over?</source>
     <message>
         <source>multipath</source>
         <translation>Mehrwegeempfang</translation>
+    </message>
+    <message>
+        <source>Fresnel</source>
+        <translation>Fresnel</translation>
+    </message>
+    <message>
+        <source>curvature</source>
+        <translation>Wölbung</translation>
+    </message>
+    <message>
+        <source>shadow</source>
+        <translation>Schatten</translation>
+    </message>
+    <message>
+        <source>vignetting</source>
+        <translation>Randabdunklung</translation>
+    </message>
+    <message>
+        <source>noise</source>
+        <translation>Rauschen</translation>
+    </message>
+    <message>
+        <source>px</source>
+        <translation>px</translation>
     </message>
     <message>
         <source>sortie {0:n}</source>
@@ -8630,6 +8834,214 @@ Take it over?</source>
     <message>
         <source>photo &apos;{0}&apos;: expected a covariance, got a matrix that is none</source>
         <translation>Foto &apos;{0}&apos;: erwartet wurde eine Kovarianz, gefunden wurde eine Matrix, die keine ist</translation>
+    </message>
+    <message>
+        <source>building the scene</source>
+        <translation>Szene wird gebaut</translation>
+    </message>
+    <message>
+        <source>choosing what to simulate</source>
+        <translation>Effekte werden gewählt</translation>
+    </message>
+    <message>
+        <source>rendering the photo</source>
+        <translation>Foto wird gerendert</translation>
+    </message>
+    <message>
+        <source>near-field reflection</source>
+        <translation>Spiegelung des Nahen</translation>
+    </message>
+    <message>
+        <source>second bounce</source>
+        <translation>zweite Spiegelung</translation>
+    </message>
+    <message>
+        <source>panel tilt</source>
+        <translation>Neigung der Scheiben</translation>
+    </message>
+    <message>
+        <source>pane doubling</source>
+        <translation>doppelte Spiegelbilder</translation>
+    </message>
+    <message>
+        <source>interior see-through</source>
+        <translation>Blick in die Räume</translation>
+    </message>
+    <message>
+        <source>sun glare</source>
+        <translation>Sonnenblendung</translation>
+    </message>
+    <message>
+        <source>sky occlusion</source>
+        <translation>Verdeckung des Himmels</translation>
+    </message>
+    <message>
+        <source>lens distortion</source>
+        <translation>Verzeichnung</translation>
+    </message>
+    <message>
+        <source>exposure changes</source>
+        <translation>Belichtungswechsel</translation>
+    </message>
+    <message>
+        <source>position error</source>
+        <translation>Positionsfehler</translation>
+    </message>
+    <message>
+        <source>gimbal error</source>
+        <translation>Gimbalfehler</translation>
+    </message>
+    <message>
+        <source>grey levels</source>
+        <translation>Graustufen</translation>
+    </message>
+    <message>
+        <source>no photo shows glass</source>
+        <translation>kein Foto zeigt Glas</translation>
+    </message>
+    <message>
+        <source>the pictures are straight already</source>
+        <translation>die Bilder sind schon gerade</translation>
+    </message>
+    <message>
+        <source>the lens bends straight lines</source>
+        <translation>das Objektiv krümmt gerade Linien</translation>
+    </message>
+    <message>
+        <source>the lens loses {0} % of the light in the corners</source>
+        <translation>das Objektiv verliert {0} % des Lichts in den Ecken</translation>
+    </message>
+    <message>
+        <source>a white pixel holds {0} electrons</source>
+        <translation>ein weißes Pixel fasst {0} Elektronen</translation>
+    </message>
+    <message>
+        <source>with RTK</source>
+        <translation>mit RTK</translation>
+    </message>
+    <message>
+        <source>without RTK</source>
+        <translation>ohne RTK</translation>
+    </message>
+    <message>
+        <source>{0}, positions are off by {1} horizontally on each axis and {2} vertically</source>
+        <translation>{0} liegen Positionen waagerecht um {1} je Achse und senkrecht um {2} daneben</translation>
+    </message>
+    <message>
+        <source>headings are off by {0} degrees, pitch by {1}, roll by {2}</source>
+        <translation>Richtungen liegen um {0} Grad daneben, Neigungen um {1}, Rollwinkel um {2}</translation>
+    </message>
+    <message>
+        <source>{0} cm</source>
+        <translation>{0} cm</translation>
+    </message>
+    <message>
+        <source>the camera is held still for every photo</source>
+        <translation>die Kamera wird für jedes Foto stillgehalten</translation>
+    </message>
+    <message>
+        <source>no shutter opens</source>
+        <translation>kein Verschluss öffnet sich</translation>
+    </message>
+    <message>
+        <source>the camera moves up to {0} mm while the shutter is open; what is seen moves {1} px, what is mirrored {2} px</source>
+        <translation>die Kamera bewegt sich bis zu {0} mm, während der Verschluss offen ist; Gesehenes bewegt sich um {1} px, Gespiegeltes um {2} px</translation>
+    </message>
+    <message>
+        <source>one exposure is locked for all photos</source>
+        <translation>eine Belichtung gilt für alle Fotos</translation>
+    </message>
+    <message>
+        <source>photos would be exposed {0} to {1} stops apart from one exposure</source>
+        <translation>Fotos wären um {0} bis {1} Blendenstufen anders belichtet als mit einer Belichtung</translation>
+    </message>
+    <message>
+        <source>the sun stands {0} degrees high</source>
+        <translation>die Sonne steht {0} Grad hoch</translation>
+    </message>
+    <message>
+        <source>there are no rooms behind the panes</source>
+        <translation>hinter den Scheiben sind keine Räume</translation>
+    </message>
+    <message>
+        <source>panes let {0} % of the light through that comes from behind them</source>
+        <translation>die Scheiben lassen {0} % des Lichts durch, das von hinten kommt</translation>
+    </message>
+    <message>
+        <source>nothing near stands before the facade</source>
+        <translation>nichts Nahes steht vor der Fassade</translation>
+    </message>
+    <message>
+        <source>what is near hides {0} % of the facade</source>
+        <translation>Nahes verdeckt {0} % der Fassade</translation>
+    </message>
+    <message>
+        <source>there is nothing that light falls on</source>
+        <translation>es gibt nichts, worauf Licht fällt</translation>
+    </message>
+    <message>
+        <source>what is seen gets {0} % of the light of an open sky</source>
+        <translation>was zu sehen ist, bekommt {0} % des Lichts eines offenen Himmels</translation>
+    </message>
+    <message>
+        <source>panes are tilted by up to {0} degrees</source>
+        <translation>die Scheiben sind um bis zu {0} Grad geneigt</translation>
+    </message>
+    <message>
+        <source>the panes are flat</source>
+        <translation>die Scheiben sind eben</translation>
+    </message>
+    <message>
+        <source>panes turn by up to {0} degrees to their edges; mirror images appear {1} times as wide</source>
+        <translation>die Scheiben drehen sich zu ihren Rändern um bis zu {0} Grad; Spiegelbilder erscheinen {1}-mal so breit</translation>
+    </message>
+    <message>
+        <source>the panes are single</source>
+        <translation>die Scheiben sind einfach verglast</translation>
+    </message>
+    <message>
+        <source>sheets are {0} mm apart, the mirror images {1}</source>
+        <translation>die Gläser sind {0} mm auseinander, die Spiegelbilder {1}</translation>
+    </message>
+    <message>
+        <source>{0} m away</source>
+        <translation>{0} m entfernt</translation>
+    </message>
+    <message>
+        <source>as far as the sky</source>
+        <translation>so fern wie der Himmel</translation>
+    </message>
+    <message>
+        <source>the panes mirror nothing but the sky and the building itself</source>
+        <translation>die Scheiben spiegeln nichts als den Himmel und das Gebäude selbst</translation>
+    </message>
+    <message>
+        <source>{0} of the mirrored rays meet what is around, {1} m from the panes</source>
+        <translation>{0} der gespiegelten Strahlen treffen, was ringsum steht, {1} m von den Scheiben</translation>
+    </message>
+    <message>
+        <source>light falls on the panes at {0} to {1} degrees</source>
+        <translation>Licht fällt unter {0} bis {1} Grad auf die Scheiben</translation>
+    </message>
+    <message>
+        <source>{0} of the mirrored rays meet glass</source>
+        <translation>{0} der gespiegelten Strahlen treffen Glas</translation>
+    </message>
+    <message>
+        <source>there is no sun</source>
+        <translation>es scheint keine Sonne</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos see the sun, {2} its mirror image</source>
+        <translation>{0} von {1} Fotos sehen die Sonne, {2} ihr Spiegelbild</translation>
+    </message>
+    <message>
+        <source>no photo sees the sun or its mirror image</source>
+        <translation>kein Foto sieht die Sonne oder ihr Spiegelbild</translation>
+    </message>
+    <message>
+        <source>expected at most {0} panels, got {1}; render it in parts</source>
+        <translation>höchstens {0} Scheiben erwartet, gefunden {1}; in Teilen rendern</translation>
     </message>
 </context>
 <context>
