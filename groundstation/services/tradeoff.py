@@ -238,10 +238,15 @@ def write_results(
     folder: Path, stem: str, rows: Sequence[Mapping[str, Any]], title: str, panels: Sequence[Panel], axis: GapAxis
 ) -> tuple[str, str]:
     """Write a table and a picture into a folder; returns their names."""
+    write_rows(folder / f"{stem}.csv", rows)
+    draw(title, panels, axis, folder / f"{stem}.png")
+    return f"{stem}.csv", f"{stem}.png"
+
+
+def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Write a table; cells stay empty where a row lacks a column."""
     columns = list(dict.fromkeys(column for row in rows for column in row))
-    with (folder / f"{stem}.csv").open("w", encoding="utf-8", newline="") as file:
+    with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, columns, restval="")
         writer.writeheader()
         writer.writerows(rows)
-    draw(title, panels, axis, folder / f"{stem}.png")
-    return f"{stem}.csv", f"{stem}.png"

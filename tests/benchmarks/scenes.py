@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -23,6 +27,8 @@ AWAY_M = 14.0
 TRUTH_SAMPLES = 8
 SAMPLES: tuple[int, ...] = (1, 2, 3, 4)
 A_SECOND, NEAR_DB, FAR_DB = 1.0, 3.0, 0.1
+TOWER_PX, TOWER_PHOTOS, MEMORY_GB = 5280, 600, 4.0
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def measure(context: Context) -> Iterator[Row]:
@@ -30,10 +36,11 @@ def measure(context: Context) -> Iterator[Row]:
     size = QUICK_SIZE_PX if context.is_quick else SIZE_PX
     for name in QUICK_SCENES if context.is_quick else SCENES:
         scene = bundled_scene(name)
-        photo = _photo(scene, *size)
+        photo = facing_photo(scene, *size)
         truth = _grey(scene, photo, RenderSettings(samples=TRUTH_SAMPLES))
         yield from _samples(name, scene, photo, truth)
         yield from _near_field(name, scene, photo, truth)
+    yield from _tower(QUICK_SIZE_PX[0] if context.is_quick else TOWER_PX)
 
 
 def _samples(name: str, scene: Scene, photo: PosedPhoto, truth: NDArray[np.float64]) -> Iterator[Row]:
@@ -69,7 +76,29 @@ def _near_field(name: str, scene: Scene, photo: PosedPhoto, truth: NDArray[np.fl
     yield Row(name, "lost without near-field reflection", round(lost, 2), "dB", None, beside, target, met)
 
 
-def _photo(scene: Scene, width_px: int, height_px: int) -> PosedPhoto:
+def _tower(width_px: int) -> Iterator[Row]:
+    """What a large job takes."""
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "measured.json"
+        command = [sys.executable, "-m", "tests.benchmarks.tower_photo", str(width_px)]
+        helper = [sys.executable, "-m", "tests.benchmarks.measured_process", str(path)]
+        done = subprocess.run([*helper, *command], cwd=ROOT, capture_output=True, text=True, check=True)
+        process = json.loads(path.read_text("utf-8"))
+    if process["status"]:
+        raise RuntimeError(done.stderr.strip())
+    photo = json.loads(done.stdout)
+    scene = f"tower of 3640 panels, {width_px} x {photo['height_px']} pixels"
+    yield Row(scene, "a photo with its files, on all cores", photo["wall_s"], "s")
+    yield Row(scene, "processor time of a photo with its files", photo["cpu_s"], "s")
+    yield Row(scene, f"processor time of {TOWER_PHOTOS} photos", TOWER_PHOTOS * photo["cpu_s"] / 3600.0, "h")
+    peak_gb = process["peak_mib"] * 2**20 / 1e9
+    yield Row(
+        scene, "largest memory of the process", peak_gb, "GB", None, "", f"under {MEMORY_GB:g} GB", peak_gb < MEMORY_GB
+    )
+
+
+def facing_photo(scene: Scene, width_px: int, height_px: int) -> PosedPhoto:
+    """From `AWAY_M` before the middle pane, towards it."""
     pane = scene.panes.corners_enu_m[len(scene.panes.corners_enu_m) // 2]
     outwards = np.cross(pane[2] - pane[0], pane[3] - pane[1])
     position = pane.mean(axis=0) + AWAY_M * outwards / np.linalg.norm(outwards) + np.array([1.0, 0.5, 1.0])
@@ -97,7 +126,7 @@ BENCHMARK = Benchmark(
     "Photographs of scenes",
     "Photos of 512 x 384 pixels of every bundled scene by the embedded renderer, 14 m before a pane: seconds and "
     "peak signal-to-noise ratio against 64 rays a pixel with all effects, for fixed numbers of rays and for rays where "
-    "detail calls for them; and what is lost where one picture of the surroundings stands in for what is near. No "
-    "other renderer judges these pictures yet.",
+    "detail calls for them; and what is lost where one picture of the surroundings stands in for what is near. Then a "
+    "photo of a large tower at a camera's full size, with all its files: time, and memory of one process.",
     measure,
 )

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli import tradeoff_scene
 from groundstation.cli.commands.plan import add_request_arguments, request_of
 from groundstation.cli.commands.score import add_set_arguments
 from groundstation.cli.commands.score import request_of as score_request_of
@@ -69,6 +70,7 @@ def add_parser(subparsers: Any) -> None:
     _add_plan(kinds)
     _add_route(kinds)
     _add_segment(kinds)
+    _add_scene(kinds)
 
 
 def _add_plan(kinds: Any) -> None:
@@ -151,6 +153,20 @@ def _add_segment(kinds: Any) -> None:
         metavar="LIST",
         help="such as exact,tangent,polynomial (default: none); made sets",
     )
+
+
+def _add_scene(kinds: Any) -> None:
+    parser = kinds.add_parser(
+        "scene",
+        help="accuracy against time of rendered photos",
+        description="Render photos of a scene with more and fewer rays, sizes and effects, and by a physically based\n"
+        "renderer; write tradeoff-scene.csv and tradeoff-scene.png.",
+        epilog=tradeoff_scene.EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=tradeoff_scene.run_scene)
+    _add_output(parser)
+    tradeoff_scene.add_arguments(parser)
 
 
 def _add_output(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,183 @@
+"""`tradeoff scene`: its arguments, and what it prints."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundstation.cli.options import add_profile_argument, checked_seed, effect_wishes, in_words_of_options, number
+from planning.errors import InputError
+
+if TYPE_CHECKING:
+    from groundstation.services.scene_photos import SceneWish
+    from groundstation.services.scene_tradeoff import SceneTradeoff
+    from reconstruction.scores.scene_downstream import EffectWorth
+    from reconstruction.scores.scene_tradeoff import SceneVariants
+
+EPILOG = """Every way to render is compared with the truth: the same photos by Mitsuba with every effect and
+--truth-rays rays a pixel (--truth-rays 0: by the embedded renderer with 64). Rays, sizes and effects are turned one
+at a time, all else as the scene decides. Panels are looked for in all of them, to see what that changes.
+
+examples:
+  tradeoff scene planar -o tradeoff
+  tradeoff scene office.site.json -o tradeoff --width 1024 --widths 256,512 --rays 4,16,64 --truth-rays 1024
+  tradeoff scene court -o tradeoff --truth-rays 0 --turn second-bounce,near-field-reflection
+"""
+
+
+LEAST_VIEWS = 8
+"""That reflections are learned from, and scored on a part of."""
+
+
+def add_arguments(parser: Any) -> None:
+    """Describe what can be turned."""
+    add = parser.add_argument
+    add("scene", metavar="SITE|NAME", help="site file, or name of a bundled scene ('scene list')")
+    add("--plan", type=Path, metavar="PLAN", help="take views of this plan (default: views square to each facade)")
+    add("--views", type=int, metavar="N", help="number of photos (default 4)")
+    add_profile_argument(parser)
+    add("--look", type=Path, metavar="FILE", help="TOML file with glass, frames, surroundings and light of a site")
+    add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
+    add("--width", type=int, default=512, metavar="PX", help="of the photos (default 512)")
+    add("--truth-rays", type=int, default=256, metavar="N", help="a pixel, of the truth (default 256)")
+    add("--effects", action="append", default=[], metavar="WISH", help="start from: auto, none, all, NAME=on|off|auto")
+    add("--tolerance", type=number, default=1.0, metavar="X", help="times each effect's own tolerance (default 1)")
+    add(
+        "--reflections",
+        type=int,
+        default=0,
+        metavar="N",
+        help="also learn reflections from N small photos, with all effects and without each (default 0: do not)",
+    )
+    varied = parser.add_argument_group("what varies (lists with commas)").add_argument
+    varied("--samples", default="1,2,3,4", metavar="LIST", help="rays along a pixel's side (default: %(default)s)")
+    varied("--widths", default="128,256", metavar="LIST", help="rendered so wide and enlarged (default: %(default)s)")
+    varied("--rays", default="", metavar="LIST", help="a pixel of Mitsuba, such as 4,16,64 (default: none)")
+    varied("--turn", default="all", metavar="LIST", help="effects that are turned on or off (default: all; or none)")
+
+
+def run_scene(options: argparse.Namespace) -> int:
+    """Compare and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.scene_tradeoff import scene_tradeoff
+    from reconstruction.scores.scene_downstream import worth_rows
+    from reconstruction.scores.scene_tradeoff import scene_rows, truth_error
+
+    wish, variants = _wish(options), _variants(options)
+    if options.truth_rays < 0:
+        raise InputError(f"--truth-rays: expected 0 or more, got {options.truth_rays}")
+    if options.reflections != 0 and not options.reflections >= LEAST_VIEWS:
+        raise InputError(f"--reflections: expected {LEAST_VIEWS} or more photos, or 0, got {options.reflections}")
+    made = run_job(
+        "tradeoff scene",
+        lambda context: scene_tradeoff(
+            wish,
+            variants,
+            options.truth_rays or None,
+            options.out,
+            context,
+            n_reflection_views=options.reflections,
+        ),
+    )
+    if options.json:
+        import msgspec
+
+        print_json(
+            {
+                "csv": str(made.csv_path),
+                "picture": str(made.picture_path),
+                "truth": {"name": made.truth.name, "seconds": made.truth.seconds, "error": truth_error(made.truth)},
+                "effects": msgspec.to_builtins(made.decisions),
+                "settings": scene_rows(made.truth, made.trials),
+                "reflections": worth_rows(made.worths) if made.worths else [],
+            }
+        )
+        return 0
+    _print(made)
+    return 0
+
+
+def _wish(options: argparse.Namespace) -> SceneWish:
+    from groundstation.services.scene_photos import SceneWish
+    from reconstruction.scenes.effect_names import EFFECTS
+    from reconstruction.scenes.renderer import RenderSettings
+
+    wishes = effect_wishes(options.effects, EFFECTS)
+    with in_words_of_options():
+        return SceneWish(
+            scene=options.scene,
+            plan=options.plan,
+            n_views=options.views,
+            profile_id=options.profile,
+            look=options.look,
+            seed=checked_seed(options.seed),
+            width_px=options.width,
+            settings=RenderSettings(wishes=wishes, tolerance=options.tolerance),
+        )
+
+
+def _variants(options: argparse.Namespace) -> SceneVariants:
+    from reconstruction.scores.scene_tradeoff import OF_A_PHOTO, SceneVariants
+
+    words = _words(options.turn)
+    by_option = {name.lower().replace(" ", "-"): name for name in OF_A_PHOTO}
+    if words == ("all",):
+        effects = OF_A_PHOTO
+    elif words == ("none",):
+        effects = ()
+    else:
+        effects = tuple(by_option.get(word, word) for word in words)
+    return SceneVariants(
+        _counts("--samples", options.samples),
+        _counts("--widths", options.widths),
+        _counts("--rays", options.rays),
+        effects,
+    )
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
+
+
+def _counts(option: str, text: str) -> tuple[int, ...]:
+    words = _words(text)
+    if not all(word.isdecimal() for word in words):
+        raise InputError(f"{option}: expected whole numbers such as 1,2,4, got '{text}'")
+    return tuple(map(int, words))
+
+
+def _print(made: SceneTradeoff) -> None:
+    from missions.simulator.build import effects_table
+    from reconstruction.scores.scene_tradeoff import scene_rows, truth_error
+
+    own = truth_error(made.truth)
+    accuracy = f", itself good to {255.0 * own:.2f} grey levels" if own else ""
+    print(f"truth: {made.truth.name}, {made.truth.seconds:.1f} s a photo{accuracy}")
+    print(f"effects:\n{effects_table(made.decisions)}")
+    print(f"  {'setting':<36}{'ready in':>10}{'s a photo':>10}{'PSNR':>10}{'':>8}{'mIoU':>9}{'':>9}{'missed':>8}")
+    for row in scene_rows(made.truth, made.trials):
+        ready, error = " " * 10, " " * 18
+        if "psnr_db" in row:
+            ready, error = f"{row['prepare_s']:>8.2f} s", f"{row['psnr_db']:>7.1f} dB{row['psnr_change_db']:>+8.2f}"
+        single, change = row["individual_miou"], row["individual_miou_change"]
+        found = f"{'-':>9}" if single is None else f"{single:>9.4f}{change:>+9.4f}{row['missed']:>8}"
+        print(f"  {row['setting']:<36}{ready}{row['seconds']:>10.3f}{error}{found}")
+    if made.worths:
+        _print_worths(made.worths)
+    for path in (made.csv_path, made.picture_path, made.worths_path):
+        if path is not None:
+            print(path)
+
+
+def _print_worths(worths: Sequence[EffectWorth]) -> None:
+    from reconstruction.scores.scene_downstream import worth_rows
+
+    print("  reflections learned from photos, scored on glass of unseen views that have all that the scene calls for:")
+    print(f"  {'photos':<36}{'rendered in':>12}{'PSNR':>10}{'lost':>9}{'worst':>10}{'on their own kind':>20}")
+    for row in worth_rows(worths):
+        print(
+            f"  {row['photos']:<36}{row['photos_s']:>10.1f} s{row['psnr_db']:>7.2f} dB{row['lost_db']:>+6.2f} dB"
+            f"{row['worst_db']:>7.2f} dB{row['own_db']:>17.2f} dB"
+        )
