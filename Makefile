@@ -77,6 +77,7 @@ benchmark: setup
 pictures: setup
 	$(PY) app.py --screenshots pictures
 	cp pictures/1280x720/plan-hemispheres.png docs/window.png
+	cp pictures/1280x720/plan-photo.png docs/window-camera.png
 	cp pictures/1280x720/site.png docs/window-site.png
 	cp pictures/1280x720/mission-2.png docs/window-mission.png
 	cp pictures/1280x720/fly-paused.png docs/window-fly.png

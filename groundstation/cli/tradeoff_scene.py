@@ -11,8 +11,8 @@ from groundstation.cli.options import add_profile_argument, checked_seed, effect
 from planning.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.scene_photos import SceneWish
     from groundstation.services.scene_tradeoff import SceneTradeoff
+    from groundstation.services.scene_views import SceneWish
     from reconstruction.scores.scene_downstream import EffectWorth
     from reconstruction.scores.scene_tradeoff import SceneVariants
 
@@ -100,7 +100,7 @@ def run_scene(options: argparse.Namespace) -> int:
 
 
 def _wish(options: argparse.Namespace) -> SceneWish:
-    from groundstation.services.scene_photos import SceneWish
+    from groundstation.services.scene_views import SceneWish
     from reconstruction.scenes.effect_names import EFFECTS
     from reconstruction.scenes.renderer import RenderSettings
 

@@ -2,113 +2,36 @@
 
 from __future__ import annotations
 
-import json
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 
-from groundstation.services.flight_shots import shots_of_flight
-from groundstation.services.given_files import read_given_plan, read_given_site
-from groundstation.services.planning import plan_document_site
-from planning.catalogue import profile
+from groundstation.services.scene_views import SITE_FILE, SceneWish, as_written, given_scene, scene_views
 from planning.cluster import cluster_client
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.geometry.solids import Solids
-from planning.mesh import join, ply_bytes
-from planning.plan import Camera, Constraints, Plan
-from planning.plan_file import plan_to_json, read_plan
+from planning.mesh import join
+from planning.plan import Camera
 from planning.progress import QUIET, Monitor
-from planning.request import GreedyParameters, PlanRequest
 from planning.site import SiteModel
-from planning.site_file import is_planned_on, site_bytes, site_sha256
 from reconstruction.cameras import Intrinsics, PosedPhoto
-from reconstruction.scenes.build import build_scene
-from reconstruction.scenes.bundled import SCENES, bundled_scene
 from reconstruction.scenes.flight_views import (
-    WIDTHS_PX,
-    Shot,
     lens_of,
     moments,
-    planned_shots,
     posed_photos,
 )
-from reconstruction.scenes.look import read_look
 from reconstruction.scenes.mitsuba_plugins import mitsuba
 from reconstruction.scenes.photo_folder import ScenePhotos, photograph
-from reconstruction.scenes.photographers import DEFAULT_POINTS, PhotoJob
-from reconstruction.scenes.record import Scene
-from reconstruction.scenes.renderer import RenderSettings
-from reconstruction.scenes.run_record import RUN_FILE, check_folder
+from reconstruction.scenes.photographers import PhotoJob
+from reconstruction.scenes.run_record import check_folder
 from reconstruction.scenes.taking import USUAL_TAKING, Taking, read_taking
-
-SITE_FILE, PLAN_FILE = "site.json", "plan.json"
-"""Written beside the photos: the site with what the scene adds to it, and the plan that was made for them."""
-
-DEFAULT_VIEWS, MAX_VIEWS = 24, 20_000
-DEFAULT_WIDTH_PX = 1024
-DEFAULT_PROFILE = "m3e"
-
-BUNDLED_TEXTS = {
-    "planar": "plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it",
-    "curved": "the same on a convex facade",
-    "planar-far": "the plane facade alone, with everything else far away",
-    "curved-far": "the convex facade alone, with everything else far away",
-    "court": "two facades at a right angle, whose glass sees glass",
-    "concrete": "matt concrete with punched windows",
-}
-
-QUICK = GreedyParameters(n_candidates=2000, improve=False, certify=False)
-"""Views for trying things out need not be the best; they are found in seconds."""
-
-FARTHEST_M = 40.0
-"""Of views that are planned here: a few of them would otherwise see all panels at once, from far away and small."""
-
-
-@dataclass(frozen=True, slots=True)
-class SceneWish:
-    """What is to be photographed, from where, and how.
-
-    Parameters
-    ----------
-    scene
-        Name of a bundled scene where there is no file of that name; else path of a site file.
-    plan, flight
-        Views of a plan; or the poses of a flight, with the plan's camera, and with its angles where the flight knows
-        none.
-    n_views
-        To be planned where neither is given.
-    profile_id
-        Whose camera takes photos that no plan says the camera of.
-    look, camera
-        Files with the look of a site's scene, and with how photos are taken.
-    """
-
-    scene: str
-    plan: Path | None = None
-    flight: Path | None = None
-    n_views: int | None = None
-    profile_id: str = DEFAULT_PROFILE
-    look: Path | None = None
-    camera: Path | None = None
-    seed: int = 0
-    width_px: int | None = DEFAULT_WIDTH_PX
-    n_points: int = DEFAULT_POINTS
-    settings: RenderSettings = field(default_factory=RenderSettings)
-
-    def __post_init__(self) -> None:
-        if self.n_views is not None and not 1 <= self.n_views <= MAX_VIEWS:
-            raise ValueError(f"views: expected 1 to {MAX_VIEWS}, got {self.n_views}")
-        if self.width_px is not None and not WIDTHS_PX[0] <= self.width_px <= WIDTHS_PX[1]:
-            raise ValueError(f"width_px: expected {WIDTHS_PX[0]} to {WIDTHS_PX[1]}, got {self.width_px}")
-        if self.n_points < 0:
-            raise ValueError(f"n_points: expected 0 or more, got {self.n_points}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,17 +42,6 @@ class RenderedScene:
     written: ScenePhotos
     findings: tuple[Finding, ...]
     seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class _Views:
-    """Where photos are taken, by which camera, and where that is from; `companions` as in `PhotoJob`."""
-
-    shots: tuple[Shot, ...]
-    camera: Camera
-    made_from: Mapping[str, Any]
-    companions: Mapping[str, bytes]
-    findings: tuple[Finding, ...] = ()
 
 
 def photograph_files(
@@ -155,8 +67,11 @@ def photograph_files(
     InfeasibleError
         Views were to be planned, and none is possible.
     """
-    if wish.n_views is not None and (wish.plan is not None or wish.flight is not None):
+    n_given = sum(given is not None for given in (wish.n_views, wish.n_square))
+    if n_given and (wish.plan is not None or wish.flight is not None):
         raise InputError("a number of views is for scenes without a plan or flight; leave it out, or them")
+    if n_given > 1:
+        raise InputError("views are planned or square to the facades; give one number, not both")
     check_folder(folder)
     if wish.settings.mitsuba_rays is not None:
         mitsuba()
@@ -171,8 +86,8 @@ def _photographed(
     monitor.report("building the scene", 0, 1)
     taking = USUAL_TAKING if wish.camera is None else read_taking(wish.camera)
     scene, made_from = given_scene(wish)
-    written_site, companions = _as_written(scene.site)
-    views = _views(wish, scene.site, written_site, folder, monitor)
+    written_site, companions = as_written(scene.site)
+    views = scene_views(wish, scene, written_site, folder, monitor)
     lens = _lens(wish, views.camera, taking)
     photos = posed_photos(views.shots, lens, folder / "images")
     findings = (*views.findings, *_walled_in(photos, scene.site))
@@ -195,107 +110,6 @@ def _lens(wish: SceneWish, camera: Camera, taking: Taking) -> Intrinsics:
         return lens_of(camera, wish.width_px, taking)
     except InputError as error:
         raise InputError(f"{wish.camera}: {error}") from error
-
-
-def given_scene(wish: SceneWish) -> tuple[Scene, dict[str, Any]]:
-    """The scene, and what it is made from.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, or there is no such scene.
-    """
-    path = Path(wish.scene)
-    if wish.scene in SCENES and not path.is_file():  # a folder of photos is easily named after its scene
-        if wish.look is not None:
-            raise InputError(
-                f"{wish.look}: bundled scenes have a look of their own; name a site file to give one, or leave it out"
-            )
-        return bundled_scene(wish.scene, wish.seed), {"bundled": wish.scene}
-    if not path.exists():
-        raise InputError(
-            f"{wish.scene}: there is neither a site file nor a bundled scene of that name; bundled are: "
-            f"{', '.join(SCENES)}"
-        )
-    model = read_given_site(path)
-    look = None if wish.look is None else read_look(wish.look)
-    made_from = {"site": model.site.name, "look": None if look is None else msgspec.to_builtins(look)}
-    return build_scene(model, look, wish.seed), made_from
-
-
-def _as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
-    """A scene's site as it is written beside the photos, and the content of its files."""
-    site, files = model.site, {}
-    if site.building_mesh is not None:
-        site = replace(site, building_mesh="building.ply")
-        files["building.ply"] = ply_bytes(model.building)
-    obstacles = []
-    for number, (obstacle, mesh) in enumerate(zip(site.obstacles, model.obstacles, strict=True), 1):
-        if obstacle.mesh is not None:
-            obstacle = replace(obstacle, mesh=f"obstacle-{number}.ply")
-            files[f"obstacle-{number}.ply"] = ply_bytes(mesh)
-        obstacles.append(obstacle)
-    site = replace(site, obstacles=tuple(obstacles))
-    return replace(model, site=site, sha256=site_sha256(site)), {SITE_FILE: site_bytes(site), **files}
-
-
-def _views(wish: SceneWish, model: SiteModel, written: SiteModel, folder: Path, monitor: Monitor) -> _Views:
-    plan = None if wish.plan is None else plan_of_site(wish.plan, model)
-    if wish.flight is not None:
-        return _flown(wish, wish.flight, plan, model)
-    if plan is not None and wish.plan is not None:
-        is_current = is_planned_on(plan.site_sha256, model) or is_planned_on(plan.site_sha256, written)
-        findings = () if is_current else (SITE_CHANGED,)
-        return _Views(planned_shots(plan), plan.camera, {"plan": wish.plan.name}, {}, findings)
-    made = _planned_here(wish, written, folder, monitor)
-    request = {"n_views": wish.n_views or DEFAULT_VIEWS, "profile": wish.profile_id}
-    content = json.dumps(plan_to_json(made), indent=1, allow_nan=False).encode()
-    return _Views(planned_shots(made), made.camera, {"views": request}, {PLAN_FILE: content})
-
-
-SITE_CHANGED = Finding(
-    Severity.WARNING, "site-changed", "the site file has changed since the plan was made; photos show it as it is now"
-)
-
-
-def plan_of_site(path: Path, model: SiteModel) -> Plan:
-    """The plan in a file.
-
-    Raises
-    ------
-    InputError
-        It cannot be read, or belongs to another site.
-    """
-    plan, site = read_given_plan(path), model.site
-    if plan.site != site.name or (plan.origin is not None and plan.origin != site.origin):
-        raise InputError(
-            f"{path}: this is a plan of '{plan.site}', and not of '{site.name}' at its origin; name the site that it "
-            "was made for, or another plan"
-        )
-    return plan
-
-
-def planned_photos(wish: SceneWish, scene: Scene, folder: Path, monitor: Monitor = QUIET) -> tuple[PosedPhoto, ...]:
-    """Photos from views that are planned here, around what the scene has beside the building, to lie in `folder`."""
-    plan = _planned_here(wish, _as_written(scene.site)[0], folder, monitor)
-    return posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), folder)
-
-
-def _planned_here(wish: SceneWish, model: SiteModel, folder: Path, monitor: Monitor) -> Plan:
-    """The plan that the folder has already, or a quick new one."""
-    if (folder / PLAN_FILE).is_file() and (folder / RUN_FILE).is_file():
-        return read_plan(folder / PLAN_FILE)
-    n_views = wish.n_views or DEFAULT_VIEWS
-    near = Constraints(max_distance_m=FARTHEST_M)
-    request = PlanRequest(n_views=n_views, profile_id=wish.profile_id, constraints=near, greedy=QUICK, seed=wish.seed)
-    return plan_document_site(model, request, monitor=monitor).plan
-
-
-def _flown(wish: SceneWish, flight: Path, plan: Plan | None, model: SiteModel) -> _Views:
-    shots, findings = shots_of_flight(flight, plan, model)
-    camera = profile(wish.profile_id).camera if plan is None else plan.camera
-    made_from = {"flight": flight.name, "plan": None if wish.plan is None else wish.plan.name}
-    return _Views(shots, camera, made_from, {}, findings)
 
 
 def _walled_in(photos: Sequence[PosedPhoto], model: SiteModel) -> Iterator[Finding]:

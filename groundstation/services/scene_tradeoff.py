@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from groundstation.services.scene_photos import SceneWish, given_scene, plan_of_site, planned_photos
+from groundstation.services.scene_views import SceneWish, given_scene, plan_of_site, planned_photos
 from groundstation.services.tradeoff import output_folder, write_results, write_rows
 from planning.catalogue import profile
 from planning.effects import Decision

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from planning.coverage.sections import PanelFrames, panel_frames
 from planning.mesh import TriangleMesh
-from planning.site import SiteModel, panel_corners, require_panels
+from planning.site import Site, SiteModel, panel_corners, require_panels
 from reconstruction.scenes.look import Look
 from reconstruction.scenes.panorama import panorama
 from reconstruction.scenes.profiles import edge_neighbours, profile_rings
 from reconstruction.scenes.record import Body, Glass, Interiors, Layer, Panes, Scene, Sky
-from reconstruction.scenes.rooms import furnished, shared_rooms
+from reconstruction.scenes.rooms import furnished, painted, shared_rooms
 from reconstruction.scenes.surroundings import surround
 from reconstruction.scenes.textures import grain
 from reconstruction.scenes.wall_cut import without_openings
@@ -32,6 +32,12 @@ ROOM, LAMP, BLIND = (0.05, 0.05, 0.048), (0.3, 0.26, 0.18), (0.42, 0.41, 0.38)
 """Light of a dim room, a lit one, and a blind in daylight."""
 
 LIT_ROOMS = 0.12
+
+PAINT = (0.1, 0.11, 0.13)
+"""Light of spandrels' paint, a dark grey, in daylight."""
+
+SAME_ROW_M = 0.3
+"""Difference of their middles' heights up to which panels are of one row."""
 
 LEAST_AREA_M2 = 1e-10
 """Smaller triangles are left out: 10 micrometres square."""
@@ -69,6 +75,9 @@ def build_scene(model: SiteModel, look: Look | None = None, seed: int = 0) -> Sc
         model, bodies = surroundings.model, [*bodies, *surroundings.bodies]
     glasses = _glasses(look.glass)
     panes, interiors = _panes(panels, look, glass, inside)
+    if look.spandrel_every:
+        interiors, rooms = painted(panes, interiors, _spandrels(model.site, look.spandrel_every), np.array(PAINT))
+        panes = replace(panes, rooms=rooms)
     return Scene(
         name=model.site.name,
         seed=seed,
@@ -138,6 +147,18 @@ def _panes(
     first = shared_rooms(panes, inside)
     interiors, rooms = furnished(panes, first, is_lit[:, 0], lights, drawn[:, 0], blind_lights, inside)
     return replace(panes, rooms=rooms), interiors
+
+
+def _spandrels(site: Site, every: int) -> NDArray[np.bool_]:
+    """Panels in every so-manyth row of their facades, counted from the foot, shape (m,)."""
+    found = []
+    for facade in site.facades:
+        heights = np.array([np.mean(panel.corners_enu_m, axis=0)[2] for panel in facade.panels])
+        order = np.argsort(heights, kind="stable")
+        rows = np.zeros(len(heights), np.int64)
+        rows[order] = np.cumsum(np.diff(heights[order], prepend=heights[order[0]]) > SAME_ROW_M)
+        found.append(rows % every == every - 1)
+    return np.concatenate(found)
 
 
 def facade_bows_per_m(panels: PanelFrames) -> NDArray[np.float64]:

@@ -40,6 +40,9 @@ class Look:
         Share of light that profiles and walls send back.
     blinds
         Share of the rooms with a blind pulled down by a random part.
+    spandrel_every
+        Every so many rows of each facade, counted from its foot, are spandrels: glass painted behind, which mirrors
+        like all other and shows no room. 0 for none.
     street_m
         From a facade to the buildings opposite.
     opposite_height_m
@@ -65,6 +68,7 @@ class Look:
     frame_albedo: Rgb = (0.16, 0.16, 0.17)
     wall_albedo: Rgb = (0.62, 0.6, 0.56)
     blinds: float = 0.35
+    spandrel_every: int = 0
     street_m: float = 28.0
     opposite_height_m: tuple[float, float] = (14.0, 34.0)
     tree_spacing_m: float = 9.0
@@ -85,6 +89,7 @@ class Look:
         for name in ("frame_albedo", "wall_albedo"):
             for part in getattr(self, name):
                 _check(name, part, 0.0, 1.0)
+        _check("spandrel_every", self.spandrel_every, 0, 1000)
         _check("street_m", self.street_m, 4.0, 500.0)
         for name in ("tree_spacing_m", "car_spacing_m", "people_spacing_m"):
             _check(name, getattr(self, name), 0.0, 1000.0)

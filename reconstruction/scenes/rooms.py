@@ -39,6 +39,9 @@ N_BLOCKS, BLOCK_SHADES = 3, (0.2, 0.8)
 N_ALONG, N_DIRECTIONS = 4, 64
 """Rays that measure the mean of a room: places along each side of its pane, and directions through each."""
 
+PAINT_M = 0.001
+"""Behind the pane: as good as on it."""
+
 STEEPEST = 0.05
 """Least height that a room's pane rises in a metre: level panes show no room but a blind."""
 
@@ -99,6 +102,28 @@ def furnished(
     covered = blinds[:, None]
     means = covered * blind_lights + (1.0 - covered) * of_pane[:, None] * walls
     return Interiors(boxes, blocks, lamps, walls, blinds, blind_lights / (1.0 - SLAT_SHADE)), means
+
+
+def painted(panes: Panes, interiors: Interiors, is_painted: NDArray[np.bool_], light: Array) -> tuple[Interiors, Array]:
+    """The same with some panes, mask of shape (m,), painted behind, and the mean light from behind all, (m, 3).
+
+    Parameters
+    ----------
+    light
+        Of the paint, shape (3,).
+    """
+    halves = half_sides_m(panes, PaneFrames.of(panes))
+    thin = np.column_stack([-halves[:, 0], halves[:, 0], -halves[:, 1], halves[:, 1], np.full(len(halves), PAINT_M)])
+    column = is_painted[:, None]
+    changed = Interiors(
+        np.where(column, thin, interiors.rooms_m),
+        np.where(column[..., None], 0.0, interiors.furniture_m),
+        np.where(is_painted, 1.0, interiors.lamps),
+        np.where(column, light, interiors.lights),
+        np.where(is_painted, 0.0, interiors.blinds),
+        interiors.blind_lights,
+    )
+    return changed, np.where(column, light, panes.rooms)
 
 
 def _ratio(sums: Array, counts: Array) -> Array:

@@ -1,9 +1,8 @@
-"""Photos of a scene's facades from before them, as a first flight takes them to look for panels."""
+"""Views of a scene's facades from before them, as a first flight takes them to look for panels."""
 
 from __future__ import annotations
 
 import math
-from datetime import timedelta
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +10,10 @@ from numpy.typing import NDArray
 
 from planning.geometry.solids import Solids
 from planning.mesh import join
+from planning.plan import Viewpoint
 from planning.site import Facade
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.photos.write import photo_name
-from reconstruction.scenes.flight_views import BETWEEN, FIRST_AT
+from reconstruction.scenes.flight_views import BETWEEN, Shot, posed_photos
 from reconstruction.scenes.record import Scene
 
 Array = NDArray[np.float64]
@@ -30,31 +29,31 @@ STEP = 1.08
 """Factor by which a camera moves back until it sees the whole facade, and then nearer until nothing is in its place."""
 
 
-def square_photos(scene: Scene, lens: Intrinsics, n: int, folder: Path, seed: int = 0) -> tuple[PosedPhoto, ...]:
-    """Photos of all facades in turn, each from up to 20 degrees aside and 8 degrees above or below square on.
+def square_shots(scene: Scene, lens: Intrinsics, n: int, seed: int = 0) -> tuple[Shot, ...]:
+    """Shots of all facades in turn, each from up to 20 degrees aside and 8 degrees above or below square on.
 
-    Where a wall opposite is in the way the camera stands before it, and shows a part of the facade.
-
-    Parameters
-    ----------
-    folder
-        That the photos are to lie in.
+    Where something is in the way the camera stands before it, and shows a part of the facade.
     """
     site, rng = scene.site.site, np.random.default_rng([seed, n])
-    solids = Solids.of(join(list(scene.site.obstacles)).corners_enu_m)
+    solids = Solids.of(join([scene.site.building, *scene.site.obstacles]).corners_enu_m)
     lowest_m = site.airspace.ground_z_m + LOWEST_M
-    photos = []
+    shots = []
     for number in range(n):
         facade = site.facades[number % len(site.facades)]
         aside, above = np.radians(rng.uniform(-1.0, 1.0, 2) * (MOST_ASIDE_DEG, MOST_ABOVE_DEG))
-        pose = _pose(facade, lens, float(aside), float(above), solids, lowest_m)
-        taken_at = FIRST_AT + timedelta(seconds=number * BETWEEN.total_seconds())
-        name = photo_name(number + 1, taken_at)
-        photos.append(PosedPhoto(name, folder / name, lens, pose, taken_at))
-    return tuple(photos)
+        view = _view(f"s{number:04d}", facade, lens, float(aside), float(above), solids, lowest_m)
+        shots.append(Shot(view, number * BETWEEN))
+    return tuple(shots)
 
 
-def _pose(facade: Facade, lens: Intrinsics, aside: float, above: float, solids: Solids, lowest_m: float) -> Pose:
+def square_photos(scene: Scene, lens: Intrinsics, n: int, folder: Path, seed: int = 0) -> tuple[PosedPhoto, ...]:
+    """The photos of `square_shots`, to lie in `folder`."""
+    return posed_photos(square_shots(scene, lens, n, seed), lens, folder)
+
+
+def _view(
+    name: str, facade: Facade, lens: Intrinsics, aside: float, above: float, solids: Solids, lowest_m: float
+) -> Viewpoint:
     corners = np.array([panel.corners_enu_m for panel in facade.panels], float)
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
     normal /= np.linalg.norm(normal)
@@ -68,16 +67,17 @@ def _pose(facade: Facade, lens: Intrinsics, aside: float, above: float, solids: 
     middle = sum(0.5 * extent * axis for extent, axis in zip(extents, (right, up, normal), strict=True))
     towards = math.cos(above) * (math.cos(aside) * normal + math.sin(aside) * right) + math.sin(above) * up
 
-    def at(distance_m: float) -> Pose:
+    def at(distance_m: float) -> Viewpoint:
         position = middle + distance_m * towards
         position[2] = max(position[2], lowest_m)
-        line = middle - position
-        heading = math.degrees(math.atan2(line[0], line[1]))
-        return Pose.looking(position, heading, math.degrees(math.atan2(line[2], math.hypot(line[0], line[1]))))
+        east, north, up_m = (middle - position).tolist()
+        heading, pitch = math.atan2(east, north), math.atan2(up_m, math.hypot(east, north))
+        x, y, z = position.tolist()
+        return Viewpoint(name, (x, y, z), math.degrees(heading), math.degrees(pitch))
 
     distance = CLEARANCE_M
-    while distance < FARTHEST_M and not lens.is_seen(at(distance).points_cam(points)).all():
+    while distance < FARTHEST_M and not lens.is_seen(Pose.of(at(distance)).points_cam(points)).all():
         distance *= STEP
-    while distance > CLEARANCE_M and not solids.clearance_m(at(distance).position_enu_m[None])[0] > CLEARANCE_M:
+    while distance > CLEARANCE_M and not solids.clearance_m(np.array([at(distance).position_enu_m]))[0] > CLEARANCE_M:
         distance /= STEP
     return at(distance)

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from groundstation.services.scene_photos import SceneWish, photograph_files
+from groundstation.services.scene_photos import photograph_files
+from groundstation.services.scene_views import SceneWish
 from reconstruction.reflections.config import ReflectionConfig
 from reconstruction.reflections.downstream import downstream_psnr
 from reconstruction.reflections.reflection_mlp import MlpShape

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.scene_photos import BUNDLED_TEXTS
+from groundstation.services.scene_views import BUNDLED_TEXTS
 from missions.flight.flight_file import flight_of, write_flight
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 from planning.photo_files.folder import read_photos
@@ -231,3 +231,17 @@ def test_a_plan_without_views_is_refused(render, changed, pane, tmp_path):
     plan.write_text(json.dumps(content | {"sorties": []}))
     assert "there are no views to photograph" in render("--plan", plan).error
     assert not (tmp_path / "photos").exists()
+
+
+def test_square_views_are_those_of_a_first_flight(render, tmp_path):
+    done = render("--square", 3, "--json").json
+    assert done["photos"] == 3
+    record = json.loads((tmp_path / "photos" / "scene.json").read_text())
+    assert record["made_from"]["square"] == {"n_views": 3, "profile": "m3e"}
+    assert not (tmp_path / "photos" / "plan.json").exists()
+
+
+def test_square_views_are_planned_or_flown_by_nobody(render, pane):
+    assert "not both" in render("--square", 3, "--views", 2).error
+    assert "leave it out" in render("--square", 3, "--plan", pane / "plan.json").error
+    assert "--square: expected 1 to" in render("--square", 0).error

@@ -10,7 +10,8 @@ from groundstation.cli.options import add_profile_argument, checked_seed, effect
 from planning.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.scene_photos import RenderedScene, SceneWish
+    from groundstation.services.scene_photos import RenderedScene
+    from groundstation.services.scene_views import SceneWish
 
 DEFAULT_RAYS = 64
 
@@ -18,6 +19,7 @@ EPILOG = """views (without any of them 24 are planned):
   --plan PLAN      those of a plan, by its camera
   --flight FLIGHT  where photos of a flight were really taken; with --plan by its camera, else by --profile's
   --views N        so many, planned here
+  --square N       so many from before each facade in turn, as a first flight takes them to look for panels
 
 effects:
   --effects auto             what the scene and the views call for (default)
@@ -58,6 +60,7 @@ def add_parser(subparsers: Any) -> None:
     add("--plan", type=Path, metavar="PLAN", help="plan file")
     add("--flight", type=Path, metavar="FLIGHT", help="flight file, of 'simulate' or 'report'")
     add("--views", type=int, metavar="N", help="number of views to plan (default 24)")
+    add("--square", type=int, metavar="N", help="number of views square to the facades instead")
     add_profile_argument(render)
     add("--look", type=Path, metavar="FILE", help="TOML file with glass, frames, surroundings and light of a site")
     add("--camera", type=Path, metavar="FILE", help="TOML file with shutter, speed, exposure, lens and pose errors")
@@ -81,7 +84,7 @@ def add_parser(subparsers: Any) -> None:
 def run_list(options: argparse.Namespace) -> int:
     """Print the bundled scenes; returns the exit status."""
     from groundstation.cli.console import print_json
-    from groundstation.services.scene_photos import BUNDLED_TEXTS
+    from groundstation.services.scene_views import BUNDLED_TEXTS
 
     if options.json:
         print_json({"scenes": BUNDLED_TEXTS})
@@ -113,7 +116,7 @@ def run_render(options: argparse.Namespace) -> int:
 
 
 def _wish(options: argparse.Namespace) -> SceneWish:
-    from groundstation.services.scene_photos import SceneWish
+    from groundstation.services.scene_views import SceneWish
     from reconstruction.scenes.effect_names import EFFECTS
     from reconstruction.scenes.renderer import RenderSettings
 
@@ -127,6 +130,7 @@ def _wish(options: argparse.Namespace) -> SceneWish:
             plan=options.plan,
             flight=options.flight,
             n_views=options.views,
+            n_square=options.square,
             profile_id=options.profile,
             look=options.look,
             camera=options.camera,

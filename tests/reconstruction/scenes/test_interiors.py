@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from planning.coverage.sections import panel_frames
 from planning.scenes import panel_grid
 from planning.site import Facade, panel_corners
-from reconstruction.scenes.build import build_scene, facade_bows_per_m
+from reconstruction.scenes.build import PAINT, build_scene, facade_bows_per_m
 from reconstruction.scenes.bundled import bundled_scene, curved_site, planar_site
 from reconstruction.scenes.geometry import PaneFrames
 from reconstruction.scenes.interiors import CEILING, FADES_M, FLANK, FLOOR, SIDE, TOP, RoomLight
@@ -184,3 +184,27 @@ def test_curved_glass_is_bent_as_its_facade_is(site: object, per_m: float) -> No
 def test_a_corner_is_not_a_curve() -> None:
     made = build_scene(bundled_scene("court").site, Look(near=False, bow_deg=0.0, curved_glass=True))
     assert np.allclose(made.panes.bows_per_m, 0.0, atol=1e-6)
+
+
+def test_every_third_row_is_painted_behind_and_all_other_rooms_stay() -> None:
+    site = planar_site()
+    plain, made = (build_scene(site, Look(near=False, spandrel_every=every), 4) for every in (0, 3))
+    middles = made.panes.corners_enu_m.mean(axis=1)
+    rows = np.rint((middles[:, 2] - middles[:, 2].min()) / 2.5).astype(int)
+    is_painted = rows % 3 == 2
+    assert set(rows[is_painted]) == {2, 5}
+    np.testing.assert_array_equal(made.panes.rooms[is_painted], np.broadcast_to(PAINT, (int(is_painted.sum()), 3)))
+    np.testing.assert_array_equal(made.panes.rooms[~is_painted], plain.panes.rooms[~is_painted])
+    assert made.interiors is not None
+    assert plain.interiors is not None
+    np.testing.assert_array_equal(made.interiors.rooms_m[~is_painted], plain.interiors.rooms_m[~is_painted])
+    # Paint looks the same from everywhere, a room does not.
+    frames = PaneFrames.of(made.panes)
+    rng, which = np.random.default_rng(1), np.repeat(np.flatnonzero(is_painted), 20)
+    away = rng.uniform(-0.8, 0.8, (len(which), 2))
+    rays = -frames.normals[which] + away[:, :1] * frames.rights[which] + away[:, 1:] * frames.ups[which]
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    places = middles[which] + rng.uniform(-0.5, 0.5, (len(which), 1)) * frames.rights[which]
+    light = RoomLight(made.interiors, made.panes, frames)
+    seen = light.seen(places, rays, which, frames.normals[which], np.full(len(which), 0.01))
+    np.testing.assert_allclose(seen, np.broadcast_to(PAINT, seen.shape), rtol=0.01)
