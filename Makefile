@@ -6,8 +6,9 @@ PY := $(VENV)/Scripts/python.exe
 else
 PY := $(VENV)/bin/python
 endif
-# Processes that share the tests; those with windows each have a virtual screen of their own.
-WORKERS ?= 2
+# Processes that share the tests, one more than two cores have: tests wait for windows, disks and processes of their own.
+# Those with windows each have a virtual screen.
+WORKERS ?= 3
 WARM := $(patsubst %,$(VENV)/.warm-%,planning missions.simulator reconstruction)
 UNUSED := [/\\](tests|sympy|plotly|pymavlink.dialects)[/\\]
 TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)

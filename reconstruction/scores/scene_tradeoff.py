@@ -265,6 +265,8 @@ def run_scene_variants(
     """
     grey = [_grey(taken, metered_exposure(taken)) for taken in truth.taken]
     seen, trials = walls(scene.site.site.facades), []
+    # Compiling and loading is in no setting's time; light that is gathered once for all photos is in each's.
+    Renderer(scene, settings[0].settings).render(photos[0])
     for step, setting in enumerate(settings):
         started = clock()
         renderer: CanRender
@@ -279,9 +281,6 @@ def run_scene_variants(
         for number, photo in enumerate(photos):
             monitor.report(setting.name, step * len(photos) + number, len(settings) * len(photos))
             small = photo if setting.width_px is None else _narrowed(photo, setting.width_px)
-            if number == step == 0:
-                # Compiling and loading is in no setting's time.
-                renderer.render(small)
             started = clock()
             taken = renderer.render(small, seed=number)
             spent_s += clock() - started

@@ -153,6 +153,7 @@ def test_mitsuba_is_asked_for_before_anything_else_is_done(reflight, tmp_path, m
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_photos_by_mitsuba_are_no_part_of_a_run_without_it(render, pane):
     pytest.importorskip("mitsuba", reason="the optional extra 'mitsuba' is not installed")
     judged = ("--renderer", "mitsuba", "--rays", 1)

@@ -80,6 +80,7 @@ def test_refusals_say_what_to_do_and_leave_nothing_behind(reflight, tmp_path, ar
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_tradeoff_writes_a_row_a_setting_and_a_picture(reflight, tmp_path):
     knobs = ("--sizes", "240,480", "--samples", "32", "--detectors", "lsd")
     done = reflight("tradeoff", "segment", "-o", tmp_path, "--seeds", 1, "--width", 480, *knobs, "--json")

@@ -89,6 +89,7 @@ def bare_roof():
     return replace(model, site=replace(model.site, facades=()))
 
 
+@pytest.mark.slow
 def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, flight, tmp_path):
     folder, made = flight
     dialog = opened.show("site").left.opener.import_site(folder / "coarse.ply")

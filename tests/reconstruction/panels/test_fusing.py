@@ -107,6 +107,7 @@ def test_doubt_grows_with_every_photo_that_shows_no_grid_or_another() -> None:
     assert not decide(Fusion(), singly({0: grids[0]})).on
 
 
+@pytest.mark.slow
 def test_searched_together_every_photo_has_the_lines_and_all_count_as_one_look() -> None:
     together, alone = searched("on"), searched("off")
     assert together.decisions[1].decided_by == "user"

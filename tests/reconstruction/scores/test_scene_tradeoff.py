@@ -24,7 +24,7 @@ from reconstruction.scores.scene_tradeoff import (
     truth_error,
 )
 
-LENS = Intrinsics(64, 48, 51.2, 51.2, 32.0, 24.0)
+LENS = Intrinsics(32, 24, 25.6, 25.6, 16.0, 12.0)
 
 
 class _Noisy:
@@ -46,18 +46,19 @@ def small():
     photos = square_photos(scene, LENS, 2, Path(), seed=1)
     decisions = tuple(decide_effects(scene, photos, RenderSettings()).values())
     truth = make_truth(scene, photos, None)
-    variants = SceneVariants((1, 3), (32, 64), (4,), (NEAR_FIELD, NOISE, SHADOW))
+    variants = SceneVariants((1, 3), (16, 32), (4,), (NEAR_FIELD, NOISE, SHADOW))
     settings = scene_settings(RenderSettings(environment_rows=64), decisions, variants, LENS.width_px)
     return scene, photos, truth, settings, run_scene_variants(scene, photos, truth, settings, _Noisy)
 
 
+@pytest.mark.slow
 def test_every_way_is_tried_once_and_sizes_that_change_nothing_are_left_out(small):
     names = [trial.setting.name for trial in small[4]]
     assert names == [
         "as the scene decides",
         "samples 1",
         "samples 3",
-        "width 32",
+        "width 16",
         "rays 4",
         f"effect {NEAR_FIELD} off",
         f"effect {SHADOW} off",
@@ -67,11 +68,12 @@ def test_every_way_is_tried_once_and_sizes_that_change_nothing_are_left_out(smal
     ]
 
 
+@pytest.mark.slow
 def test_more_rays_are_nearer_to_the_truth_and_effects_that_the_scene_calls_for_are_missed(small):
     by_name = {trial.setting.name: trial for trial in small[4]}
     decided = by_name["as the scene decides"].psnr_db
     assert by_name["samples 1"].psnr_db < by_name["samples 3"].psnr_db
-    assert by_name["width 32"].psnr_db < decided - 5.0
+    assert by_name["width 16"].psnr_db < decided - 5.0
     assert by_name[f"effect {NEAR_FIELD} off"].psnr_db < decided - 5.0
     assert by_name[f"effect {SHADOW} off"].psnr_db < decided - 3.0
     # Noise is in no comparison: no second picture repeats it.
@@ -79,6 +81,7 @@ def test_more_rays_are_nearer_to_the_truth_and_effects_that_the_scene_calls_for_
     assert by_name["rays 4"].psnr_db < decided
 
 
+@pytest.mark.slow
 def test_the_truth_says_how_far_it_has_converged(small):
     scene, photos, exact, _, _ = small
     assert truth_error(exact) == 0.0
@@ -87,6 +90,7 @@ def test_the_truth_says_how_far_it_has_converged(small):
     assert truth_error(one) == pytest.approx(2.0 * truth_error(four), rel=0.25)
 
 
+@pytest.mark.slow
 def test_the_table_compares_panels_with_those_found_in_the_truth(small):
     _, _, truth, _, trials = small
     first, base, *rest = scene_rows(truth, trials)
@@ -110,6 +114,7 @@ def test_what_makes_no_sense_is_refused():
         SceneVariants(rays=(0, 4))
 
 
+@pytest.mark.slow
 def test_rays_need_the_renderer_that_has_them(small):
     scene, photos, truth, settings, _ = small
     with pytest.raises(ValueError, match="rays 4"):

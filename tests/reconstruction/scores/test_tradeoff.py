@@ -66,6 +66,7 @@ def test_more_samples_of_a_row_take_the_posterior_and_change_what_is_compared() 
     assert np.abs(few - all_of_them).max() > 1e-6
 
 
+@pytest.mark.slow
 def test_photos_searched_together_and_other_rectifications_are_knobs_of_made_sets() -> None:
     photos = made_set("made-curved", 1, wide_camera(640, 480), n_beside=1)
     base = SegmentationParameters(long_side_px=640)
