@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.lists import counts, words
 from groundstation.cli.options import add_profile_argument, checked_seed, effect_wishes, in_words_of_options, number
 from planning.errors import InputError
 
@@ -52,10 +53,30 @@ def add_arguments(parser: Any) -> None:
         help="also learn reflections from N small photos, with all effects and without each (default 0: do not)",
     )
     varied = parser.add_argument_group("what varies (lists with commas)").add_argument
-    varied("--samples", default="1,2,3,4", metavar="LIST", help="rays along a pixel's side (default: %(default)s)")
-    varied("--widths", default="128,256", metavar="LIST", help="rendered so wide and enlarged (default: %(default)s)")
-    varied("--rays", default="", metavar="LIST", help="a pixel of Mitsuba, such as 4,16,64 (default: none)")
-    varied("--turn", default="all", metavar="LIST", help="effects that are turned on or off (default: all; or none)")
+    varied(
+        "--samples",
+        type=counts,
+        default="1,2,3,4",
+        metavar="LIST",
+        help="rays along a pixel's side (default: %(default)s)",
+    )
+    varied(
+        "--widths",
+        type=counts,
+        default="128,256",
+        metavar="LIST",
+        help="rendered so wide and enlarged (default: %(default)s)",
+    )
+    varied(
+        "--rays", type=counts, default=(), metavar="LIST", help="a pixel of Mitsuba, such as 4,16,64 (default: none)"
+    )
+    varied(
+        "--turn",
+        type=words,
+        default="all",
+        metavar="LIST",
+        help="effects that are turned on or off (default: all; or none)",
+    )
 
 
 def run_scene(options: argparse.Namespace) -> int:
@@ -121,31 +142,15 @@ def _wish(options: argparse.Namespace) -> SceneWish:
 def _variants(options: argparse.Namespace) -> SceneVariants:
     from reconstruction.scores.scene_tradeoff import OF_A_PHOTO, SceneVariants
 
-    words = _words(options.turn)
+    turned = options.turn
     by_option = {name.lower().replace(" ", "-"): name for name in OF_A_PHOTO}
-    if words == ("all",):
+    if turned == ("all",):
         effects = OF_A_PHOTO
-    elif words == ("none",):
+    elif turned == ("none",):
         effects = ()
     else:
-        effects = tuple(by_option.get(word, word) for word in words)
-    return SceneVariants(
-        _counts("--samples", options.samples),
-        _counts("--widths", options.widths),
-        _counts("--rays", options.rays),
-        effects,
-    )
-
-
-def _words(text: str) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
-
-
-def _counts(option: str, text: str) -> tuple[int, ...]:
-    words = _words(text)
-    if not all(word.isdecimal() for word in words):
-        raise InputError(f"{option}: expected whole numbers such as 1,2,4, got '{text}'")
-    return tuple(map(int, words))
+        effects = tuple(by_option.get(word, word) for word in turned)
+    return SceneVariants(options.samples, options.widths, options.rays, effects)
 
 
 def _print(made: SceneTradeoff) -> None:

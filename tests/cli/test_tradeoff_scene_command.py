@@ -44,8 +44,7 @@ def test_it_speaks_json(reflight, tmp_path):
     ("arguments", "said"),
     [
         (("--turn", "fog"), "there is no effect 'fog'"),
-        (("--samples", "1,x"), "--samples: expected whole numbers"),
-        (("--samples", "0"), "--samples: expected 1 or more"),
+        (("--widths", "8"), "--widths: expected 16 or more"),
         (("--truth-rays", "-1"), "--truth-rays: expected 0 or more"),
         (("--width", "3"), "--width: expected 16 to 20000"),
         (("--views", "0"), "--views"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +13,7 @@ from groundstation.cli.commands.plan import add_request_arguments, request_of
 from groundstation.cli.commands.score import add_set_arguments
 from groundstation.cli.commands.score import request_of as score_request_of
 from groundstation.cli.commands.segment import add_parameter_arguments
+from groundstation.cli.lists import above_zero, count, counts, numbers, wholes, words
 from groundstation.cli.options import checked_seed
 from planning.errors import InputError
 
@@ -89,13 +89,13 @@ def _add_plan(kinds: Any) -> None:
     _add_output(parser)
     add_request_arguments(parser)
     varied = parser.add_argument_group("what varies (lists with commas)").add_argument
-    varied("--methods", type=_words, default="greedy,pso,noto,orbit", metavar="LIST", help="default: %(default)s")
-    varied("--precisions", type=_words, default="f32,f64", metavar="LIST", help="default: %(default)s")
-    varied("--steps", type=_numbers, default="30,15,10,5", metavar="LIST", help="degrees (default: %(default)s)")
-    varied("--candidates", type=_counts, default="2000,5000,20000", metavar="LIST", help="default: %(default)s")
-    varied("--seeds", type=_count, default=1, metavar="N", help="runs of each setting, from --seed on (default 1)")
+    varied("--methods", type=words, default="greedy,pso,noto,orbit", metavar="LIST", help="default: %(default)s")
+    varied("--precisions", type=words, default="f32,f64", metavar="LIST", help="default: %(default)s")
+    varied("--steps", type=numbers, default="30,15,10,5", metavar="LIST", help="degrees (default: %(default)s)")
+    varied("--candidates", type=counts, default="2000,5000,20000", metavar="LIST", help="default: %(default)s")
+    varied("--seeds", type=count, default=1, metavar="N", help="runs of each setting, from --seed on (default 1)")
     where = parser.add_argument_group("where").add_argument
-    where("--jobs", type=_count, default=1, metavar="N", help="runs at a time; 1 (default) is needed to compare times")
+    where("--jobs", type=count, default=1, metavar="N", help="runs at a time; 1 (default) is needed to compare times")
     where("--cluster", metavar="ADDRESS", help="run on a Dask cluster, such as tcp://10.0.0.5:8786")
 
 
@@ -113,9 +113,11 @@ def _add_route(kinds: Any) -> None:
     add = parser.add_argument
     add("file", type=Path, nargs="+", metavar="FILE", help="TSPLIB file (.tsp, .atsp), plan or site")
     _add_output(parser)
-    add("--seconds", type=_seconds, default=DEFAULT_SECONDS, metavar="S", help="for each method (default %(default)g)")
+    add(
+        "--seconds", type=above_zero, default=DEFAULT_SECONDS, metavar="S", help="for each method (default %(default)g)"
+    )
     methods = "nearest-neighbour,local-search,pyvrp,pyvrp-cold"
-    add("--methods", type=_words, default=methods, metavar="LIST", help="default: %(default)s")
+    add("--methods", type=words, default=methods, metavar="LIST", help="default: %(default)s")
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
 
 
@@ -134,21 +136,21 @@ def _add_segment(kinds: Any) -> None:
     add_set_arguments(parser)
     add_parameter_arguments(parser)
     varied = parser.add_argument_group("what varies (lists with commas)").add_argument
-    varied("--sizes", type=_counts, default="400,800,1200,1600", metavar="LIST", help="default: %(default)s")
+    varied("--sizes", type=counts, default="400,800,1200,1600", metavar="LIST", help="default: %(default)s")
     varied(
         "--samples",
-        type=_wholes,
+        type=wholes,
         default="32,128,512,0",
         metavar="LIST",
         help="pixels of a row that are compared, with use_posterior on; 0: all (default: %(default)s)",
     )
-    varied("--detectors", type=_words, default=(), metavar="LIST", help="such as gradient,hough,lsd (default: none)")
+    varied("--detectors", type=words, default=(), metavar="LIST", help="such as gradient,hough,lsd (default: none)")
     varied(
-        "--views", type=_counts, default=(), metavar="LIST", help="photos searched together, such as 1,3,5; made sets"
+        "--views", type=counts, default=(), metavar="LIST", help="photos searched together, such as 1,3,5; made sets"
     )
     varied(
         "--rectified-by",
-        type=_words,
+        type=words,
         default=(),
         metavar="LIST",
         help="such as exact,tangent,polynomial (default: none); made sets",
@@ -172,44 +174,6 @@ def _add_scene(kinds: Any) -> None:
 def _add_output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
-
-
-def _words(text: str) -> tuple[str, ...]:
-    words = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
-    if not words:
-        raise argparse.ArgumentTypeError(f"expected a list such as a,b, got '{text}'")
-    return words
-
-
-def _seconds(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not (math.isfinite(value) and value > 0.0):
-        raise argparse.ArgumentTypeError(f"expected a number above 0, got '{text}'")
-    return value
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    return tuple(_seconds(word) for word in _words(text))
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"expected a whole number of 1 or more, got '{text}'")
-    return int(text)
-
-
-def _counts(text: str) -> tuple[int, ...]:
-    return tuple(_count(word) for word in _words(text))
-
-
-def _wholes(text: str) -> tuple[int, ...]:
-    words = _words(text)
-    if not all(word.isdecimal() for word in words):
-        raise argparse.ArgumentTypeError(f"expected whole numbers such as 32,128,0, got '{text}'")
-    return tuple(map(int, words))
 
 
 def run_plan(options: argparse.Namespace) -> int:
