@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.cameras import PosedPhoto
+from reconstruction.cameras import Intrinsics, PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels, facing, without_hidden
 from reconstruction.ray_casting import RayCaster
 
@@ -66,12 +66,18 @@ def straightened(photo: PosedPhoto, image: Image) -> tuple[PosedPhoto, Image]:
     Where the straight picture reaches beyond the photo it is black.
     """
     lens = photo.intrinsics
+    x, y = straightening_maps(lens)
+    picture = cv2.remap(image, x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_CONSTANT, borderValue=0)
+    return replace(photo, intrinsics=lens.straight()), np.asarray(picture, np.uint8)
+
+
+def straightening_maps(lens: Intrinsics) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Column and row in the photo of each pixel of the straight picture, shape (h, w), as `cv2.remap` counts them."""
     shifted = lens.matrix.copy()
     shifted[:2, 2] -= 0.5
     size = lens.width_px, lens.height_px
     x, y = cv2.initUndistortRectifyMap(shifted, np.array(lens.distortion), np.eye(3), shifted, size, cv2.CV_32FC1)
-    picture = cv2.remap(image, x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_CONSTANT, borderValue=0)
-    return replace(photo, intrinsics=lens.straight()), np.asarray(picture, np.uint8)
+    return np.asarray(x, np.float32), np.asarray(y, np.float32)
 
 
 def draw_layers(photo: PosedPhoto, scene: Scene, normal_step: int = 1) -> Layers:
