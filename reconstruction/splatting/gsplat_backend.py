@@ -1,0 +1,168 @@
+"""The rasteriser for CUDA: gsplat's 2DGS kernels (Apache-2.0, extra `cuda`), with what they lack made from channels.
+
+gsplat's own depth is that of splats' middles, centimetres off on a plane seen at an angle. Here each splat's normal and
+the distance of its plane are blended as four more channels, and the depth is where the pixel's ray meets the blended
+plane. It is exact on planes; across an edge it is that of a plane between the two.
+
+Differences from the other rasterisers that its compiled kernels fix: alpha up to 0.999, the splat that would close a
+pixel is left out, the low-pass filter lies in the middle of the splat's box, splats end at three standard deviations,
+and gradients are added up in any order. Settings other than `low_pass_px`, `min_alpha` and `near_m` have no effect; the
+first two cannot be changed.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Callable
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from planning.errors import InputError
+from reconstruction.splatting.projection import rotations
+from reconstruction.splatting.raster import Raster, RasterSettings
+from reconstruction.splatting.views import View
+
+Blend = Callable[[Tensor], Tensor]
+"""Features, shape (n, c), to the picture of them, shape (h, w, c)."""
+
+TILE_PX = 16
+LABELS_AT_ONCE = 32
+"""Channels in one pass that gsplat has kernels for."""
+
+LEAST_COSINE = 1e-3
+"""Between a ray and the blended plane: seen flatter, the plane's depth says nothing."""
+
+
+def why_not_gsplat() -> str:
+    """What keeps gsplat from working here; empty where nothing does. Its kernels are compiled on the first call."""
+    if not torch.cuda.is_available():
+        return "torch finds no CUDA device"
+    if importlib.util.find_spec("gsplat") is None:
+        return "gsplat is not installed (pip install 'reflight[cuda]')"
+    from gsplat.cuda import _backend
+
+    return "" if _backend._C is not None else "gsplat's kernels are not compiled, which takes NVIDIA's CUDA toolkit"
+
+
+def rasterise_gsplat(
+    means: Tensor,
+    quats_wxyz: Tensor,
+    scales: Tensor,
+    opacities: Tensor,
+    features: Tensor,
+    view: View,
+    screen_offsets: Tensor | None,
+    labels: Tensor | None,
+    settings: RasterSettings,
+) -> Raster:
+    """See `rasteriser.rasterise`; all float32 on one CUDA device.
+
+    Weights take one more pass there and back over one channel, labels one more for every 32 different ones.
+
+    Raises
+    ------
+    InputError
+        gsplat does not work here.
+    """
+    reason = why_not_gsplat()
+    if reason:
+        raise InputError(f"splats on CUDA are drawn by gsplat, and {reason}; or compute on the processor")
+    usual = RasterSettings()
+    if (settings.low_pass_px, settings.min_alpha) != (usual.low_pass_px, usual.min_alpha):
+        raise ValueError(f"low_pass_px, min_alpha: gsplat has {usual.low_pass_px} and {usual.min_alpha} compiled in")
+    from gsplat import fully_fused_projection_2dgs
+
+    camera = view.cam_from_world.to(means)
+    lens = means.new_tensor([[view.fx_px, 0.0, view.cx_px], [0.0, view.fy_px, view.cy_px], [0.0, 0.0, 1.0]])
+    thickness = torch.ones_like(scales[:, :1])
+    radii, centres, depths, transforms, normals = fully_fused_projection_2dgs(
+        means, quats_wxyz, torch.cat([scales, thickness], dim=1), camera[None], lens[None],
+        view.width_px, view.height_px, near_plane=settings.near_m,
+    )  # fmt: skip
+    if screen_offsets is not None:
+        # Rows of the transform are x w, y w and w: a shift by o adds o w, as the definition has it.
+        centres = centres + screen_offsets
+        transforms = torch.cat([transforms[..., :2, :] + screen_offsets[..., None] * transforms[..., 2:, :],
+                                transforms[..., 2:, :]], dim=-2)  # fmt: skip
+    projected = (radii, centres, depths, transforms, normals)
+    channels = torch.cat([features, plane_channels(means, quats_wxyz, view)], dim=1)
+    picture, alphas = _blend(channels, opacities, projected, view)
+    fixed = tuple(t.detach() for t in projected)
+
+    def again(values: Tensor) -> Tensor:
+        return _blend(values, opacities.detach(), fixed, view)[0]
+
+    return Raster(
+        picture[..., : features.shape[1]],
+        alphas,
+        plane_depths(picture[..., features.shape[1] :], alphas, view, settings.near_m),
+        None if labels is None else heaviest_labels(again, labels),
+        accumulated_weights(again, means),
+        radii[0].amax(dim=-1).to(means),
+    )
+
+
+def _blend(channels: Tensor, opacities: Tensor, projected: tuple[Any, ...], view: View) -> tuple[Tensor, Tensor]:
+    """Channels, shape (n, c), and alphas of all splats as pictures, shapes (h, w, c) and (h, w)."""
+    from gsplat import isect_offset_encode, isect_tiles, rasterize_to_pixels_2dgs
+
+    radii, centres, depths, transforms, normals = projected
+    n_columns, n_rows = -(-view.width_px // TILE_PX), -(-view.height_px // TILE_PX)
+    _, tile_ids, splat_ids = isect_tiles(centres.detach(), radii, depths.detach(), TILE_PX, n_columns, n_rows)
+    starts = isect_offset_encode(tile_ids, 1, n_columns, n_rows).reshape(1, n_rows, n_columns)
+    picture, alphas, *_ = rasterize_to_pixels_2dgs(
+        centres, transforms, channels[None], opacities[None], normals, torch.zeros_like(centres),
+        view.width_px, view.height_px, TILE_PX, starts, splat_ids,
+    )  # fmt: skip
+    return picture[0], alphas[0, ..., 0]
+
+
+def plane_channels(means: Tensor, quats_wxyz: Tensor, view: View) -> Tensor:
+    """Normals that face the camera, in its axes, and normal . middle, shape (n, 4)."""
+    camera = view.cam_from_world.to(means)
+    normals = rotations(quats_wxyz)[..., 2] @ camera[:3, :3].T
+    offsets = (normals * (means @ camera[:3, :3].T + camera[:3, 3])).sum(dim=-1, keepdim=True)
+    facing = torch.where(offsets.detach() > 0.0, -1.0, 1.0)
+    return torch.cat([normals * facing, offsets * facing], dim=1)
+
+
+def plane_depths(planes: Tensor, alphas: Tensor, view: View, near_m: float) -> Tensor:
+    """Sum of weights times depth, shape (h, w), from blended `plane_channels`, shape (h, w, 4).
+
+    A blended plane sum(w n) . p = sum(w o) meets the ray p = z d, with d_z = 1, at z = sum(w o) / (sum(w n) . d).
+    """
+    x = (torch.arange(view.width_px).to(planes) + 0.5 - view.cx_px) / view.fx_px
+    y = (torch.arange(view.height_px).to(planes) + 0.5 - view.cy_px) / view.fy_px
+    along = planes[..., 0] * x + planes[..., 1] * y[:, None] + planes[..., 2]
+    length = (1.0 + x * x + (y * y)[:, None]).sqrt()
+    is_met = along < -LEAST_COSINE * length * alphas.detach().clamp(min=1e-6)
+    depths = planes[..., 3] / torch.where(is_met, along, -torch.ones_like(along))
+    return torch.where(is_met, depths, torch.zeros_like(depths)).clamp(min=near_m) * alphas
+
+
+def accumulated_weights(blend: Blend, means: Tensor) -> Tensor:
+    """Each splat's weight added up over the picture, shape (n,): a channel's sum's gradient to the splat's value."""
+    with torch.enable_grad():
+        values = torch.zeros_like(means[:, :1]).detach().requires_grad_()
+        total = blend(values).sum()
+        (weights,) = torch.autograd.grad(total, values)
+    return weights[:, 0]
+
+
+@torch.no_grad()
+def heaviest_labels(blend: Blend, labels: Tensor) -> Tensor:
+    """Label of the heaviest accumulated weight of each pixel, shape (h, w): each label's splats are a channel of 1s."""
+    best, found = None, None
+    for known in torch.unique(labels).split(LABELS_AT_ONCE):
+        votes, which = blend((labels[:, None] == known).to(torch.float32)).max(dim=-1)
+        these = torch.where(votes > 0.0, known[which].to(torch.int32), -1)
+        if best is None or found is None:
+            best, found = votes, these
+        else:
+            is_better = votes > best
+            best, found = torch.where(is_better, votes, best), torch.where(is_better, these, found)
+    if found is None:
+        raise ValueError("labels: expected one for each of at least one splat")
+    return found.to(torch.int32)

@@ -1,0 +1,135 @@
+"""The rasteriser for processors: compiled kernels on threads, behind torch's autograd. float32."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+from torch.autograd.function import once_differentiable
+
+from planning.jit import chunks
+from reconstruction.splatting.numba_blend import blend_tiles, limits_of
+from reconstruction.splatting.numba_gradients import gradients_of_tiles
+from reconstruction.splatting.numba_projection import N_GEOMETRY, N_GRADIENTS, gradients_of_splats, project_splats
+from reconstruction.splatting.numba_tiles import run_on_threads, sort_into_tiles
+from reconstruction.splatting.raster import Raster, RasterSettings
+from reconstruction.splatting.views import View
+
+SPLATS_AT_ONCE, TILES_AT_ONCE = 4096, 8
+"""Of one call of a kernel: a millisecond or so, so that threads end together."""
+
+
+class _Rasterise(torch.autograd.Function):
+    """Means, quats, scales, opacities, features and offsets to features, alphas, depths, labels, weights and radii."""
+
+    @staticmethod
+    def forward(ctx: Any, view: View, settings: RasterSettings, labels: Any, *inputs: Tensor) -> tuple[Tensor, ...]:
+        ctx.set_materialize_grads(False)
+        means, quats, scales, opacities, features, offsets = (np.ascontiguousarray(t.detach().numpy()) for t in inputs)
+        n_channels, features = features.shape[1], _padded(features)
+        n, limits, size = len(means), limits_of(settings), settings.tile_px
+        camera = np.ascontiguousarray(view.cam_from_world.numpy())
+        lens = np.array([view.fx_px, view.fy_px, view.cx_px, view.cy_px])
+        geometry, centres, depth = np.empty((n, N_GEOMETRY), np.float32), np.empty((n, 2)), np.empty(n)
+        boxes, radii = np.empty((n, 4), np.int32), np.empty(n, np.float32)
+        least_change = settings.least_depth_change(min(view.fx_px, view.fy_px))
+        of_projection = np.array(
+            [settings.near_m, settings.min_alpha, settings.low_pass_px, settings.reach, least_change]
+        )
+
+        def project(start: int, stop: int) -> None:
+            project_splats(
+                means, quats, scales, opacities, offsets, camera, lens, (view.width_px, view.height_px), of_projection,
+                start, stop, geometry, centres, depth, boxes, radii,
+            )  # fmt: skip
+
+        run_on_threads(project, chunks(n, SPLATS_AT_ONCE), settings.threads)
+        tiles = sort_into_tiles(boxes, depth, view.width_px, view.height_px, size)
+        picture = np.empty((view.height_px, view.width_px, n_channels), np.float32)
+        alphas, depths = np.empty(picture.shape[:2], np.float32), np.empty(picture.shape[:2], np.float32)
+        wanted_labels = (
+            np.zeros(0, np.int32) if labels is None else np.ascontiguousarray(labels.to(torch.int32).numpy())
+        )
+        heaviest = np.full(picture.shape[:2] if labels is not None else (0, 0), -1, np.int32)
+        slot_weights = np.empty(len(tiles.splats), np.float32)
+
+        def blend(start: int, stop: int) -> None:
+            blend_tiles(
+                geometry, centres, boxes, features, tiles.starts, tiles.splats, limits, size, tiles.n_columns,
+                wanted_labels, start, stop, picture, alphas, depths, heaviest, slot_weights,
+            )  # fmt: skip
+
+        run_on_threads(blend, chunks(len(tiles.starts) - 1, TILES_AT_ONCE), settings.threads)
+        weights = np.bincount(tiles.splats, slot_weights, n).astype(np.float32)
+        ctx.kept = (view, settings, tiles, geometry, centres, boxes, limits, camera, lens)
+        ctx.save_for_backward(*inputs)
+        out = [torch.from_numpy(a) for a in (picture, alphas, depths, heaviest, weights, radii)]
+        ctx.mark_non_differentiable(*out[3:])
+        return tuple(out)
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx: Any, *wanted: Any) -> Any:
+        view, settings, tiles, geometry, centres, boxes, limits, camera, lens = ctx.kept
+        arrays = [np.ascontiguousarray(t.detach().numpy()) for t in ctx.saved_tensors]
+        means, quats, scales = arrays[:3]
+        features = _padded(arrays[4])
+        shape = (view.height_px, view.width_px)
+        of_features = _gradient(wanted[0], (*shape, arrays[4].shape[1]))
+        of_more = np.ascontiguousarray(np.stack([_gradient(w, shape) for w in wanted[1:3]], axis=-1))
+        slots = np.empty((len(tiles.splats), N_GRADIENTS + features.shape[1]), np.float32)
+
+        def of_tiles(start: int, stop: int) -> None:
+            gradients_of_tiles(
+                geometry, centres, boxes, features, tiles.starts, tiles.splats, limits, settings.tile_px,
+                tiles.n_columns, of_features, of_more, start, stop, slots,
+            )  # fmt: skip
+
+        run_on_threads(of_tiles, chunks(len(tiles.starts) - 1, TILES_AT_ONCE), settings.threads)
+        found = [np.zeros(a.shape, np.float32) for a in arrays[:5]] + [np.zeros((len(means), 2), np.float32)]
+
+        def of_splats(start: int, stop: int) -> None:
+            gradients_of_splats(
+                means, quats, scales, geometry, camera, lens, tiles.slots, tiles.places, slots, start, stop, *found
+            )
+
+        run_on_threads(of_splats, chunks(len(means), SPLATS_AT_ONCE), settings.threads)
+        if len(arrays[5]) == 0:
+            found[5] = np.zeros((0, 2), np.float32)
+        return (None, None, None, *(torch.from_numpy(a) for a in found))
+
+
+def _gradient(wanted: Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float32]:
+    if wanted is None:
+        return np.zeros(shape, np.float32)
+    return np.ascontiguousarray(wanted.detach().numpy())
+
+
+def _padded(features: NDArray[np.float32]) -> NDArray[np.float32]:
+    """With as many columns of 0 as make their number a multiple of four, which the way back takes at once."""
+    missing = -features.shape[1] % 4
+    return np.pad(features, ((0, 0), (0, missing))) if missing else features
+
+
+def rasterise_numba(
+    means: Tensor,
+    quats_wxyz: Tensor,
+    scales: Tensor,
+    opacities: Tensor,
+    features: Tensor,
+    view: View,
+    screen_offsets: Tensor | None,
+    labels: Tensor | None,
+    settings: RasterSettings,
+) -> Raster:
+    """See `rasteriser.rasterise`; all float32 in main memory."""
+    offsets = means.new_zeros((0, 2)) if screen_offsets is None else screen_offsets
+    apply: Callable[..., tuple[Tensor, ...]] = _Rasterise.apply
+    picture, alphas, depths, heaviest, weights, radii = apply(
+        view, settings, labels, means, quats_wxyz, scales, opacities, features, offsets
+    )
+    return Raster(picture, alphas, depths, heaviest if labels is not None else None, weights, radii)

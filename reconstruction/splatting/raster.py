@@ -1,0 +1,107 @@
+"""What a rasteriser is asked for and what it gives back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from torch import Tensor
+
+FLAT_ENOUGH_RAD = math.radians(80.0)
+"""Between line of sight and normal: so far even splats smaller than a pixel have the depth of their plane."""
+
+LEAST_ALPHA = 1e-4
+"""Of `min_alpha`: as far as the compiled exponential reaches."""
+
+
+@dataclass(frozen=True, slots=True)
+class RasterSettings:
+    """Settings that all rasterisers share.
+
+    Parameters
+    ----------
+    low_pass_px
+        Standard deviation of the smallest disc a splat is drawn as, so that none falls between pixels; 2DGS (Huang et
+        al., 2024, Eq. 11) has sqrt(1/2).
+    near_m
+        Splats whose middle is nearer than this, along the optical axis, are not drawn, and what is nearer of the others
+        is cut off.
+    min_alpha
+        Below, a splat does not count in a pixel: half a step of an 8-bit picture. It also ends the splat, so that it
+        cannot be 0.
+    max_alpha
+        No splat covers more: gradients contain 1 / (1 - alpha).
+    min_transmittance
+        A pixel takes no more splats once less than this shows through; the splat that goes below is still taken, so
+        that this is all that can be missing.
+    tile_px
+        Side of the squares the picture is worked in; changes time, not the picture.
+    threads
+        How many to use; 0 stands for all cores. Changes time, not one bit of the result.
+    """
+
+    low_pass_px: float = math.sqrt(0.5)
+    near_m: float = 0.1
+    min_alpha: float = 1.0 / 255.0
+    max_alpha: float = 0.99
+    min_transmittance: float = 1e-4
+    tile_px: int = 16
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("low_pass_px", "near_m"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ValueError(f"{name}: expected a positive number, got {value}")
+        if not LEAST_ALPHA <= self.min_alpha < self.max_alpha < 1.0:
+            raise ValueError(
+                f"expected {LEAST_ALPHA} <= min_alpha < max_alpha < 1, got {self.min_alpha}, {self.max_alpha}"
+            )
+        if not 0.0 <= self.min_transmittance < 1.0:
+            raise ValueError(f"min_transmittance: expected 0 to 1, got {self.min_transmittance}")
+        if not (8 <= self.tile_px <= 64 and self.tile_px % 8 == 0):
+            raise ValueError(f"tile_px: expected 8, 16, ... 64, got {self.tile_px}")
+        if self.threads < 0:
+            raise ValueError(f"threads: expected 0 or more, got {self.threads}")
+
+    @property
+    def reach(self) -> float:
+        """Standard deviations up to which an opaque splat counts."""
+        return math.sqrt(-2.0 * math.log(self.min_alpha))
+
+    def least_depth_change(self, focal_px: float) -> float:
+        """Depth, as a share of that of its middle, by which any splat may differ from it; see `torch_twin`."""
+        return self.low_pass_px * self.reach * math.tan(FLAT_ENOUGH_RAD) / focal_px
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Raster:
+    """A picture of splats.
+
+    With w_i the weight of splat i in a pixel, its alpha times what those in front of it let through:
+
+    Parameters
+    ----------
+    features
+        Sum of w_i f_i, shape (h, w, c); no background is added.
+    alphas
+        Sum of w_i, shape (h, w), 0 to 1.
+    depths
+        Sum of w_i z_i, shape (h, w), metres: z_i along the optical axis, of where the ray meets the splat. Divide by
+        `alphas` for a depth.
+    labels
+        Of each pixel the label of the heaviest accumulated weight, shape (h, w), int32: the lowest of several equal
+        ones, and -1 where there is no splat. None where no labels were given.
+    weights
+        Of each splat, w_i added up over all pixels, shape (n,). No gradient.
+    radii_px
+        Half the larger side of the box that each splat can touch, also outside the picture, shape (n,); 0 where it is
+        not drawn. No gradient. (The torch rasteriser measures what it touches inside.)
+    """
+
+    features: Tensor
+    alphas: Tensor
+    depths: Tensor
+    labels: Tensor | None
+    weights: Tensor
+    radii_px: Tensor
