@@ -1,0 +1,75 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from planning.errors import InputError
+from planning.mesh import from_corners, write_mesh
+from reconstruction.colmap.record import NO_POINTS, ColmapModel, ColmapPoints
+from reconstruction.dataset.records import coloured_ply
+from reconstruction.reflections.photo_set import PanelPlanes, PhotoSet
+from reconstruction.splatting.ply_file import write_blocks
+from reconstruction.splatting.start_data import known_points, known_scene, read_points
+
+XYZ = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+RGB = np.array([[10, 20, 30], [40, 50, 60]], np.uint8)
+PANEL = np.array([[(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)]], float)
+
+
+def photo_set(folder):
+    return PhotoSet(folder, (), PanelPlanes(PANEL), 1.0, {})
+
+
+def test_points_of_a_data_set_come_with_their_colours(tmp_path):
+    (tmp_path / "points.ply").write_bytes(coloured_ply(XYZ, RGB))
+    found = known_scene(photo_set(tmp_path))
+    assert np.array_equal(found.points_enu_m, XYZ)
+    assert np.array_equal(found.rgb, RGB)
+    assert np.array_equal(found.corners_enu_m, PANEL)
+    assert len(found.mesh.triangles) == 0
+    assert found.ground_z_m is None
+
+
+def test_the_refined_mesh_goes_before_the_building_and_stands_on_the_ground(tmp_path):
+    corners = np.array([[[0, 0, -3], [1, 0, 0], [0, 0, 1]]], float)
+    write_mesh(tmp_path / "building.ply", from_corners(np.repeat(corners, 2, axis=0)))
+    assert len(known_scene(photo_set(tmp_path)).mesh.triangles) == 2
+    write_mesh(tmp_path / "refined.ply", from_corners(corners))
+    found = known_scene(photo_set(tmp_path))
+    assert len(found.mesh.triangles) == 1
+    assert found.ground_z_m == -3.0
+
+
+def test_a_folder_without_points_or_mesh_still_has_its_panels(tmp_path):
+    found = known_scene(photo_set(tmp_path))
+    assert (len(found.points_enu_m), len(found.rgb), len(found.corners_enu_m)) == (0, 0, 1)
+
+
+def test_points_without_colours_are_grey(tmp_path):
+    row = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4")])
+    write_blocks(tmp_path / "a.ply", 2, row, [], [np.zeros(2, row)])
+    assert read_points(tmp_path / "a.ply")[1].tolist() == [[128] * 3] * 2
+
+
+@pytest.mark.parametrize(
+    ("names", "value", "message"), [(("x", "y"), 0.0, "have no 'z'"), (("x", "y", "z"), np.nan, "not finite numbers")]
+)
+def test_points_that_are_none_are_refused(tmp_path, names, value, message):
+    row = np.dtype([(name, "<f4") for name in names])
+    block = np.full(2, np.array([tuple([value] * len(names))], row))
+    write_blocks(tmp_path / "points.ply", 2, row, [], [block])
+    with pytest.raises(InputError, match=rf"points.ply.*{message}"):
+        known_scene(photo_set(tmp_path))
+
+
+def test_points_of_colmap_that_fit_badly_are_left_out():
+    points = ColmapPoints(
+        np.array([1, 2]), XYZ, RGB, np.array([0.5, 9.0]), np.zeros(3, np.int64), np.zeros((0, 2), np.int64)
+    )
+    found = known_points(ColmapModel({}, {}, points))
+    assert np.array_equal(found.points_enu_m, XYZ[:1])
+    assert np.array_equal(found.rgb, RGB[:1])
+    with pytest.raises(InputError, match="has no points to start from"):
+        known_points(ColmapModel({}, {}, NO_POINTS))
+    with pytest.raises(InputError, match="has no points to start from"):
+        known_points(ColmapModel({}, {}, replace(points, errors_px=np.array([5.0, 9.0]))))
