@@ -5,17 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import torch
 
 from planning.effects import Wish
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels
+from reconstruction.modelling.dssim_kernel import dissimilarity
 from reconstruction.photos.sharpness import sharpness
+from reconstruction.reflections.grid_box import GridBox
+from reconstruction.reflections.radiance_grid import RadianceGrid
 from reconstruction.scenes.bundled import bundled_scene
 from reconstruction.scenes.effect_names import NEAR_FIELD
 from reconstruction.scenes.renderer import Renderer, RenderSettings
 from reconstruction.scores.overlaps import pixel_overlaps
 from reconstruction.scores.raster import index_image
 from reconstruction.segmentation.segment import segment_rectified
+from reconstruction.splatting.rasteriser import rasterise
+from reconstruction.splatting.sky import Sky
+from reconstruction.splatting.splats import Splats
+from reconstruction.splatting.views import View
 
 
 def compile_kernels() -> None:
@@ -31,6 +39,9 @@ def compile_kernels() -> None:
     segment_rectified(picture)
     index = index_image([np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0]])], 12, 12)
     pixel_overlaps(index, index)
+    dissimilarity(np.zeros((12, 36)), np.zeros((12, 36)), 3, True)
+    _draw_splats()
+    _march_grid()
     court = bundled_scene("court")
     eastwards = court.panes.corners_enu_m[0].mean(axis=0) + np.array([12.0, 0.0, 0.0])
     facing = PosedPhoto("", Path(), lens, Pose.looking(eastwards, -90.0, 0.0))
@@ -38,6 +49,29 @@ def compile_kernels() -> None:
     for near in wishes:
         settings = RenderSettings(samples=1, wishes={NEAR_FIELD: near}, environment_rows=16)
         Renderer(court, settings).render(facing)
+
+
+def _draw_splats() -> None:
+    """Colours, raster and sky of a few splats, there and back."""
+    view = View(16, 16, 16.0, 16.0, 8.0, 8.0, torch.eye(4, dtype=torch.float64))
+    means = torch.tensor([[0.0, 0.0, 2.0], [0.1, 0.0, 3.0]])
+    quats, panels = torch.tensor([[1.0, 0.0, 0.0, 0.0]]).expand(2, 4), torch.zeros(2, dtype=torch.int32)
+    splats = Splats.of(means, quats, torch.full((2, 2), 0.3), torch.full((2,), 0.8), torch.full((2, 3), 0.5), panels)
+    raster = rasterise(
+        splats.means, splats.quats, splats.scales, splats.opacities, splats.features(view.position_m, 3), view,
+        labels=panels,
+    )  # fmt: skip
+    light = Sky(rows=4).behind(view.directions(), raster.alphas)
+    (raster.features.sum() + raster.depths.sum() + light.sum()).backward()  # type: ignore[no-untyped-call]
+
+
+def _march_grid() -> None:
+    """A few rays through a radiance grid, there and back, with and without gradients of the rays."""
+    grid = RadianceGrid(GridBox(0.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (4, 4, 4), 0.5, 1.0), 0.5, 0, 4)
+    points, directions = torch.zeros(4, 3), torch.tensor([[0.0, 0.0, 1.0]]).repeat(4, 1)
+    for is_moved in (False, True):
+        light = grid(points.clone().requires_grad_(is_moved), directions)
+        (light.sum() + grid.roughness(1.0, 1.0, 1.0)).backward()
 
 
 if __name__ == "__main__":

@@ -125,6 +125,34 @@ def _pixels_between(low: float, high: float, size: int) -> tuple[int, int]:
 
 
 @kernel
+def _see(
+    means: NDArray[np.float32],
+    quats_wxyz: NDArray[np.float32],
+    scales: NDArray[np.float32],
+    camera: Array,
+    lens: Array,
+    i: int,
+    tangents: Array,
+    slopes: Array,
+    jacobian: Array,
+) -> tuple[Triple, Quat]:
+    """Splat `i` in camera axes: its middle and rotation come back, tangents, slopes and Jacobian are filled in."""
+    x, y, z = _in_camera(camera, np.float64(means[i, 0]), np.float64(means[i, 1]), np.float64(means[i, 2]))
+    x, y, z = x + camera[0, 3], y + camera[1, 3], z + camera[2, 3]
+    qw, qx = np.float64(quats_wxyz[i, 0]), np.float64(quats_wxyz[i, 1])
+    qy, qz = np.float64(quats_wxyz[i, 2]), np.float64(quats_wxyz[i, 3])
+    first, second, quat = _rotation_columns((qw, qx, qy, qz))
+    tangents[0, 0], tangents[0, 1], tangents[0, 2] = _in_camera(camera, first[0], first[1], first[2])
+    tangents[1, 0], tangents[1, 1], tangents[1, 2] = _in_camera(camera, second[0], second[1], second[2])
+    for k in range(2):
+        scale = np.float64(scales[i, k])
+        slopes[k] = scale * tangents[k, 2] / z
+        jacobian[0, k] = lens[0] * (scale * tangents[k, 0] - x * slopes[k]) / z
+        jacobian[1, k] = lens[1] * (scale * tangents[k, 1] - y * slopes[k]) / z
+    return (x, y, z), quat
+
+
+@kernel
 def project_splats(
     means: NDArray[np.float32],
     quats_wxyz: NDArray[np.float32],
@@ -163,28 +191,15 @@ def project_splats(
     for i in range(start, stop):
         boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = 0, 0, 0, 0
         radii[i] = 0.0
-        mx, my, mz = np.float64(means[i, 0]), np.float64(means[i, 1]), np.float64(means[i, 2])
-        x, y, z = _in_camera(camera, mx, my, mz)
-        x, y, z = x + camera[0, 3], y + camera[1, 3], z + camera[2, 3]
-        q = (
-            np.float64(quats_wxyz[i, 0]),
-            np.float64(quats_wxyz[i, 1]),
-            np.float64(quats_wxyz[i, 2]),
-            np.float64(quats_wxyz[i, 3]),
-        )
+        (x, y, z), _ = _see(means, quats_wxyz, scales, camera, lens, i, tangents, slopes, jacobian)
         su, sv, opacity = np.float64(scales[i, 0]), np.float64(scales[i, 1]), np.float64(opacities[i])
-        # A NaN makes the sum one, and infinity the product.
-        is_finite = math.isfinite(0.0 * (x + y + z + q[0] + q[1] + q[2] + q[3] + su + sv + opacity))
+        # What is no number makes the sum one, and what is infinite the product.
+        total = x + y + z + su + sv + opacity
+        for k in range(4):
+            total += quats_wxyz[i, k]
+        is_finite = math.isfinite(0.0 * total)
         if not (is_finite and z > near_m and opacity >= least and su > 0.0 and sv > 0.0):
             continue
-        first, second, _ = _rotation_columns(q)
-        tangents[0, 0], tangents[0, 1], tangents[0, 2] = _in_camera(camera, first[0], first[1], first[2])
-        tangents[1, 0], tangents[1, 1], tangents[1, 2] = _in_camera(camera, second[0], second[1], second[2])
-        for k in range(2):
-            scale = su if k == 0 else sv
-            slopes[k] = scale * tangents[k, 2] / z
-            jacobian[0, k] = lens[0] * (scale * tangents[k, 0] - x * slopes[k]) / z
-            jacobian[1, k] = lens[1] * (scale * tangents[k, 1] - y * slopes[k]) / z
         cx, cy = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
         if len(offsets) > 0:
             cx, cy = cx + offsets[i, 0], cy + offsets[i, 1]
@@ -294,24 +309,10 @@ def gradients_of_splats(
             g_features[i, k] = g_all[k]
         g_opacities[i] = g[OPACITY]
         g_offsets[i, 0], g_offsets[i, 1] = g[CENTRE_X], g[CENTRE_Y]
-        mx, my, mz = np.float64(means[i, 0]), np.float64(means[i, 1]), np.float64(means[i, 2])
-        x, y, z = _in_camera(camera, mx, my, mz)
-        x, y, z = x + camera[0, 3], y + camera[1, 3], z + camera[2, 3]
-        q = (
-            np.float64(quats_wxyz[i, 0]),
-            np.float64(quats_wxyz[i, 1]),
-            np.float64(quats_wxyz[i, 2]),
-            np.float64(quats_wxyz[i, 3]),
-        )
-        first, second, quat = _rotation_columns(q)
-        tangents[0, 0], tangents[0, 1], tangents[0, 2] = _in_camera(camera, first[0], first[1], first[2])
-        tangents[1, 0], tangents[1, 1], tangents[1, 2] = _in_camera(camera, second[0], second[1], second[2])
+        (x, y, z), quat = _see(means, quats_wxyz, scales, camera, lens, i, tangents, slopes, jacobian)
         has_disc = geometry[i, J_XU] != EDGE_ON_JACOBIAN
         for k in range(2):
             g_jacobian[0, k], g_jacobian[1, k], g_slopes[k] = 0.0, 0.0, 0.0
-            slopes[k] = scales[i, k] * tangents[k, 2] / z
-            jacobian[0, k] = lens[0] * (scales[i, k] * tangents[k, 0] - x * slopes[k]) / z
-            jacobian[1, k] = lens[1] * (scales[i, k] * tangents[k, 1] - y * slopes[k]) / z
         if has_disc:
             _back_through_disc(jacobian, slopes, g, g_jacobian, g_slopes)
         # x / z and y / z appear in the middle's pixel and in the Jacobian; the rest is divided by z.
