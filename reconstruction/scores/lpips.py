@@ -9,7 +9,7 @@ The weights are the user's (`lpips_weights`). Scores of different backbones cann
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -35,11 +35,24 @@ TILE_PX, MARGIN_PX = 512, 112
 a multiple of 16), so that tiles change nothing; VGG takes 0.7 GB for one."""
 
 
+Mask = NDArray[np.bool_]
+
+
+def lpips(weights: LpipsWeights, found: NDArray[Any], truth: NDArray[Any], mask: Mask | None = None) -> float | None:
+    """How unlike two pictures look, 0 for equal ones; of all of them, or of what a mask shows.
+
+    Returns
+    -------
+    None where the mask is empty, or a side shorter than `LEAST_PX`.
+    """
+    return lpips_of_masks(weights, found, truth, (mask,))[0]
+
+
 @torch.no_grad()
-def lpips(
-    weights: LpipsWeights, found: NDArray[Any], truth: NDArray[Any], mask: NDArray[np.bool_] | None = None
-) -> float | None:
-    """How unlike two pictures look, 0 for equal ones.
+def lpips_of_masks(
+    weights: LpipsWeights, found: NDArray[Any], truth: NDArray[Any], masks: Sequence[Mask | None]
+) -> tuple[float | None, ...]:
+    """`lpips` of several masks, None for all of the pictures, for the work of one.
 
     With a mask, each layer's mean is weighted by the share of each place's pixels that are in the mask; features look
     beyond it. Without, it is the metric as published.
@@ -48,31 +61,28 @@ def lpips(
     ----------
     found, truth
         Shape (h, w, 3); floating point as 0 to 1, clipped to it, or uint8 as 0 to 255.
-    mask
-        Shape (h, w).
-
-    Returns
-    -------
-    None where the mask is empty, or a side shorter than `LEAST_PX`.
+    masks
+        Shape (h, w) each.
     """
     if found.shape != truth.shape or found.ndim != 3 or found.shape[2] != 3:
         raise ValueError(f"expected two pictures of one shape (h, w, 3), got {found.shape} and {truth.shape}")
-    if mask is not None and mask.shape != found.shape[:2]:
-        raise ValueError(f"mask: expected shape {found.shape[:2]}, got {mask.shape}")
+    shapes = {mask.shape for mask in masks if mask is not None}
+    if shapes - {found.shape[:2]}:
+        raise ValueError(f"masks: expected shape {found.shape[:2]}, got {sorted(shapes)}")
     height, width = found.shape[:2]
     if min(height, width) < LEAST_PX:
-        return None
-    sums = np.zeros((len(weights.heads), 2))
+        return (None,) * len(masks)
+    sums = np.zeros((len(masks), len(weights.heads), 2))
     for rows, own_rows in _tiles(height):
         for columns, own_columns in _tiles(width):
             part = torch.cat([_scaled(picture[rows, columns]) for picture in (found, truth)])
-            inside = None if mask is None else torch.from_numpy(mask[rows, columns].astype(np.float32))
             for layer, (features, stride) in enumerate(_layers(weights, part)):
                 unlike = _difference(features, weights.heads[layer])
-                shares = torch.ones_like(unlike) if inside is None else _shares(inside, stride, unlike.shape)
                 own = _places(own_rows, stride), _places(own_columns, stride)
-                sums[layer] += float((shares * unlike)[own].sum()), float(shares[own].sum())
-    return float((sums[:, 0] / sums[:, 1]).sum()) if sums[:, 1].all() else None
+                for number, mask in enumerate(masks):
+                    shares = _shares(None if mask is None else mask[rows, columns], stride, unlike.shape)
+                    sums[number, layer] += float((shares * unlike)[own].sum()), float(shares[own].sum())
+    return tuple(float((of[:, 0] / of[:, 1]).sum()) if of[:, 1].all() else None for of in sums)
 
 
 def _tiles(length: int) -> Iterator[tuple[slice, slice]]:
@@ -116,6 +126,10 @@ def _difference(features: Tensor, head: Tensor) -> Tensor:
     return (head[:, None, None] * (unit[0] - unit[1]).square()).sum(dim=0)
 
 
-def _shares(mask: Tensor, stride: int, shape: torch.Size) -> Tensor:
+def _shares(mask: Mask | None, stride: int, shape: torch.Size) -> Tensor:
     """Share of each place's block of pixels that is in a mask, of a layer's shape."""
-    return avg_pool2d(mask[None], stride, ceil_mode=True)[0, : shape[0], : shape[1]]
+    if mask is None:
+        return torch.ones(shape)
+    return avg_pool2d(torch.from_numpy(mask.astype(np.float32))[None], stride, ceil_mode=True)[
+        0, : shape[0], : shape[1]
+    ]

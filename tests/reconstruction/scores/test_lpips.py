@@ -14,7 +14,7 @@ from torch import nn
 
 from planning.errors import InputError
 from reconstruction.scores import lpips as module
-from reconstruction.scores.lpips import lpips
+from reconstruction.scores.lpips import lpips, lpips_of_masks
 from reconstruction.scores.lpips_weights import BACKBONES, LpipsWeights, WeightsFile, read_lpips_weights
 
 
@@ -142,6 +142,7 @@ def test_a_mask_looks_at_its_own_part():
     assert lpips(ALEX, found, truth, ~left) > lpips(ALEX, found, truth) > 0.0
     everything = np.ones((160, 160), bool)
     assert lpips(ALEX, found, truth, everything) == pytest.approx(lpips(ALEX, found, truth), rel=1e-5)
+    assert lpips_of_masks(ALEX, found, truth, (left, None)) == (0.0, lpips(ALEX, found, truth))
 
 
 def test_where_it_means_nothing_there_is_no_score():
@@ -151,7 +152,7 @@ def test_where_it_means_nothing_there_is_no_score():
     for wrong in (truth[:64], truth[..., :2]):
         with pytest.raises(ValueError, match="expected two pictures"):
             lpips(ALEX, found, wrong)
-    with pytest.raises(ValueError, match="mask"):
+    with pytest.raises(ValueError, match="masks"):
         lpips(ALEX, found, truth, np.zeros((66, 70), bool))
 
 
