@@ -155,8 +155,11 @@ def decode_photo(source: PhotoSet, photo: PosedPhoto, decoding: Decoding, normal
     maps = None if lens.is_straight else straightening_maps(lens)
     normals, step = _normals(source.folder, photo, decoding, normal_step, maps)
     panels = _kept(_panels(source, photo), maps, small, reduce)
-    facade = _kept(_layer(source.folder, "masks", photo, 1, np.uint8), maps, small, reduce)
-    flags = np.where(facade > 0, np.uint8(FACADE | SHOWN), np.uint8(SHOWN))
+    # In place, here and for normals: short-lived arrays of this size would leave holes in memory that stay.
+    flags = _kept(_layer(source.folder, "masks", photo, 1, np.uint8), maps, small, reduce)
+    np.not_equal(flags, 0, out=flags)
+    flags *= FACADE
+    flags |= SHOWN
     picture = source.picture(photo)
     if maps is not None:
         flags[~_shown(maps, small, reduce)] = 0
@@ -202,7 +205,7 @@ def _normals(
         return None, 1
     coded = _layer(folder, "normals", photo, step, np.uint16)[..., ::-1]
     if maps is None and decoding.reduce == 1:
-        return np.ascontiguousarray(coded), step
+        return coded, step
     lens = photo.intrinsics
     if step > 1:
         coded = coded[np.ix_(np.arange(lens.height_px) // step, np.arange(lens.width_px) // step)]

@@ -54,8 +54,8 @@ class StreamSettings:
     with_normals
         Whether samples have normals.
     uses
-        Samples of each photo while it is at hand, where not all photos fit. With 1 every sample reads a photo, half a
-        second for one of 20 megapixels; the more, the longer a training sees the same few views.
+        Samples of each photo while it is at hand, where not all photos fit. With 1 every sample reads a photo, 0.7
+        seconds of work for one of 20 megapixels; the more, the longer a training sees the same few views.
     """
 
     memory_bytes: int = DEFAULT_BYTES

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli import score_model
 from groundstation.cli.commands.segment import add_parameter_arguments
 
 if TYPE_CHECKING:
@@ -14,6 +16,8 @@ if TYPE_CHECKING:
     from reconstruction.scores.metrics import SetScores, Spread
 
 SETS = ("made-planar", "made-curved", "made-irregular", "cmp", "ecp", "offices", "folder")
+
+KINDS = ("segmentation", "model")
 
 MIN_WIDTH_PX, MAX_WIDTH_PX = 160, 16_000
 
@@ -39,9 +43,18 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "score",
         help="score results against known truth",
-        description="Score results against known truth.",
+        description="Score results against known truth. 'score MODEL DATASET' is 'score model MODEL DATASET'.",
     )
     kinds = parser.add_subparsers(title="what to score", metavar="WHAT", required=True)
+    model = kinds.add_parser(
+        "model",
+        help="a trained model's pictures of views that it has not seen",
+        description="Render a model where photos were taken and compare: on the facade, and the whole picture.",
+        epilog=score_model.EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    model.set_defaults(run=score_model.run_model)
+    score_model.add_arguments(model)
     panels = kinds.add_parser(
         "segmentation",
         help="the search for glass panels in photos",
@@ -58,6 +71,19 @@ def add_parser(subparsers: Any) -> None:
     add("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
     add_parameter_arguments(panels)
     add("--json", action="store_true", help="print one JSON object instead of text")
+    _take_models(parser)
+
+
+def _take_models(parser: argparse.ArgumentParser) -> None:
+    """Let a model's folder stand in the place of what to score."""
+    parse = parser.parse_known_args
+
+    def parsed(args: Sequence[str] | None = None, namespace: Any = None) -> Any:
+        first = args[0] if args else "-"
+        is_kind = first in KINDS or first.startswith("-")
+        return parse(args if is_kind else ["model", *(args or ())], namespace)
+
+    parser.parse_known_args = parsed  # type: ignore[method-assign,assignment]
 
 
 def add_set_arguments(parser: Any) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli import tradeoff_scene
+from groundstation.cli import tradeoff_scene, tradeoff_train
 from groundstation.cli.commands.plan import add_request_arguments, request_of
 from groundstation.cli.commands.score import add_set_arguments
 from groundstation.cli.commands.score import request_of as score_request_of
@@ -71,6 +71,7 @@ def add_parser(subparsers: Any) -> None:
     _add_route(kinds)
     _add_segment(kinds)
     _add_scene(kinds)
+    _add_train(kinds)
 
 
 def _add_plan(kinds: Any) -> None:
@@ -169,6 +170,20 @@ def _add_scene(kinds: Any) -> None:
     parser.set_defaults(run=tradeoff_scene.run_scene)
     _add_output(parser)
     tradeoff_scene.add_arguments(parser)
+
+
+def _add_train(kinds: Any) -> None:
+    parser = kinds.add_parser(
+        "train",
+        help="quality against time of trained models",
+        description="Train models of the same photos with settings turned one at a time; write tradeoff-train.csv\n"
+        "and tradeoff-train.png.",
+        epilog=tradeoff_train.EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=tradeoff_train.run_train)
+    _add_output(parser)
+    tradeoff_train.add_arguments(parser)
 
 
 def _add_output(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,140 @@
+"""`train`: a data set of photos to a model of splats and mirrored light."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundstation.cli.lists import above_zero, count
+from planning.errors import InputError, OperationCancelled
+from reconstruction.modelling.preset_names import LIGHTS, METHODS, PRESETS
+
+if TYPE_CHECKING:
+    from groundstation.services.modelling import TrainedFiles, TrainWish
+
+PRESET_LINES = "\n".join(f"  {name:<11} {text}" for name, text in PRESETS.items())
+
+EPILOG = f"""presets:
+{PRESET_LINES}
+
+light, for --method refglass-gs: what glass mirrors is learned by direction alone (environment-map), by place and
+direction as in the paper (mlp), as a scene that mirrored rays march through (radiance-grid), or not apart from the
+splats at all (harmonics). auto looks at the photos and says why.
+
+Part of the views is held out for 'score'. Ctrl-C keeps the state: the same command with --resume goes on. --settings
+is a TOML file with any setting of reconstruction/modelling/config.py, such as
+  max_splats = 50000
+  [losses]
+  normal_prior = 0.5
+
+examples:
+  train tower.dataset -o tower.model
+  train tower.dataset -o tower.model --preset 1h --light mlp
+  train tower.dataset -o splats.model --method 2dgs --iterations 3000 --json
+  train tower.dataset -o tower.model --resume
+
+Several processes of one machine train together, each looking at other photos, when they are started by
+  torchrun --nproc-per-node 4 app.py train tower.dataset -o tower.model
+"""
+
+SETTINGS = ("preset", "light", "iterations", "time_budget", "seed", "settings")
+"""Options that a training begins with; one that is gone on with has them already."""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "train",
+        help="train a model of splats and mirrored light",
+        description="Learn splats, and the light that glass mirrors, from a data set of 'prepare' or 'scene render'.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
+    add("-o", "--out", type=Path, required=True, metavar="MODEL", help="folder for the model")
+    add("--method", choices=METHODS, help=f"splats with mirrored light, or splats alone (default {METHODS[0]})")
+    add("--preset", choices=tuple(PRESETS), help="how long one can wait (default 10min)")
+    add("--iterations", type=count, metavar="N", help="steps, whatever time they take, instead of the preset's")
+    add("--time-budget", type=above_zero, metavar="S", help="end after so many seconds of training")
+    add("--light", choices=LIGHTS, help="what mirrored light is learned with (default auto)")
+    add("--seed", type=int, metavar="N", help="of everything random (default 0)")
+    add("--settings", type=Path, metavar="FILE", help="TOML file with settings that differ from the preset's")
+    add("--resume", action="store_true", help="go on with a training that was interrupted")
+    add("--preview", type=Path, metavar="PNG", help="picture of a held-out view, written anew as the training goes on")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Train and print; returns the exit status."""
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.modelling import preview_to, train_files, train_summary
+
+    wish = wish_of(options)
+    given = [name for name in SETTINGS if getattr(options, name) is not None]
+    if options.resume and given:
+        option = given[0].replace("_", "-")
+        raise InputError(f"--resume goes on with the settings that the training was begun with; leave --{option} out")
+    preview = None if options.preview is None else preview_to(options.preview)
+    try:
+        made = run_job(
+            "train",
+            lambda context: train_files(
+                options.dataset,
+                options.out,
+                wish,
+                resume=options.resume,
+                preview=preview,
+                stop=context.stop,
+                trace=context.trace,
+                monitor=context,
+            ),
+        )
+    except (KeyboardInterrupt, OperationCancelled):
+        if (options.out / "checkpoint.safetensors").is_file():
+            print(f"note: the state is kept in {options.out}; --resume goes on with it", file=sys.stderr)
+        raise
+    if not made.is_written:
+        return 0
+    if options.json:
+        print_json(train_summary(made))
+    else:
+        _print(made, options)
+    return 0
+
+
+def wish_of(options: argparse.Namespace) -> TrainWish:
+    """What the options ask for."""
+    from groundstation.cli.options import checked_seed
+    from groundstation.services.modelling import DEFAULT_PRESET, TrainWish
+
+    return TrainWish(
+        options.preset or DEFAULT_PRESET,
+        options.method,
+        options.light,
+        options.iterations,
+        options.time_budget,
+        None if options.seed is None else checked_seed(options.seed),
+        options.settings,
+    )
+
+
+def _print(made: TrainedFiles, options: argparse.Namespace) -> None:
+    from groundstation.cli.console import counted, print_next
+
+    trained = made.trained
+    record = trained.record
+    print(f"{made.folder}: {counted(trained.n_splats, 'splat')} of {counted(len(record.learned), 'photo')}")
+    if record.config.method != "2dgs":
+        name = "harmonics" if record.light is None else record.light.name
+        print(f"  mirrored light: {name}{'' if record.config.light == 'auto' else ', as you asked'}")
+    for decision in record.decisions:
+        print(f"  {decision}")
+    print(f"  {counted(trained.n_steps, 'step')} in {trained.seconds:.0f} s", end="")
+    print(f", {trained.history[-1].value:.2f} dB on facades of unseen views" if trained.history else "")
+    for note in trained.notes:
+        print(f"note: {note}", file=sys.stderr)
+    print_next("score", made.folder, options.dataset)

@@ -1,0 +1,14 @@
+"""Names that the command line lists; apart, so that it can do so without loading what trains."""
+
+from __future__ import annotations
+
+PRESETS = {
+    "10min": "small photos or a first look",
+    "1h": "for photos of some hundred pixels' width, or windows of larger ones",
+    "overnight": "the paper's network and number of steps, as far as they go",
+    "smoke": "a minute; shows that everything works, and nothing else",
+}
+
+METHODS = ("refglass-gs", "2dgs")
+
+LIGHTS = ("auto", "harmonics", "environment-map", "mlp", "radiance-grid")

@@ -1,0 +1,194 @@
+"""A trained model on the disk: a folder with `model.json`, the weights that it names, and the splats for viewers.
+
+The weights' file is named after its content and written first; `model.json` is replaced last, in one step. So a folder
+that had a model has a whole one at every moment, and a run that is interrupted leaves at most a file that none names.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import torch
+from safetensors import SafetensorError
+from safetensors.torch import load, save
+from torch import Tensor
+
+from planning.errors import InputError
+from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.progress import QualityPoint
+from reconstruction.modelling.exposures import Exposures
+from reconstruction.modelling.model import SceneModel
+from reconstruction.modelling.record import ModelRecord, empty_model
+from reconstruction.splatting.ply import write_splats
+from reconstruction.splatting.splats import splats_from_tensors
+
+FORMAT = "reflight-model/1"
+DESCRIPTION, CHECKPOINT, SPLATS = "model.json", "checkpoint.safetensors", "splats.ply"
+
+GAINS = "exposures."
+"""Of weights' names, before those of the photos' gains; all others are the model's."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrainedModel:
+    """A model and how it came about.
+
+    Parameters
+    ----------
+    model
+        In evaluation mode.
+    exposures
+        Gains of the photos learned from, in the order of `record.learned`.
+    history
+        PSNR, dB, of some held-out views over their facades, by seconds of training.
+    n_steps, seconds
+        Of the joint training; seconds with learning light alone.
+    notes
+        What had to be survived on the way.
+    """
+
+    record: ModelRecord
+    model: SceneModel
+    exposures: Exposures
+    history: tuple[QualityPoint, ...]
+    n_steps: int
+    seconds: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def n_splats(self) -> int:
+        """How many there are."""
+        return len(self.model.splats)
+
+
+@dataclass(frozen=True, slots=True)
+class _Weights:
+    file: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Saved(ModelRecord):
+    history: tuple[QualityPoint, ...] = ()
+    n_steps: int = 0
+    seconds: float = 0.0
+    notes: tuple[str, ...] = ()
+    weights: _Weights = _Weights("", "")
+
+
+def save_model(trained: TrainedModel, folder: Path) -> None:
+    """Write a model; one that was there stays whole until the new one is.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made ({error.strerror or error}); name another folder") from error
+    content = save(_tensors(trained))
+    digest = hashlib.sha256(content).hexdigest()
+    name = f"weights-{digest[:12]}.safetensors"
+    write_atomically(folder / name, content)
+    description = {
+        "format": FORMAT,
+        "method": trained.record.config.method,
+        "n_splats": trained.n_splats,
+        **asdict(trained.record),
+        "history": [asdict(point) for point in trained.history],
+        "n_steps": trained.n_steps,
+        "seconds": trained.seconds,
+        "notes": list(trained.notes),
+        "weights": {"file": name, "sha256": digest},
+    }
+    write_atomically(folder / DESCRIPTION, json.dumps(description, indent=1, allow_nan=False).encode())
+    # Last: it is for other programs, and nothing here reads it.
+    write_splats(folder / SPLATS, trained.model.splats, "2dgs", trained.record.origin_enu_m, _comments(trained.record))
+    for old in folder.glob("weights-*.safetensors"):
+        if old.name != name:
+            old.unlink(missing_ok=True)
+
+
+def _comments(record: ModelRecord) -> list[str]:
+    """What a PLY file says about where it belongs."""
+    origin = record.site.origin
+    if origin is None:
+        return [f"site: {record.site.name}"]
+    place = f"{origin.lat_deg!r} {origin.lon_deg!r} {origin.ellipsoid_height_m!r}"
+    return [f"site: {record.site.name}", f"site origin, WGS 84 lat lon ellipsoid height: {place}"]
+
+
+def read_model(folder: Path) -> TrainedModel:
+    """Read a model; it renders the same pictures, bit by bit.
+
+    Raises
+    ------
+    InputError
+        A file is missing or damaged, or the weights are not those of the description.
+    """
+    path = folder / DESCRIPTION
+    if not path.is_file():
+        advice = (
+            "go on with its training (train --resume)" if (folder / CHECKPOINT).is_file() else "name one of `train`"
+        )
+        raise InputError(f"{folder}: holds no finished model; {advice}")
+    content = read_json(path)
+    expect_format(content, FORMAT, path)
+    saved = to_record(content, _Saved, path)
+    if Path(saved.weights.file).name != saved.weights.file or not saved.weights.file:
+        raise InputError(f"{path}: weights.file: expected the name of a file beside it, got '{saved.weights.file}'")
+    weights = folder / saved.weights.file
+    tensors = _read_tensors(weights, saved.weights.sha256)
+    record = ModelRecord(*(getattr(saved, each.name) for each in fields(ModelRecord)))
+    model, exposures = _filled(record, tensors, weights)
+    return TrainedModel(record, model, exposures, saved.history, saved.n_steps, saved.seconds, saved.notes)
+
+
+def _tensors(trained: TrainedModel) -> dict[str, Tensor]:
+    parts = {**trained.model.state_dict()}
+    parts |= {f"{GAINS}{name}": value for name, value in trained.exposures.state_dict().items()}
+    return {name: value.detach().cpu().contiguous().clone() for name, value in parts.items()}
+
+
+def _read_tensors(path: Path, sha256: str) -> dict[str, Tensor]:
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    if hashlib.sha256(content).hexdigest() != sha256:
+        raise InputError(f"{path}: is not the file that {DESCRIPTION} was written with; was it changed or cut off?")
+    try:
+        return load(content)
+    except (SafetensorError, KeyError, ValueError, TypeError) as error:
+        raise InputError(f"{path}: is no safetensors file, or damaged: {error}") from error
+
+
+def _filled(record: ModelRecord, tensors: Mapping[str, Tensor], path: Path) -> tuple[SceneModel, Exposures]:
+    """The model that a record and weights make."""
+    for name, value in tensors.items():
+        if value.is_floating_point() and not bool(torch.isfinite(value).all()):
+            raise InputError(f"{path}: {name}: holds numbers that are not finite; train again")
+    found = {name.removeprefix("splats."): value for name, value in tensors.items() if name.startswith("splats.")}
+    splats_from_tensors(found, str(path))
+    if len(found["panels"]) and int(found["panels"].max()) >= len(record.site.panels):
+        raise InputError(f"{path}: has splats on panel {int(found['panels'].max()) + 1} of {len(record.site.panels)}")
+    try:
+        model, exposures = empty_model(record, tensors)
+        gains: dict[str, Any] = {
+            name.removeprefix(GAINS): value for name, value in tensors.items() if name.startswith(GAINS)
+        }
+        model.load({name: value for name, value in tensors.items() if not name.startswith(GAINS)})
+        exposures.load_state_dict(gains)
+    except (KeyError, ValueError, RuntimeError) as error:
+        raise InputError(
+            f"{path}: holds the weights of another model than {DESCRIPTION} describes ({error})"
+        ) from error
+    model.eval()
+    return model, exposures

@@ -1,0 +1,193 @@
+"""A whole training: data set folder in, trained model out; begun, or gone on with from its checkpoint."""
+
+from __future__ import annotations
+
+import math
+import time
+from contextlib import ExitStack
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from planning.errors import InputError
+from planning.json_file import to_record
+from planning.progress import Clock, QualityPoint
+from reconstruction.modelling.checkpoints import read_checkpoint
+from reconstruction.modelling.config import TrainConfig
+from reconstruction.modelling.photo_stream import PhotoStream, StreamSettings
+from reconstruction.modelling.ranks import ALONE, Ranks
+from reconstruction.modelling.record import ModelRecord, empty_model, light_record, site_record
+from reconstruction.modelling.saved import TrainedModel
+from reconstruction.modelling.start import start_model
+from reconstruction.modelling.strategies import strategy_of
+from reconstruction.modelling.trainer import SHOWN_VIEWS, Trainer
+from reconstruction.modelling.watching import HeldOut, Watching
+from reconstruction.reflections.photo_set import PhotoSet, read_photo_set
+
+SHOWN_PX = 512 * 384
+"""About as many pixels of them are looked at: larger photos are made smaller, so that looking takes no time."""
+
+SHOWN_SHARE = 0.25
+"""Of the memory for photos, at most, for held-out ones that the quality is measured on."""
+
+
+def train_model(
+    folder: Path,
+    config: TrainConfig,
+    watching: Watching | None = None,
+    checkpoint: Path | None = None,
+    *,
+    ranks: Ranks = ALONE,
+    clock: Clock = time.perf_counter,
+) -> TrainedModel:
+    """Train a model of a data set folder.
+
+    Parameters
+    ----------
+    checkpoint
+        File that the training can go on from if it is interrupted; None for none.
+    ranks
+        Processes that train together; all but the first begin with the checkpoint that that one writes.
+
+    Raises
+    ------
+    InputError
+        The folder is no data set, or too little of one.
+    ReconstructionError
+        The training came to nothing; see `Trainer`.
+    OperationCancelled
+        From the monitor.
+    """
+    watching = watching or Watching()
+    _check_device(config)
+    if not ranks.is_first:
+        if checkpoint is None:
+            raise ValueError("checkpoint: expected one where several processes train together")
+        ranks.wait()
+        return resume_model(folder, checkpoint, watching, ranks=ranks, clock=clock)
+    source = read_photo_set(folder)
+    begun_s = clock()
+    start = start_model(source, config, watching.monitor)
+    spent_s = clock() - begun_s
+    record = ModelRecord(
+        config,
+        light_record(start.model, start.light_name),
+        site_record(folder),
+        tuple(start.model.origin_enu_m.tolist()),
+        start.model.corner_square,
+        source.exposure,
+        tuple(photo.name for photo in start.learned),
+        start.held_out,
+        start.extent_m,
+        start.decisions,
+    )
+    with ExitStack() as closing:
+        photos, shown = _photos(source, record, closing)
+        trainer = Trainer(
+            start.model,
+            start.exposures,
+            photos,
+            strategy_of(config, len(start.model.splats)),
+            config,
+            shown=shown,
+            extent_m=start.extent_m,
+            checkpoint=checkpoint,
+            record=asdict(record),
+            spent_s=spent_s,
+            ranks=ranks,
+            clock=clock,
+        )
+        trainer.save()
+        ranks.wait()
+        return _finished(trainer, record, watching)
+
+
+def resume_model(
+    folder: Path,
+    checkpoint: Path,
+    watching: Watching | None = None,
+    *,
+    method: str | None = None,
+    ranks: Ranks = ALONE,
+    clock: Clock = time.perf_counter,
+) -> TrainedModel:
+    """Go on with a training, with the settings that it was begun with.
+
+    Parameters
+    ----------
+    method
+        That is expected; None for any.
+
+    Raises
+    ------
+    InputError
+        The checkpoint is missing or damaged, or of another method or other photos.
+    """
+    content = read_checkpoint(checkpoint)
+    record = to_record(content.get("record"), ModelRecord, checkpoint)
+    _check_device(record.config)
+    if method not in (None, record.config.method):
+        raise InputError(f"{checkpoint}: is of a training of {record.config.method}; resume with that method")
+    state = content.get("training")
+    if not isinstance(state, dict) or not isinstance(state.get("model"), dict):
+        raise InputError(f"{checkpoint}: holds no state of a training; train without --resume")
+    source = read_photo_set(folder)
+    missing = {*record.learned, *record.held_out} - {photo.name for photo in source.photos}
+    if missing or site_record(folder) != record.site:
+        what = f"lacks the photo '{min(missing)}'" if missing else "shows other panels"
+        raise InputError(f"{folder}: {what}; name the data set that the training was begun with")
+    try:
+        model, exposures = empty_model(record, state["model"])
+    except ValueError as error:
+        raise InputError(f"{checkpoint}: is damaged ({error}); train without --resume") from error
+    with ExitStack() as closing:
+        photos, shown = _photos(source, record, closing)
+        trainer = Trainer(
+            model,
+            exposures,
+            photos,
+            strategy_of(record.config, len(model.splats)),
+            record.config,
+            shown=shown,
+            extent_m=record.extent_m,
+            checkpoint=checkpoint,
+            record=asdict(record),
+            ranks=ranks,
+            clock=clock,
+        )
+        trainer.restore(state)
+        return _finished(trainer, record, watching or Watching())
+
+
+def _check_device(config: TrainConfig) -> None:
+    if config.device == "cuda" and not torch.cuda.is_available():
+        raise InputError("device: 'cuda' is asked for, and torch finds no CUDA device; leave it out")
+
+
+def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[PhotoStream, tuple[HeldOut, ...]]:
+    """The stream of photos to learn from, and held-out ones to show."""
+    config, origin = record.config, np.array(record.origin_enu_m)
+    with_normals = config.method == "refglass-gs" and config.losses.normal_prior > 0.0
+    settings = StreamSettings(
+        round((1.0 - SHOWN_SHARE) * config.memory_bytes), config.window_px, config.reduce, with_normals
+    )
+    photos = closing.enter_context(PhotoStream(source, record.learned, origin, settings))
+    names = record.held_out[:: -(-len(record.held_out) // SHOWN_VIEWS)]
+    most = max(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in source.photos)
+    few = StreamSettings(max(1, round(SHOWN_SHARE * config.memory_bytes)), reduce=max(1, math.isqrt(most // SHOWN_PX)))
+    shown = closing.enter_context(PhotoStream(source, names, origin, few))
+    return photos, tuple(
+        HeldOut(shown.frame(number), source.own_exposures.get(photo.name, 1.0))
+        for number, photo in enumerate(shown.photos)
+    )
+
+
+def _finished(trainer: Trainer, record: ModelRecord, watching: Watching) -> TrainedModel:
+    trainer.run(watching)
+    trainer.model.cpu()
+    trainer.exposures.cpu()
+    at = trainer.at
+    history = tuple(QualityPoint(t_s, value) for t_s, value in at.history)
+    return TrainedModel(record, trainer.model, trainer.exposures, history, at.step, at.spent_s, tuple(at.notes))

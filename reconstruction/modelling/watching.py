@@ -1,0 +1,69 @@
+"""Who looks on while a training runs, what they are shown, and where it stands."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.progress import QUIET, Monitor, Stop, Trace, never
+from reconstruction.modelling.photo_stream import Sample
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Preview:
+    """How a view looks now: its picture, sRGB, shape (h, w, 3), uint8, at a step."""
+
+    step: int
+    picture: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldOut:
+    """A whole photo that is not learned from, and the gain that it is known to have."""
+
+    sample: Sample
+    gain: float
+
+
+@dataclass(slots=True, eq=False)
+class Watching:
+    """Who looks on while a training runs.
+
+    Parameters
+    ----------
+    monitor
+        Told about progress; cancels.
+    stop
+        Asked between steps; True: the model is good enough.
+    pause
+        Asked between steps; nothing goes on while it is True.
+    trace
+        Gets the quality, PSNR of held-out views over their facades, dB.
+    preview
+        Called with a picture of the first held-out view whenever the quality is measured.
+    """
+
+    monitor: Monitor = QUIET
+    stop: Stop = never
+    pause: Stop = never
+    trace: Trace | None = None
+    preview: Callable[[Preview], None] | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Progress:
+    """Where a training stands; what a checkpoint has besides tensors."""
+
+    step: int = 0
+    spent_s: float = 0.0
+    factor: float = 1.0
+    n_undone: int = 0
+    window_px: int = 0
+    scored_at_s: float = -math.inf
+    saved_at_s: float = 0.0
+    history: list[tuple[float, float]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)

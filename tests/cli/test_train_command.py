@@ -1,0 +1,188 @@
+"""`train`, `render` and `score MODEL`: a model of a small data set, what is made of it, and refusals."""
+
+import json
+import shutil
+
+import cv2
+import numpy as np
+import pytest
+
+from groundstation.services import modelling
+from planning.errors import OperationCancelled
+from reconstruction.modelling.layer_names import LAYERS
+from tests.reconstruction.modelling.made_data_set import write_data_set
+
+SETTINGS = "n_splats = 150\nmax_splats = 200\n"
+
+
+@pytest.fixture(scope="module")
+def glass(tmp_path_factory):
+    """A data set, settings that are quick, and a model of splats alone; tests must not change them."""
+    folder = tmp_path_factory.mktemp("train")
+    write_data_set(folder / "data", n=8)
+    (folder / "quick.toml").write_text(SETTINGS)
+    wish = modelling.TrainWish("smoke", "2dgs", iterations=8, settings=folder / "quick.toml")
+    modelling.train_files(folder / "data", folder / "model", wish)
+    return folder
+
+
+def quick(glass, *more):
+    return ("--preset", "smoke", "--settings", glass / "quick.toml", "--iterations", 6, *more)
+
+
+def test_a_model_is_trained_and_says_what_it_is(reflight, glass, tmp_path):
+    out = tmp_path / "model"
+    picture = tmp_path / "preview.png"
+    done = reflight(
+        "train", glass / "data", "-o", out, *quick(glass), "--method", "2dgs", "--preview", picture, "--json"
+    )
+    assert done.status == 0, done.err
+    assert done.json["method"] == "2dgs"
+    assert done.json["iterations"] == 6
+    assert done.json["photos"] + done.json["held_out"] == 8
+    assert done.json["light"] is None
+    assert 0 < done.json["splats"] <= 200
+    assert done.json["psnr_db"] == done.json["history"][-1]["psnr_db"]
+    assert cv2.imread(str(picture)).shape == (30, 40, 3)
+    assert sorted(path.suffix for path in out.iterdir()) == [".json", ".ply", ".safetensors"]
+    text = reflight("train", glass / "data", "-o", out, *quick(glass), "--light", "environment-map")
+    assert "mirrored light: environment-map, as you asked" in text.out
+    assert "6 steps" in text.out
+    assert "next: app.py score" in text.err
+
+
+def test_a_training_that_was_cancelled_goes_on(reflight, glass, tmp_path, monkeypatch):
+    whole = tmp_path / "whole"
+    assert reflight("train", glass / "data", "-o", whole, *quick(glass), "--method", "2dgs").status == 0
+    out = tmp_path / "model"
+    true = modelling.train_files
+    left = [4]
+
+    class Cancelling:
+        def report(self, stage, done, total):
+            left[0] -= stage == "training"
+            if left[0] < 0:
+                raise OperationCancelled("enough")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(modelling, "train_files", lambda *a, **k: true(*a, **{**k, "monitor": Cancelling()}))
+        done = reflight("train", glass / "data", "-o", out, *quick(glass), "--method", "2dgs")
+    assert done.status == 1
+    assert "--resume goes on with it" in done.err
+    assert [path.name for path in out.iterdir()] == ["checkpoint.safetensors"]
+    assert "go on with its training" in reflight("score", out, glass / "data").error
+    again = reflight("train", glass / "data", "-o", out, *quick(glass), "--method", "2dgs")
+    assert "holds a training that was interrupted" in again.error
+    assert "leave --preset out" in reflight("train", glass / "data", "-o", out, *quick(glass), "--resume").error
+    other = reflight("train", glass / "data", "-o", out, "--method", "refglass-gs", "--resume")
+    assert "training of 2dgs" in other.error
+    done = reflight("train", glass / "data", "-o", out, "--method", "2dgs", "--resume", "--json")
+    assert done.json["iterations"] == 6
+    weights = [next(folder.glob("weights-*")).read_bytes() for folder in (whole, out)]
+    assert weights[0] == weights[1]
+    assert "holds no training" in reflight("train", glass / "data", "-o", out, "--resume").error
+
+
+def test_views_are_rendered_with_their_layers(reflight, glass, tmp_path):
+    out = tmp_path / "pictures"
+    done = reflight(
+        "render",
+        glass / "model",
+        "--views",
+        glass / "data",
+        "-o",
+        out,
+        "--layers",
+        ",".join(LAYERS),
+        "--held-out",
+        "--json",
+    )
+    assert done.status == 0, done.err
+    (path,) = done.json["pictures"]
+    picture = cv2.imread(path)
+    assert picture.shape == (30, 40, 3)
+    assert 20 < picture.mean() < 235
+    name = path.rpartition("/")[2].removesuffix(".png")
+    assert np.load(out / "depth" / f"{name}.npy").shape == (30, 40)
+    assert cv2.imread(str(out / "normals" / f"{name}.png"), cv2.IMREAD_UNCHANGED).dtype == np.uint16
+    assert cv2.imread(str(out / "alpha" / f"{name}.png"), cv2.IMREAD_UNCHANGED).shape == (30, 40)
+    assert {each.name for each in out.iterdir() if each.is_dir()} == set(LAYERS)
+
+
+def test_a_path_through_views_and_a_plan_are_rendered(reflight, glass, pane, tmp_path):
+    out = tmp_path / "path"
+    done = reflight(
+        "render", glass / "model", "--views", glass / "data", "-o", out, "--frames", 5, "--width", 20, "--json"
+    )
+    assert [path.rpartition("/")[2] for path in done.json["pictures"]] == [f"frame-000{k}.png" for k in range(1, 6)]
+    assert cv2.imread(done.json["pictures"][0]).shape == (15, 20, 3)
+    text = reflight("render", glass / "model", "--views", pane / "plan.json", "-o", out, "--width", 32)
+    assert text.out.endswith(": 6 pictures\n")
+
+
+def test_models_are_scored_on_what_they_have_not_seen(reflight, glass):
+    done = reflight("score", glass / "model", glass / "data", "--json")
+    assert done.status == 0, done.err
+    assert done.json["views"] == 1
+    assert done.json["each"][0]["is_learned"] is False
+    assert 5.0 < done.json["facade"]["psnr_db"] < 60.0
+    assert done.json["whole"]["lpips"] is None
+    every = reflight("score", "model", glass / "model", glass / "data", "--views", "all", "--json").json
+    assert every["views"] == 8
+    assert every["whole"]["worst_psnr_db"] <= every["whole"]["psnr_db"]
+    text = reflight("score", glass / "model", glass / "data", "--fit-exposure")
+    assert "LPIPS unavailable" in text.out
+
+
+def test_what_cannot_be_done_is_refused_in_words(reflight, glass, tmp_path):
+    data, model = glass / "data", glass / "model"
+    assert "has no dataset.json" in reflight("train", glass, "-o", tmp_path / "m").error
+    assert not (tmp_path / "m").exists()
+    (tmp_path / "file").write_text("x")
+    assert "cannot be made" in reflight("train", data, "-o", tmp_path / "file", "--iterations", 1).error
+    (tmp_path / "bad.toml").write_text("max_splat = 3")
+    assert "no such setting" in reflight("train", data, "-o", tmp_path / "m", "--settings", tmp_path / "bad.toml").error
+    (tmp_path / "bad.toml").write_text("= 3")
+    assert "not valid TOML" in reflight("train", data, "-o", tmp_path / "m", "--settings", tmp_path / "bad.toml").error
+    assert "no layer 'glow'" in reflight("render", model, "--views", data, "-o", tmp_path, "--layers", "glow").error
+    assert "--width" in reflight("render", model, "--views", data, "-o", tmp_path, "--width", 2).error
+    assert "holds no finished model" in reflight("render", data, "--views", data, "-o", tmp_path).error
+    assert reflight("render", model, "--views", glass / "quick.toml", "-o", tmp_path).status == 1
+    assert reflight("score", model, glass).status == 1
+    assert reflight("train", data, "-o", tmp_path / "m", "--method", "nerf").status == 2
+    assert reflight("score", model).status == 2
+
+
+def test_models_of_another_site_and_damaged_ones_are_refused(reflight, glass, tmp_path):
+    other = tmp_path / "other"
+    shutil.copytree(glass / "data", other)
+    content = json.loads((other / "dataset.json").read_text())
+    content["panels"][0]["corners_enu_m"][0][0] += 0.5
+    (other / "dataset.json").write_text(json.dumps(content))
+    assert "other panels than the model" in reflight("score", glass / "model", other).error
+    broken = tmp_path / "broken"
+    shutil.copytree(glass / "model", broken)
+    weights = next(broken.glob("weights-*"))
+    weights.write_bytes(weights.read_bytes()[:-9])
+    assert "cut off" in reflight("score", broken, glass / "data").error
+    weights.unlink()
+    assert "cannot be read" in reflight("score", broken, glass / "data").error
+
+
+def test_settings_are_turned_one_at_a_time_and_written(reflight, glass, tmp_path):
+    out = tmp_path / "tradeoff"
+    more = ("--preset", "smoke", "--settings", glass / "quick.toml", "--iterations", 4, "--method", "2dgs")
+    knobs = ("--vary", "n_splats=60,150", "--vary", "losses.dssim=0")
+    done = reflight("tradeoff", "train", glass / "data", "-o", out, *more, *knobs, "--json")
+    assert done.status == 0, done.err
+    rows = done.json["settings"]
+    # 150 is what the settings have already.
+    assert [row["setting"] for row in rows] == ["as the preset has it", "n_splats = 60", "losses.dssim = 0"]
+    assert rows[1]["splats"] < rows[0]["splats"]
+    assert all(row["steps"] == 4 for row in rows)
+    assert (out / "tradeoff-train.csv").read_text().count("\n") == 4
+    assert cv2.imread(str(out / "tradeoff-train.png")) is not None
+    assert "setting" in reflight("tradeoff", "train", glass / "data", "-o", out, *more, "--vary", "degree=1").out
+    wrong = reflight("tradeoff", "train", glass / "data", "-o", out, *more, "--vary", "splats=1")
+    assert "splats: no such setting" in wrong.error
+    assert "--vary n_splats" in reflight("tradeoff", "train", glass / "data", "-o", out, "--vary", "n_splats").error

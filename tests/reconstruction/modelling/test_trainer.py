@@ -1,0 +1,285 @@
+"""The joint training: it learns, goes on bit by bit, and survives what it says it survives."""
+
+import math
+from dataclasses import replace
+
+import pytest
+import torch
+
+from planning.errors import OperationCancelled, ReconstructionError
+from planning.progress import Trace
+from reconstruction.modelling import trainer as trainer_module
+from reconstruction.modelling.checkpoints import read_checkpoint
+from reconstruction.modelling.config import LossWeights, TrainConfig
+from reconstruction.modelling.photo_stream import PhotoStream, StreamSettings
+from reconstruction.modelling.start import start_model
+from reconstruction.modelling.strategies import strategy_of
+from reconstruction.modelling.trainer import MOST_HALVINGS, Trainer
+from reconstruction.modelling.watching import HeldOut, Watching
+from reconstruction.reflections.config import GridSettings, ReflectionConfig
+from reconstruction.reflections.photo_set import read_photo_set
+from reconstruction.reflections.reflection_mlp import MlpShape
+
+CONFIG = TrainConfig(
+    method="2dgs", iterations=12, n_splats=150, max_splats=220, densify_from=0.2, densify_until=0.9, score_every_s=1e9
+)
+
+
+TINY = ReflectionConfig(
+    mlp=MlpShape(width=16, layers=4, position_order=3, direction_order=2),
+    environment_rows=8,
+    steps=8,
+    batch=256,
+    precision="float32",
+    grid=GridSettings(most_cells=2000, far_side=8, rest=4),
+)
+
+
+class FakeClock:
+    """Goes on by a second whenever it is asked."""
+
+    def __init__(self):
+        self.now = 0.0
+
+    def __call__(self):
+        self.now += 1.0
+        return self.now
+
+
+class Cancelling:
+    """Cancels at the n-th report of training."""
+
+    def __init__(self, n):
+        self.left = n
+
+    def report(self, stage, done, total):
+        self.left -= stage == "training"
+        if self.left < 0:
+            raise OperationCancelled("enough")
+
+
+@pytest.fixture
+def make(data_set, tmp_path, request):
+    source = read_photo_set(data_set)
+
+    def made(config=CONFIG, checkpoint=None, **more):
+        start = start_model(source, config)
+        names = [photo.name for photo in start.learned]
+        photos = PhotoStream(source, names, start.model.origin_enu_m, StreamSettings(window_px=config.window_px))
+        request.addfinalizer(photos.close)
+        shown = PhotoStream(source, start.held_out, start.model.origin_enu_m)
+        request.addfinalizer(shown.close)
+        path = None if checkpoint is None else tmp_path / checkpoint
+        strategy = strategy_of(config, len(start.model.splats))
+        return Trainer(
+            start.model,
+            start.exposures,
+            photos,
+            strategy,
+            config,
+            shown=[HeldOut(shown.frame(0), 1.0)],
+            extent_m=start.extent_m,
+            checkpoint=path,
+            **more,
+        )
+
+    return made
+
+
+def everything(trainer):
+    return {**trainer.model.state_dict(), **trainer.exposures.state_dict()}
+
+
+def assert_same(one, other):
+    mine, theirs = everything(one), everything(other)
+    assert mine.keys() == theirs.keys()
+    assert all(torch.equal(mine[name], theirs[name]) for name in mine)
+
+
+def test_pictures_of_unseen_views_get_better(make):
+    trainer = make(replace(CONFIG, iterations=30, densification="none"))
+    trace, previews = Trace(), []
+    trainer.run(Watching(trace=trace, preview=previews.append))
+    assert trainer.at.step == 30
+    first, last = trace.points[0].value, trace.points[-1].value
+    assert last > first + 1.0
+    assert trainer.at.history[-1][1] == last
+    assert previews[0].picture.shape == (30, 40, 3)
+    assert previews[-1].step == 30
+
+
+def test_splats_are_added_and_stay_below_their_number(make):
+    trainer = make(replace(CONFIG, iterations=105, densify_from=0.0, densify_until=1.0, densification="mcmc"))
+    n_before = len(trainer.model.splats)
+    trainer.run(Watching())
+    assert n_before < len(trainer.model.splats) <= 220
+
+
+@pytest.mark.parametrize("light", [None, "harmonics", "environment-map", "mlp", "radiance-grid"])
+def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):
+    config = CONFIG if light is None else replace(CONFIG, method="refglass-gs", light=light, reflections=TINY)
+    whole = make(config)
+    whole.run(Watching())
+    first = make(config, checkpoint="c")
+    with pytest.raises(OperationCancelled):
+        first.run(Watching(Cancelling(6)))
+    assert 0 < first.at.step < 12
+    second = make(config, checkpoint="c")
+    second.restore(read_checkpoint(tmp_path / "c")["training"])
+    assert second.at.step == first.at.step
+    second.run(Watching())
+    assert second.at.step == 12
+    assert_same(whole, second)
+
+
+def test_with_other_seeds_trainings_differ(make):
+    one, other = make(), make(replace(CONFIG, seed=1))
+    one.run(Watching())
+    other.run(Watching())
+    assert not torch.equal(one.model.splats.sh, other.model.splats.sh)
+
+
+def test_a_step_without_numbers_is_undone_and_rates_are_halved(make, monkeypatch):
+    trainer = make()
+    trainer.step()
+    before = {name: value.clone() for name, value in everything(trainer).items()}
+    true_objective = trainer_module.objective
+    nan = lambda picture, *_: (picture.display.sum() * math.nan, {})  # noqa: E731
+    monkeypatch.setattr(trainer_module, "objective", nan)
+    trainer._survived_step()
+    assert all(torch.equal(value, before[name]) for name, value in everything(trainer).items())
+    assert (trainer.at.step, trainer.at.factor) == (1, 0.5)
+    assert "undone" in trainer.at.notes[0]
+    monkeypatch.setattr(trainer_module, "objective", true_objective)
+    trainer.run(Watching())
+    assert trainer.at.step == 12
+    assert trainer.at.factor == 0.5
+
+
+def test_infinite_gradients_are_noticed_though_the_loss_is_a_number(make, monkeypatch):
+    trainer = make()
+
+    def steep(picture, *_):
+        light = picture.display.sum()
+        # The root's slope has no end at 0.
+        return torch.sqrt(light - light.detach()) + 0.0 * light, {}
+
+    monkeypatch.setattr(trainer_module, "objective", steep)
+    trainer._survived_step()
+    assert trainer.at.n_undone == 1
+    assert all(bool(torch.isfinite(value).all()) for value in everything(trainer).values())
+
+
+def test_a_training_that_gives_no_numbers_ends_and_leaves_the_last_good_checkpoint(make, monkeypatch, tmp_path):
+    trainer = make(checkpoint="c")
+    trainer.step()
+    trainer.save()
+    monkeypatch.setattr(trainer_module, "objective", lambda picture, *_: (picture.display.sum() * math.nan, {}))
+    with pytest.raises(ReconstructionError, match=r"step 2: .*last checkpoint, .* is good"):
+        trainer.run(Watching())
+    assert trainer.at.n_undone == MOST_HALVINGS + 1
+    monkeypatch.undo()
+    again = make(checkpoint="c")
+    again.restore(read_checkpoint(tmp_path / "c")["training"])
+    assert again.at.step == 1
+    again.run(Watching())
+
+
+def test_spoiled_splats_are_taken_from_the_last_checkpoint(make):
+    trainer = make(checkpoint="c")
+    trainer.step()
+    trainer.save()
+    trainer.step()
+    with torch.no_grad():
+        trainer.model.splats.sh[:, 0] = math.nan
+    trainer.save()
+    trainer._survived_step()
+    assert trainer.at.step == 1
+    assert "went back to step 1" in trainer.at.notes[-1]
+    assert bool(torch.isfinite(trainer.model.splats.sh).all())
+    assert trainer.at.factor == 0.5
+    trainer.run(Watching())
+    assert trainer.at.step == 12
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        MemoryError(),
+        RuntimeError("[enforce fail] DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes"),
+    ],
+)
+def test_when_memory_runs_out_windows_are_halved_and_nothing_is_lost(make, monkeypatch, error):
+    trainer = make()
+    before = {name: value.clone() for name, value in everything(trainer).items()}
+    forward = type(trainer.model).forward
+
+    def greedy(self, view, *arguments, **more):
+        if view.width_px * view.height_px > 20 * 15 and torch.is_grad_enabled():
+            raise error
+        return forward(self, view, *arguments, **more)
+
+    monkeypatch.setattr(trainer_module, "SMALLEST_WINDOW_PX", 100)
+    monkeypatch.setattr(type(trainer.model), "forward", greedy)
+    trainer._survived_step()
+    assert trainer.photos.window_px == 40 * 30 // 2
+    assert all(torch.equal(value, before[name]) for name, value in everything(trainer).items())
+    trainer.run(Watching())
+    assert trainer.at.step == 12
+    assert trainer.photos.window_px <= 20 * 15
+    assert all("memory ran out at step 1:" in note for note in trainer.at.notes)
+
+
+def test_without_any_memory_it_ends_in_words(make, monkeypatch):
+    trainer = make()
+    monkeypatch.setattr(type(trainer.model), "forward", lambda *_, **__: (_ for _ in ()).throw(MemoryError()))
+    with pytest.raises(ReconstructionError, match=r"no memory for \d+ splats and windows of 1200 pixels"):
+        trainer._survived_step()
+
+
+def test_other_errors_are_not_swallowed(make, monkeypatch):
+    trainer = make()
+    monkeypatch.setattr(type(trainer.model), "forward", lambda *_, **__: (_ for _ in ()).throw(RuntimeError("size")))
+    with pytest.raises(RuntimeError, match="size"):
+        trainer._survived_step()
+
+
+def test_time_limits_end_it_with_rates_at_their_last(make):
+    trainer = make(replace(CONFIG, iterations=10_000, time_limit_s=7.5), clock=FakeClock())
+    trainer.run(Watching())
+    assert trainer.at.step == 8
+    full = {group["name"]: group["full"] for group in trainer.optimiser.param_groups}
+    lr = {group["name"]: group["lr"] for group in trainer.optimiser.param_groups}
+    assert lr["colours"] < 0.3 * full["colours"]
+
+
+def test_what_went_before_counts_for_the_time_limit(make):
+    trainer = make(replace(CONFIG, iterations=10_000, time_limit_s=7.5), clock=FakeClock(), spent_s=5.0)
+    trainer.run(Watching())
+    assert trainer.at.step == 3
+
+
+def test_stopped_it_is_what_it_is_then_and_paused_it_waits(make, monkeypatch):
+    waits = []
+    monkeypatch.setattr(trainer_module.time, "sleep", waits.append)
+    trainer = make()
+    answers = iter([True, True, False] + [False] * 99)
+    trainer.run(Watching(stop=lambda: trainer.at.step >= 4, pause=lambda: next(answers)))
+    assert trainer.at.step == 4
+    assert len(waits) == 2
+
+
+def test_every_term_of_the_objective_is_there_when_its_time_has_come(make):
+    losses = LossWeights(consistent_from=0.5, high_frequency_from=0.5)
+    trainer = make(replace(CONFIG, losses=losses))
+    assert set(trainer.step()) == {"colour"}
+    trainer.at.step = 6
+    assert set(trainer.step()) == {"colour", "normal consistency"}
+
+
+def test_gains_of_photos_stay_one_on_average(make):
+    trainer = make(replace(CONFIG, rates=replace(CONFIG.rates, exposures=0.05)))
+    trainer.run(Watching())
+    gains = trainer.exposures.log_gains.detach()
+    assert gains.abs().max() > 1e-3
+    assert gains.mean().item() == pytest.approx(0.0, abs=1e-6)
