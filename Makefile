@@ -10,7 +10,8 @@ endif
 # Those with windows each have a virtual screen.
 WORKERS ?= 3
 WARM := $(patsubst %,$(VENV)/.warm-%,planning missions.simulator reconstruction)
-UNUSED := [/\\](tests|sympy|plotly|pymavlink.dialects)[/\\]
+UNUSED := tests|sympy|plotly|pymavlink.dialects|torch._inductor|torch.testing|ifcopenshell.express|open3d._ml3d
+UNUSED := $(UNUSED)|dask.array|dask.dataframe|fontTools|mypyc|pip|pygments.lexers|setuptools
 TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -31,7 +32,7 @@ $(VENV)/.ready: pyproject.toml constraints.txt .ci/system-libraries
 	$(PY) -m pip install --quiet --upgrade --constraint constraints.txt pip setuptools
 	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt torch
 	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt --editable '.[dev,cluster]'
-	$(PY) -m compileall -qq -j $(WORKERS) -x '$(UNUSED)' $(VENV) || true
+	$(PY) -m compileall -qq -j $(WORKERS) -x '[/\\]($(UNUSED))[/\\]' $(VENV) || true
 	touch $@
 
 # The kernels, compiled once for all processes.
@@ -64,7 +65,7 @@ test:
 
 test-all:
 	$(MAKE) --jobs $(WORKERS) ready-to-test
-	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not benchmark and not alone'
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal --hypothesis-profile thorough -m 'not benchmark and not alone'
 	$(MAKE) alone
 
 # Only the files with such tests are read.

@@ -11,9 +11,17 @@ from pathlib import Path
 import hypothesis
 import pytest
 
-hypothesis.settings.register_profile(
-    "reflight", deadline=None, derandomize=True, suppress_health_check=[hypothesis.HealthCheck.too_slow]
+# Threads of BLAS and OpenMP wait for one another in busy loops: beside other processes, which tests always have, small
+# products of matrices and steps of a training took thirty times as long with two threads as with one.
+for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")
+
+THOROUGH = hypothesis.settings(
+    max_examples=100, deadline=None, derandomize=True, suppress_health_check=[hypothesis.HealthCheck.too_slow]
 )
+hypothesis.settings.register_profile("thorough", THOROUGH)
+# Most failures that a hundred examples find, the first thirty find; `make test-all` tries all.
+hypothesis.settings.register_profile("reflight", THOROUGH, max_examples=30)
 hypothesis.settings.load_profile("reflight")
 
 _STATUS = pytest.StashKey[int]()

@@ -169,7 +169,8 @@ def _largest(
 def _near_triple(hits: _Hits, upright: Labels, rng: np.random.Generator) -> Labels:
     """Three points of one neighbourhood, of a random size: those of one facade are near each other in the photo."""
     first = int(rng.choice(upright))
-    distance = np.abs(hits.pixels[upright] - hits.pixels[first]).max(axis=1)
+    x, y = np.abs(hits.pixels[upright] - hits.pixels[first]).T
+    distance = np.maximum(x, y)
     reach = float(rng.uniform(0.05, 1.0)) * float(distance.max())
     near = upright[distance <= reach]
     if len(near) < 3:

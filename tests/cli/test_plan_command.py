@@ -10,7 +10,7 @@ import pytest
 from planning.catalogue import profiles
 from planning.plan_file import read_plan
 
-QUICK = ("--time-budget", 2)
+QUICK = ("--time-budget", 1)
 
 
 def plan_json(reflight, site, out, *options):

@@ -56,7 +56,9 @@ def test_one_refinement_serves_photos_panels_and_prepare(flight, site, kept, ref
     assert told["folder"] == str(kept)
     assert told["turned_deg_median"] == pytest.approx(0.5, rel=1e-3)
     found = tmp_path / "found.site.json"
-    panels = reflight("panels", flight / "photos", flight / "coarse.ply", "-o", found, AT, "--refine")
+    panels = reflight(
+        "panels", flight / "photos", flight / "coarse.ply", "-o", found, AT, "--photos-per-facade", 1, "--refine"
+    )
     assert panels.status == 0, panels
     assert f"{kept}: refined poses, computed before" in panels.out
     prepared = reflight(

@@ -21,7 +21,10 @@ def flight(tmp_path_factory):
 
 def test_photos_become_a_data_set_that_names_every_panel(flight, reflight, tmp_path):
     site, out = tmp_path / "found.site.json", tmp_path / "dataset"
-    assert reflight("panels", flight / "photos", flight / "coarse.ply", "-o", site, AT).status == 0
+    assert (
+        reflight("panels", flight / "photos", flight / "coarse.ply", "-o", site, AT, "--photos-per-facade", 1).status
+        == 0
+    )
     done = reflight("prepare", flight / "photos", site, "-o", out, "--normal-step", 8, "--points", 1000, "--json")
     assert done.status == 0, done
     assert done.json["photos"] == 2

@@ -53,7 +53,7 @@ def test_window_opens_a_site_plans_it_and_shows_both(application, desk):
     desk.window.show_tab("plan")
     turn_until_idle(application, desk)
     empty = scene.screenshot()
-    page = planned(application, desk, PlanRequest(n_views=12, time_budget_s=3.0))
+    page = planned(application, desk, PlanRequest(n_views=12, time_budget_s=1.0))
     assert "roof: panels 32" in desk.window.messages.texts()
     assert "Views: 12, sorties: 1" in desk.window.messages.texts()
     assert page.verdict().startswith("Ready to fly")
@@ -78,7 +78,7 @@ def test_every_tab_can_be_shown_and_fits_a_small_screen(application, desk):
 
 
 def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application, desk):
-    opened(application, desk, "library")
+    opened(application, desk, "roof")
     desk.window.show_tab("plan")
     page = desk.window.tab("plan")
     page.desk.set_request(PlanRequest(n_views=60, time_budget_s=60.0))

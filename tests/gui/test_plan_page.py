@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from groundstation.gui.plan.paint_bar import PanelPaint, RoutePaint
-from groundstation.services.document import Item, ItemKind
+from groundstation.services.document import Document, Item, ItemKind, PlanEntry
+from planning.planner import plan_flight
 from planning.request import PlanRequest
+from planning.scenes import SCENES
 from tests.gui.driving import turn_until, turn_until_idle
 from tests.gui.test_main_window import QUICK, desk, opened, planned
 
@@ -16,8 +18,26 @@ __all__ = ["desk"]
 LOOK = "Look at the scene"
 
 
+@pytest.fixture(scope="module")
+def roof():
+    """A document with a plan that was made before."""
+    model = SCENES["roof"]()
+    return Document(model, (PlanEntry("plan-1", "First", plan_flight(model, QUICK).plan),), "plan-1")
+
+
 @pytest.fixture
-def page(application, desk):
+def page(application, desk, roof):
+    desk.workspace.session.open(roof, None)
+    desk.window.show_tab("plan")
+    page = desk.window.tab("plan")
+    page.desk.set_request(QUICK)
+    turn_until_idle(application, desk)
+    return page
+
+
+@pytest.fixture
+def page_of_new_plan(application, desk):
+    """The page after its own planning."""
     opened(application, desk, "roof")
     return planned(application, desk, QUICK)
 
@@ -41,7 +61,8 @@ def test_edits_and_undo_leave_the_page_that_is_read_in_front(application, desk, 
     assert page.right.currentWidget() is page.effects
 
 
-def test_undo_of_the_first_plan_leaves_nothing_of_it(application, desk, page):
+def test_undo_of_the_first_plan_leaves_nothing_of_it(application, desk, page_of_new_plan):
+    page = page_of_new_plan
     panel = desk.workspace.document.site.site.panels[3].id
     desk.workspace.select(Item(ItemKind.PANEL, panel))
     assert "sections covered" in page.panel.text()
@@ -59,7 +80,7 @@ def test_undo_of_the_first_plan_leaves_nothing_of_it(application, desk, page):
 
 def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application, desk, page):
     desk.workspace.select(Item(ItemKind.PANEL, desk.workspace.document.site.site.panels[3].id))
-    opened(application, desk, "library")
+    opened(application, desk, "office")
     planned(application, desk, replace(QUICK, n_views=6))
     shown = page.panel.panel_id()
     assert shown is None or shown == desk.workspace.document.site.site.panels[3].id

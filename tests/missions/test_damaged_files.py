@@ -72,7 +72,7 @@ def test_damaged_file_is_read_or_refused_in_words(
 ) -> None:
     path = tmp_path / "m.file"
     n_refused = 0
-    for content in damages(file_format, autopilot, 250):
+    for content in damages(file_format, autopilot, 120):
         path.write_bytes(content)
         try:
             missions = read_missions(path)
@@ -81,4 +81,4 @@ def test_damaged_file_is_read_or_refused_in_words(
             viewpoints_and_sorties(missions, origin, (0.0, 0.0, 0.0))
         except GroundStationError:
             n_refused += 1
-    assert n_refused > 10
+    assert n_refused > 5

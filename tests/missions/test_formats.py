@@ -60,7 +60,7 @@ def there_and_back(plan: Plan, file_format: FileFormat, options: ExportOptions) 
 
 @pytest.mark.parametrize(("file_format", "options"), WAYS, ids=IDS)
 @given(plan=plans())
-@settings(max_examples=20)
+@settings(max_examples=8)
 def test_round_trip_keeps_views_to_1_cm_and_a_tenth_of_a_degree(
     plan: Plan, file_format: FileFormat, options: ExportOptions
 ) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,9 @@ from planning.scenes import ORIGIN, panel_grid
 from planning.site import Airspace, NoFlyZone, Obstacle, Site, SiteModel, box_geometry
 
 Floats = NDArray[np.float64]
+
+PAIRS_AT_A_TIME = 6_000
+"""Points or lines times triangles."""
 
 
 def kiosk(**changes: object) -> SiteModel:
@@ -54,39 +58,47 @@ def dense_points(path_enu_m: Floats, spacing_m: float = 0.1) -> Floats:
     return np.concatenate(parts)
 
 
+def _some_at_a_time(n: int, n_triangles: int) -> Iterator[slice]:
+    at_a_time = max(1, PAIRS_AT_A_TIME // max(n_triangles, 1))
+    return (slice(start, start + at_a_time) for start in range(0, n, at_a_time))
+
+
 def distances(points_enu_m: Floats, triangles: Floats) -> Floats:
     """Distance of each point, shape (n, 3), to the nearest triangle, shape (t, 3, 3): plane or one of three edges."""
+    edges = np.roll(triangles, -1, axis=1) - triangles
+    squares = np.maximum((edges**2).sum(axis=2), 1e-300)
+    normals = np.cross(edges[:, 0], -edges[:, 2])
+    sizes = np.linalg.norm(normals, axis=1)
+    inwards = np.cross(normals[:, None], edges)
     best = np.full(len(points_enu_m), np.inf)
-    for corners in triangles:
-        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-        size = np.linalg.norm(normal)
-        above_inside = np.full(len(points_enu_m), size > 0.0)
-        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            edge, ray = b - a, points_enu_m - a
-            along = np.clip(ray @ edge / max(edge @ edge, 1e-300), 0.0, 1.0)
-            best = np.minimum(best, np.linalg.norm(ray - along[:, None] * edge, axis=1))
-            above_inside &= np.cross(edge, ray) @ normal >= 0.0
-        height = np.abs((points_enu_m - corners[0]) @ (normal / max(size, 1e-300)))
-        best = np.where(above_inside, np.minimum(best, height), best)
+    for some in _some_at_a_time(len(points_enu_m), len(triangles)):
+        rays = points_enu_m[some, None, None] - triangles
+        along = np.clip(np.einsum("ptec,tec->pte", rays, edges) / squares, 0.0, 1.0)
+        beside = rays - along[..., None] * edges
+        to_edges = np.sqrt(np.einsum("ptec,ptec->pte", beside, beside).min(axis=2))
+        above_inside = (np.einsum("ptec,tec->pte", rays, inwards) >= 0.0).all(axis=2) & (sizes > 0.0)
+        heights = np.abs(np.einsum("ptc,tc->pt", rays[:, :, 0], normals)) / np.maximum(sizes, 1e-300)
+        best[some] = np.where(above_inside, np.minimum(to_edges, heights), to_edges).min(axis=1, initial=np.inf)
     return best
 
 
 def lines_free(a_enu_m: Floats, b_enu_m: Floats, triangles: Floats) -> NDArray[np.bool_]:
     """Whether segments, ends of shape (k, 3), meet no triangle (T. Moeller and B. Trumbore, 1997)."""
     free = np.ones(len(a_enu_m), np.bool_)
-    direction = b_enu_m - a_enu_m
-    for corners in triangles:
-        edge_1, edge_2 = corners[1] - corners[0], corners[2] - corners[0]
+    edge_1, edge_2 = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    for some in _some_at_a_time(len(a_enu_m), len(triangles)):
+        direction = (b_enu_m - a_enu_m)[some, None]
         p = np.cross(direction, edge_2)
-        determinant = p @ edge_1
+        determinant = (p * edge_1).sum(axis=2)
         crosses = np.abs(determinant) > 1e-12
         inverse = 1.0 / np.where(crosses, determinant, 1.0)
-        ray = a_enu_m - corners[0]
-        u = (ray * p).sum(axis=1) * inverse
+        ray = a_enu_m[some, None] - triangles[:, 0]
+        u = (ray * p).sum(axis=2) * inverse
         q = np.cross(ray, edge_1)
-        v = (direction * q).sum(axis=1) * inverse
-        t = q @ edge_2 * inverse
-        free &= ~(crosses & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t >= 0.0) & (t <= 1.0))
+        v = (direction * q).sum(axis=2) * inverse
+        t = (q * edge_2).sum(axis=2) * inverse
+        met = crosses & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t >= 0.0) & (t <= 1.0)
+        free[some] = ~met.any(axis=1)
     return free
 
 

@@ -186,7 +186,7 @@ def test_plans_have_no_more_sorties_than_batteries_and_cover_more_with_more(scen
         request = PlanRequest(
             n_batteries=n_batteries,
             greedy=GreedyParameters(n_candidates=1500),
-            time_budget_s=5.0,
+            time_budget_s=2.5,
             rules=FlightRules(battery_reserve=reserve),
             seed=n_batteries,
         )

@@ -100,7 +100,7 @@ def test_airspace_that_is_only_the_column_above_home_is_refused() -> None:
 def test_a_no_fly_volume_over_everything_but_home_leaves_what_can_be_seen_from_there() -> None:
     ring = NoFlyZone("ring", ((-40.0, -24.0), (40.0, -24.0), (40.0, 40.0), (-40.0, 40.0)), -1.0, 90.0)
     model = kiosk(airspace=Airspace((-40.0, -40.0, 3.0), (40.0, 40.0, 40.0), 0.0, (ring,)))
-    planned = plan_kiosk(model, time_budget_s=4.0)
+    planned = plan_kiosk(model, time_budget_s=2.0)
     assert all(v.position_enu_m[1] <= -24.0 for v in planned.plan.viewpoints)
     free = plan_kiosk(kiosk())
     assert planned.plan.coverage.reachable_upper_bound < free.plan.coverage.reachable_upper_bound
@@ -109,7 +109,7 @@ def test_a_no_fly_volume_over_everything_but_home_leaves_what_can_be_seen_from_t
 
 def test_more_views_than_are_useful_are_spent_on_depth_or_left_out() -> None:
     model = SCENES["single-panel"]()
-    planned = plan_flight(model, PlanRequest(n_views=120, greedy=FEW, time_budget_s=4.0))
+    planned = plan_flight(model, PlanRequest(n_views=120, greedy=FEW, time_budget_s=2.0))
     plan = planned.plan
     assert plan.coverage.covered == plan.coverage.reachable_upper_bound == 34
     assert 34 < len(plan.viewpoints) <= 120

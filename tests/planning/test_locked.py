@@ -43,16 +43,16 @@ LOCKED = (
 GOALS = {
     "views": PlanRequest(n_views=7, constraints=NEAR, greedy=QUICK),
     "only the locked": PlanRequest(n_views=3, constraints=NEAR, greedy=GreedyParameters(400)),
-    "improved": PlanRequest(n_views=5, constraints=NEAR, greedy=GreedyParameters(400), time_budget_s=3.0),
-    "more than needed": PlanRequest(n_views=260, constraints=NEAR, greedy=QUICK, time_budget_s=3.0),
-    "share": PlanRequest(share=0.5, constraints=NEAR, greedy=replace(QUICK, improve=True), time_budget_s=3.0),
+    "improved": PlanRequest(n_views=5, constraints=NEAR, greedy=GreedyParameters(400), time_budget_s=1.5),
+    "more than needed": PlanRequest(n_views=260, constraints=NEAR, greedy=QUICK, time_budget_s=1.5),
+    "share": PlanRequest(share=0.5, constraints=NEAR, greedy=replace(QUICK, improve=True), time_budget_s=1.5),
     "little": PlanRequest(share=0.01, constraints=NEAR, greedy=QUICK),
     "batteries": PlanRequest(
         n_batteries=1,
         constraints=NEAR,
         greedy=QUICK,
         rules=replace(PlanRequest().rules, battery_reserve=0.94),
-        time_budget_s=4.0,
+        time_budget_s=2.0,
     ),
 }
 

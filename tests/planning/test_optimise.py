@@ -131,7 +131,7 @@ def test_greedy_with_enough_views_covers_everything_any_candidate_covers_and_spe
 def test_improvement_beats_plain_greedy_and_never_passes_the_reachable_bound():
     problem = problem_of("office")
     plain, _ = run(greedy, problem, Goal(n_views=30), parameters=replace(FAST, improve=False))
-    better, trace = run(greedy, problem, Goal(n_views=30), stop=Counting(240), parameters=FAST)
+    better, trace = run(greedy, problem, Goal(n_views=30), stop=Counting(160), parameters=FAST)
     covered = [problem.model.covered_count(found.views) for found in (plain, better)]
     assert covered[1] > 1.01 * covered[0]
     assert covered[1] <= problem.reachability.upper_bound

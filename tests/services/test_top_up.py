@@ -26,7 +26,7 @@ from planning.top_up import Target, TopUpRequest
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import NEAR, QUICK
 
-SOON = TopUpRequest(time_budget_s=0.4)
+SOON = TopUpRequest(time_budget_s=0.2)
 
 
 @functools.cache
@@ -110,13 +110,13 @@ def test_a_complete_flight_leaves_nothing_to_do() -> None:
 
 
 def test_without_any_record_everything_is_missing() -> None:
-    found, _ = top_up_flight(opened([]), replace(SOON, n_batteries=3, time_budget_s=1.0), prepared())
+    found, _ = top_up_flight(opened([]), replace(SOON, n_batteries=3, time_budget_s=0.5), prepared())
     assert found.wanted == found.promised
 
 
 def test_what_the_battery_leaves_open_is_a_warning_with_its_number() -> None:
     charge = 0.92 + 100.0 / planned().aircraft.endurance_s
-    found, findings = top_up_flight(opened([]), replace(SOON, battery=charge, time_budget_s=1.0), prepared())
+    found, findings = top_up_flight(opened([]), replace(SOON, battery=charge, time_budget_s=0.4), prepared())
     (finding,) = findings
     assert (finding.code, finding.severity) == ("left-open-battery", Severity.WARNING)
     assert finding.value == len(found.missing) > 0

@@ -102,7 +102,9 @@ def test_the_work_is_done_in_one_other_process(worker):
     assert worker.run(where) == worker.run(where) != os.getpid()
 
 
-@pytest.mark.parametrize("scene", [SCENES["roof"], kiosk], ids=["roof", "kiosk, whose walls hide one another"])
+@pytest.mark.parametrize(
+    "scene", [SCENES["single-panel"], kiosk], ids=["a single panel", "kiosk, whose walls hide one another"]
+)
 def test_a_plan_is_the_one_that_is_made_here(worker, scene):
     model, request = scene(), PlanRequest(n_views=2, greedy=GreedyParameters(n_candidates=400), time_budget_s=60.0)
     here = plan_document_site(model, request)

@@ -26,7 +26,7 @@ def test_logs_damaged_at_random_are_read_or_refused(tmp_path: Path, name: str) -
     content = LOGS[name](FLOWN, SITE)
     rng = np.random.default_rng(5)
     n_read = 0
-    for _ in range(25):
+    for _ in range(12):
         path = written(tmp_path, name, write.damaged(content, rng))
         start_s = time.perf_counter()
         try:
@@ -39,14 +39,14 @@ def test_logs_damaged_at_random_are_read_or_refused(tmp_path: Path, name: str) -
             assert all(np.isfinite(photo.position_enu_m).all() for photo in record.photos)
             assert len(record.photos) <= 100
         assert time.perf_counter() - start_s < LONGEST_S
-    assert n_read > 12
+    assert n_read > 6
 
 
 @pytest.mark.parametrize("name", ["dronekit_la_log171.bin", "sample_px4_events.ulg", "uavlogviewer_vtol.tlog"])
 def test_real_logs_damaged_at_random_are_read_or_refused(shared_data: Path, tmp_path: Path, name: str) -> None:
     content = (shared_data / "logs" / name).read_bytes()
     rng = np.random.default_rng(7)
-    for _ in range(10):
+    for _ in range(5):
         start_s = time.perf_counter()
         with pytest.raises(InputError, match=r"."):
             read_log(written(tmp_path, name, write.damaged(content, rng)), SITE)  # they are all of other sites

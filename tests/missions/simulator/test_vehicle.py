@@ -59,7 +59,7 @@ from tests.missions.simulator.ground import ARDUPILOT, ORIGIN, PX4, Ground, Poin
 def planned_office() -> Plan:
     """A plan of the office as our planner makes it."""
     few = GreedyParameters(n_candidates=2000, improve=False, certify=False)
-    return plan_flight(SCENES["office"](), PlanRequest(n_views=20, greedy=few, time_budget_s=5.0)).plan
+    return plan_flight(SCENES["office"](), PlanRequest(n_views=12, greedy=few, time_budget_s=5.0)).plan
 
 
 PARAMETERS = {ARDUPILOT: {"WP_YAW_BEHAVIOR": 0, "MNT1_PITCH_MAX": 35.0, "MNT1_PITCH_MIN": -90.0}, PX4: {}}
@@ -281,7 +281,7 @@ def check_said(vehicle: SimulatedVehicle, said: list[Message]) -> None:
 
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 @given(messages=st.lists(ground_messages(), max_size=60))
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_whatever_is_sent_the_vehicle_answers_what_fits_on_the_wire_and_stays_somewhere(autopilot, messages) -> None:
     vehicle = real_vehicle(autopilot)
     said = vehicle.receive(Received(CommandLong(1, 1, 400, 1, 21196), Address(255, 190), 0.0))
@@ -311,7 +311,7 @@ def odd_items(draw: st.DrawFn) -> MissionItemInt:
 
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 @given(odd=st.lists(odd_items(), min_size=1, max_size=12))
-@settings(max_examples=25, phases=(Phase.explicit, Phase.generate))
+@settings(max_examples=12, phases=(Phase.explicit, Phase.generate))
 def test_missions_of_odd_items_are_flown_or_refused_without_a_crash(autopilot: Autopilot, odd) -> None:
     kept = []
     for each in odd:

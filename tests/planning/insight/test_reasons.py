@@ -156,7 +156,7 @@ def relaxed(model, constraints, reason):
     return replace(model, site=replace(model.site, airspace=airspace)), constraints
 
 
-@settings(max_examples=12)
+@settings(max_examples=8)
 @given(data=st.data())
 def test_relaxing_a_rule_by_what_its_reason_says_makes_the_section_reachable(data):
     box = st.tuples(st.floats(-30, 20), st.floats(-35, -8), st.floats(1, 14), st.floats(1, 8), st.floats(2, 20))

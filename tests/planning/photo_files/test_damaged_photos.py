@@ -15,7 +15,7 @@ from planning.photo_files.xmp import MAX_PROPERTIES, read_xmp
 from tests.planning.photo_files.photo_writer import exif_part, extended_segments, gps_tags, jpeg, packet, save
 
 LONGEST_S = 1.0
-N_MUTANTS = 12_000
+N_MUTANTS = 6_000
 
 PROPERTIES = {
     "GpsLatitude": "+22.1", "GpsLongitude": "+114.1", "AbsoluteAltitude": "+12.5", "GimbalYawDegree": "+30.0",

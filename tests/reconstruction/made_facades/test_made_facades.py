@@ -88,7 +88,7 @@ def test_index_image_shows_the_polygons_of_the_panels(layout: Layout, curvature:
 def test_picture_is_the_mean_of_what_a_finer_one_shows() -> None:
     layout = Layout(5, 9, frame_depth_m=0.05)
     case = simple_case(layout, SOFTLY, intrinsics=SMALL, oblique_deg=20.0)
-    fine_camera = wide_camera(2000, 1500)
+    fine_camera = wide_camera(1200, 900)
     fine = make_facade(replace(case, truth=replace(case.truth, intrinsics=fine_camera)))
     expected = cv2.resize(fine.image, (400, 300), interpolation=cv2.INTER_AREA).astype(float)
     made = make_facade(case)

@@ -58,7 +58,7 @@ def test_a_half_round_tower_is_found() -> None:
 def test_curvature_and_its_standard_deviation_agree_with_the_truth_over_many_seeds() -> None:
     truth = surface(0.003)
     off = []
-    for seed in range(40):
+    for seed in range(20):
         found = fit_cylinder(cloud(truth, seed, n=800), outside(truth))
         off.append((found.surface.curvature_per_m - 0.003) / found.curvature_sigma_per_m)
     spread = float(np.sqrt(np.mean(np.square(off))))

@@ -210,7 +210,7 @@ def test_bundled_scenes_are_near_or_far_as_they_say(name: str, near: bool) -> No
     outwards = np.cross(pane[2] - pane[0], pane[3] - pane[1])
     position = pane.mean(axis=0) + 14.0 * outwards / np.linalg.norm(outwards) + (1.0, 0.0, 0.0)
     heading = float(np.degrees(np.arctan2(-outwards[0], -outwards[1])))
-    camera = photo(tuple(position), heading, width_px=80, height_px=60, focal_px=75.0)
+    camera = photo(tuple(position), heading, width_px=48, height_px=36, focal_px=45.0)
     assert decision(made, [camera], NEAR_FIELD).on == near
     truth = grey_levels(Renderer(made, RenderSettings(samples=4)).render(camera).linear)
     on, off = (grey_levels(taken.linear) for taken in both(made, camera, NEAR_FIELD))
