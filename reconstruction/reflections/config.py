@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from reconstruction.reflections.glass_learned import GlassLearned
 from reconstruction.reflections.reflection_mlp import MlpShape
 
 Precision = Literal["auto", "float32", "bfloat16"]
@@ -43,6 +44,82 @@ PAPER_STAGES = tuple(
 
 
 @dataclass(frozen=True, slots=True)
+class GridSettings:
+    """Of a radiance grid.
+
+    Parameters
+    ----------
+    most_cells
+        Vertices of the finest grid at most: 16 bytes each, and 48 more while it learns.
+    rays_per_cell
+        Rays learned from, for each vertex, at least. With 43 photos half as many vertices scored 1 dB more after 9 s;
+        in a training that lasts, fewer rays are enough.
+    cell
+        Side of a cell that is wished for, of what a pixel covers half way to `reach_m`.
+    reach_m
+        From the glass, up to which cells are equally large; None for the longest side of the box around all panels,
+        which is about how far apart the cameras are, and so how far away parallax can be told well. What is further
+        away is contracted.
+    outer
+        Of the grid, what is beyond the inner box on each side, against half of that.
+    levels
+        Times that it is made twice as fine; evenly over the first `grown` of the training.
+    far_side
+        Pixels along the picture of what is far away by direction.
+    places, diffuse_degree
+        Of the diffuse colour c beside it, in the place of those for the other models: rooms show through the panes, and
+        what is mirrored no longer hides that.
+    rough_density, rough_light
+        Weights of differences between neighbours: keep empty places smooth, and fill in what no ray has seen.
+    emptier
+        Weight of raw density: places that no ray needs become empty, and rays leap over them.
+    rest
+        Steps from one look at what is empty to the next, and of the weights above, which are applied every fourth.
+    rate, tilt_rate
+        Learning rates of density and light, and of c beside them; of tilts and bows of panes, and corrections of poses.
+    batch_share
+        Of the configuration's batch: of so many more steps, each on fewer rays, the grid learns faster.
+    warm_up
+        Steps in which rates rise; it cannot die as an MLP can.
+    """
+
+    most_cells: int = 1 << 18
+    rays_per_cell: float = 1.75
+    cell: float = 0.6
+    reach_m: float | None = None
+    outer: float = 0.5
+    levels: int = 2
+    grown: float = 0.3
+    far_side: int = 128
+    places: int = 5
+    diffuse_degree: int = 2
+    rough_density: float = 1e-9
+    rough_light: float = 1e-9
+    emptier: float = 1e-8
+    rest: int = 25
+    rate: float = 4e-2
+    tilt_rate: float = 2e-4
+    batch_share: float = 0.375
+    warm_up: int = 10
+
+    def __post_init__(self) -> None:
+        for name in ("cell", "rays_per_cell", "outer", "rate", "tilt_rate", "batch_share"):
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
+                raise ValueError(f"{name}: expected more than 0, got {getattr(self, name)}")
+        if self.most_cells < 64 or self.rest < 1 or self.levels < 0 or not 0.0 <= self.grown <= 1.0:
+            raise ValueError("expected most_cells from 64, rest from 1, levels from 0, and grown from 0 to 1")
+        if self.far_side < 4 or self.far_side & (self.far_side - 1):
+            raise ValueError(f"far_side: expected a power of 2 from 4 on, got {self.far_side}")
+        if self.reach_m is not None and not self.reach_m > 0.0:
+            raise ValueError(f"reach_m: expected more than 0, got {self.reach_m}")
+
+    def level(self, progress: float) -> int:
+        """How often the grid is still to be made finer, by progress of the training, 0 to 1."""
+        grown = math.floor(progress / self.grown * (self.levels + 1)) if self.grown > 0.0 else self.levels
+        return max(0, self.levels - grown)
+
+
+@dataclass(frozen=True, slots=True)
 class ReflectionConfig:
     """Settings of a training.
 
@@ -50,6 +127,10 @@ class ReflectionConfig:
     ----------
     mlp
         Shape of the Reflection MLP. The paper's 8 x 512 takes about 15 times as long as 4 x 128.
+    grid
+        Of a radiance grid.
+    learned
+        Rays of each pixel, and what is learned of panes and poses; None for one ray, and tilts beside a radiance grid.
     environment_rows
         Of the finest picture of the environment map: 1.4 degrees a pixel.
     places
@@ -88,6 +169,8 @@ class ReflectionConfig:
     """
 
     mlp: MlpShape = field(default_factory=lambda: MlpShape(width=128, layers=4, position_order=8, direction_order=4))
+    grid: GridSettings = field(default_factory=GridSettings)
+    learned: GlassLearned | None = None
     environment_rows: int = 128
     places: int = 3
     diffuse_degree: int = 1
@@ -122,6 +205,18 @@ class ReflectionConfig:
             raise ValueError(f"held_out: expected above 0 and below 1, got {self.held_out}")
         if self.time_limit_s is not None and not self.time_limit_s > 0.0:
             raise ValueError(f"time_limit_s: expected more than 0, got {self.time_limit_s}")
+
+    @property
+    def for_grid(self) -> ReflectionConfig:
+        """The same with batches, steps, rates and warm-up of a radiance grid."""
+        grid = self.grid
+        return replace(
+            self,
+            batch=max(1, round(self.batch * grid.batch_share)),
+            steps=max(1, round(self.steps / grid.batch_share)),
+            table_rate=grid.rate,
+            warm_up=min(self.warm_up, grid.warm_up),
+        )
 
     def steps_for(self, n_rays: int) -> int:
         """Steps of a training on so many rays."""

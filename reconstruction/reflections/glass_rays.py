@@ -1,14 +1,17 @@
 """Rays of glass pixels: where each meets its panel's plane, where it is mirrored to, and what colour the photo has.
 
-This is all a model of reflections learns from; no rasteriser has a part in it. A pixel counts as glass where all of its
-area lies on one panel: its middle ray and those through its four corners meet the panel inside its edges. Pixels that
-a frame shares would teach the frame's colour as a reflection.
+This is all a model of reflections learns from; no rasteriser has a part in it. What is kept of a pixel is which one it
+is; its rays, one or several through places all over it, are made when they are needed. A pixel counts as glass where
+all of its area lies on one panel: its middle ray and those through its four corners meet the panel inside its edges.
+Pixels that a frame shares would teach the frame's colour as a reflection; who knows what the frame adds to them asks
+for `middle` pixels too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
+from typing import Literal
 
 import numpy as np
 import torch
@@ -17,26 +20,101 @@ from torch import Tensor
 
 from planning.progress import QUIET, Monitor
 from reconstruction.cameras import PosedPhoto
-from reconstruction.reflections.photo_set import PanelPlanes, PhotoSet
-from reconstruction.reflections.shading import incidence_cosines, reflected_directions
-
-Array = NDArray[np.float64]
-
-LEAST_COSINE = 1e-3
-"""Between a ray and its panel's normal: below, at 89.94 degrees, a pixel is as long as a hundred panels."""
-
-AT_ONCE = 1 << 18
-"""Pixels whose rays are made at a time: about 100 MB."""
+from reconstruction.reflections.photo_set import PhotoSet
+from reconstruction.reflections.ray_table import Met, RayTable
+from reconstruction.reflections.shading import reflected_directions
 
 DEFAULT_BYTES = 1 << 30
 """Memory for rays."""
 
-CORNERS = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+AT_ONCE = 1 << 18
+"""Pixels whose corners are checked at a time: about 100 MB."""
+
+CORNERS = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
+
+Which = Literal["whole", "middle"]
+"""Pixels that count: whose whole area lies on a panel, or whose middle does."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GlassRays:
     """Rays of n pixels.
+
+    Parameters
+    ----------
+    table
+        The cameras and panels that the numbers below count.
+    photos
+        Which photos, shape (n,), int32.
+    columns, rows
+        Of the pixels, shape (n,), int16.
+    panels
+        Which panels, from 0, shape (n,), int32.
+    colours
+        Of the photo, sRGB, shape (n, 3), uint8.
+    """
+
+    table: RayTable
+    photos: Tensor
+    columns: Tensor
+    rows: Tensor
+    panels: Tensor
+    colours: Tensor
+
+    def __len__(self) -> int:
+        return len(self.panels)
+
+    def __getitem__(self, rows: Tensor | slice) -> GlassRays:
+        """Some of the rays."""
+        return GlassRays(self.table, *(getattr(self, name)[rows] for name in COLUMNS))
+
+    def repeated(self, times: int) -> GlassRays:
+        """Each ray so many times in a row."""
+        if times == 1:
+            return self
+        return GlassRays(self.table, *(getattr(self, name).repeat_interleave(times, dim=0) for name in COLUMNS))
+
+    @property
+    def display(self) -> Tensor:
+        """Colours as 0 to 1, shape (n, 3), float32."""
+        return self.colours.float() / 255.0
+
+    @property
+    def middles_px(self) -> Tensor:
+        """Of the pixels, continuous coordinates, shape (n, 2), float64."""
+        return torch.stack([self.columns, self.rows], dim=1).double() + 0.5
+
+    @property
+    def off_axis(self) -> Tensor:
+        """Squared distance from the principal point, 1 in the pictures' corners, shape (n,), float32."""
+        return self.table.off_axis(self.photos, self.middles_px).float()
+
+    @property
+    def gains(self) -> Tensor:
+        """Exposure of each ray's photo on top of that of all photos, shape (n,), float32."""
+        return self.table.gains[self.photos].float()
+
+    def met(self, offsets_px: Tensor | None = None, moves: Tensor | None = None) -> Met:
+        """One ray of each pixel, through its middle or off it by `offsets_px`, shape (n, 2); see `RayTable.meet`."""
+        places = self.middles_px if offsets_px is None else self.middles_px + offsets_px
+        return self.table.meet(self.photos, places, self.panels, moves)
+
+    def middle(self) -> MiddleRays:
+        """Through the pixels' middles, mirrored by the panels' planes."""
+        met = self.met()
+        mirrored = reflected_directions(met.directions, self.table.normals[self.panels])
+        cosines = met.cosines.abs().clamp(max=1.0)
+        return MiddleRays(self.table.rescaled(met.points_m).float(), mirrored.float(), cosines.float())
+
+
+COLUMNS = tuple(field.name for field in fields(GlassRays) if field.name != "table")
+
+BYTES_PER_RAY = 4 + 2 + 2 + 4 + 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MiddleRays:
+    """One ray of each of n pixels.
 
     Parameters
     ----------
@@ -46,43 +124,25 @@ class GlassRays:
         Unit directions, ENU, that they are mirrored to (paper Eq. 20), shape (n, 3), float32.
     cosines
         Of the angle of incidence, shape (n,), float32.
-    panels
-        Which panels, from 0, shape (n,), int32.
-    off_axis
-        Squared distance from the principal point, 1 in the picture's corners, shape (n,), float32.
-    gains
-        Exposure of the ray's photo on top of that of all photos, shape (n,), float32.
-    colours
-        Of the photo, sRGB, shape (n, 3), uint8.
     """
 
     points: Tensor
     omega_r: Tensor
     cosines: Tensor
-    panels: Tensor
-    off_axis: Tensor
-    gains: Tensor
-    colours: Tensor
-
-    def __len__(self) -> int:
-        return len(self.points)
-
-    def __getitem__(self, rows: Tensor | slice) -> GlassRays:
-        """Some of the rays."""
-        return GlassRays(*(getattr(self, field.name)[rows] for field in fields(self)))
-
-    @property
-    def display(self) -> Tensor:
-        """Colours as 0 to 1, shape (n, 3), float32."""
-        return self.colours.float() / 255.0
-
-
-BYTES_PER_RAY = 3 * 4 + 3 * 4 + 4 + 4 + 4 + 4 + 3
 
 
 def joined(parts: Sequence[GlassRays]) -> GlassRays:
-    """All rays of several."""
-    return GlassRays(*(torch.cat([getattr(part, field.name) for part in parts]) for field in fields(GlassRays)))
+    """All rays of several, at least one, that share a table."""
+    return GlassRays(parts[0].table, *(torch.cat([getattr(part, name) for part in parts]) for name in COLUMNS))
+
+
+def rays_of_pixels(
+    table: RayTable, photo: int, columns: Tensor, rows: Tensor, panels: Tensor, colours: Tensor | None = None
+) -> GlassRays:
+    """Rays of pixels of one photo, of whatever panels they are said to show, shape (n,) each; black without colours."""
+    numbers = torch.full_like(panels, photo, dtype=torch.int32)
+    shown = torch.zeros(len(panels), 3, dtype=torch.uint8, device=panels.device) if colours is None else colours
+    return GlassRays(table, numbers, columns.to(torch.int16), rows.to(torch.int16), panels.to(torch.int32), shown)
 
 
 def glass_rays(
@@ -91,11 +151,12 @@ def glass_rays(
     memory_bytes: int = DEFAULT_BYTES,
     seed: int = 0,
     monitor: Monitor = QUIET,
+    which: Which = "whole",
 ) -> GlassRays:
     """Rays of all glass pixels of some photos, read one photo after the other.
 
     Where they would take more than `memory_bytes`, an even random share of each photo's is kept: a training of 1000
-    batches of 8192 looks at 8 million rays, a third of what the default holds.
+    batches of 8192 looks at 8 million rays, an eighth of what the default holds.
 
     Parameters
     ----------
@@ -116,88 +177,59 @@ def glass_rays(
             monitor.report("counting glass", done, len(photos))
             n_pixels += int((source.panel_numbers(photo) >= 0).sum())
         share = min(1.0, memory_bytes / (BYTES_PER_RAY * max(n_pixels, 1)))
-    parts = [_blank_rays()]
+    table = RayTable.of(photos, source.panels, source.own_exposures)
+    parts = [_no_rays(table)]
     for done, photo in enumerate(photos):
         monitor.report("reading rays", done, len(photos))
-        parts.append(rays_of_photo(source, photo, share, seed + done))
+        parts.append(_rays(source, table, done, photo, share, seed + done, which))
     return joined(parts)
 
 
-def rays_of_photo(source: PhotoSet, photo: PosedPhoto, share: float = 1.0, seed: int = 0) -> GlassRays:
-    """Rays of the glass pixels of one photo, row by row; of an even random share of them where that is below 1."""
+def rays_of_photo(source: PhotoSet, photo: PosedPhoto, which: Which = "whole") -> GlassRays:
+    """Rays of the glass pixels of one photo, row by row."""
+    return _rays(source, RayTable.of([photo], source.panels, source.own_exposures), 0, photo, 1.0, 0, which)
+
+
+def _rays(
+    source: PhotoSet, table: RayTable, number: int, photo: PosedPhoto, share: float, seed: int, which: Which
+) -> GlassRays:
+    """Of an even random share of a photo's pixels."""
     numbers = source.panel_numbers(photo)
     rows, columns = np.nonzero(numbers >= 0)
     if share < 1.0:
         kept = np.random.default_rng(seed).random(len(rows)) < share
         rows, columns = rows[kept], columns[kept]
     picture = source.picture(photo)
-    parts = [_blank_rays()]
+    parts = [_no_rays(table)]
     for start in range(0, len(rows), AT_ONCE):
         row, column = rows[start : start + AT_ONCE], columns[start : start + AT_ONCE]
-        found = _rays(photo, source.panels, row, column, numbers[row, column], picture[row, column])
-        parts.append(replace(found, gains=found.gains * source.own_exposures.get(photo.name, 1.0)))
+        parts.append(_kept(table, number, row, column, numbers[row, column], picture[row, column], which))
     return joined(parts)
 
 
-def _rays(
-    photo: PosedPhoto,
-    planes: PanelPlanes,
+def _kept(
+    table: RayTable,
+    number: int,
     rows: NDArray[np.int64],
     columns: NDArray[np.int64],
     panels: NDArray[np.int64],
     colours: NDArray[np.uint8],
+    which: Which,
 ) -> GlassRays:
-    middles: Array = np.column_stack([columns, rows]).astype(np.float64) + 0.5
-    is_whole = np.ones(len(rows), bool)
-    for corner in CORNERS:
-        points, _, cosines = _met(photo, planes, middles + corner, panels)
-        is_whole &= (cosines > LEAST_COSINE) & _inside(points, planes.corners_enu_m[panels])
-    kept = np.flatnonzero(is_whole)
-    if not len(kept):
-        return _blank_rays()
-    panels, middles = panels[kept], middles[kept]
-    points, directions, _ = _met(photo, planes, middles, panels)
-    omega_o, normals = torch.from_numpy(directions), torch.from_numpy(planes.normals_enu[panels])
-    lens = photo.intrinsics
-    off = middles - (lens.cx_px, lens.cy_px)
-    off_axis = (off * off).sum(axis=1) / (0.25 * (lens.width_px**2 + lens.height_px**2))
-    return GlassRays(
-        torch.from_numpy(planes.rescaled(points).astype(np.float32)),
-        reflected_directions(omega_o, normals).float(),
-        incidence_cosines(omega_o, normals).float(),
-        torch.from_numpy(panels.astype(np.int32)),
-        torch.from_numpy(off_axis.astype(np.float32)),
-        torch.ones(len(kept)),
-        torch.from_numpy(colours[kept]),
+    rays = rays_of_pixels(
+        table,
+        number,
+        torch.from_numpy(columns),
+        torch.from_numpy(rows),
+        torch.from_numpy(panels),
+        torch.from_numpy(colours),
     )
+    is_kept = torch.ones(len(rays), dtype=torch.bool)
+    for corner in CORNERS if which == "whole" else ((0.0, 0.0),):
+        is_kept &= table.inside(rays.met(torch.tensor(corner, dtype=torch.float64)), rays.panels)
+    return rays[torch.nonzero(is_kept).squeeze(1)]
 
 
-def _met(
-    photo: PosedPhoto, planes: PanelPlanes, pixels: Array, panels: NDArray[np.int64]
-) -> tuple[Array, Array, Array]:
-    """Where rays meet their panels' planes, their unit directions, and cosines against the outward normals.
-
-    Cosines are negative where a panel is seen from behind; points are meaningless where they are under `LEAST_COSINE`.
-    """
-    origins, directions = photo.rays(pixels)
-    normals = planes.normals_enu[panels]
-    cosines = -np.einsum("nk,nk->n", directions, normals)
-    heights = np.einsum("nk,nk->n", origins - planes.corners_enu_m[panels, 0], normals)
-    distances = heights / np.maximum(cosines, LEAST_COSINE)
-    return origins + distances[:, None] * directions, directions, cosines
-
-
-def _inside(points: Array, corners: Array) -> NDArray[np.bool_]:
-    """Whether points, shape (n, 3), lie inside convex panels, shape (n, 4, 3), in whose planes they are."""
-    normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    inside = np.ones(len(points), bool)
-    for number in range(4):
-        first, second = corners[:, number], corners[:, (number + 1) % 4]
-        inside &= np.einsum("nk,nk->n", np.cross(second - first, points - first), normals) >= 0.0
-    return inside
-
-
-def _blank_rays() -> GlassRays:
-    three, one = torch.zeros(0, 3), torch.zeros(0)
-    panels, colours = torch.zeros(0, dtype=torch.int32), torch.zeros(0, 3, dtype=torch.uint8)
-    return GlassRays(three, three, one, panels, one, one, colours)
+def _no_rays(table: RayTable) -> GlassRays:
+    none, short = torch.zeros(0, dtype=torch.int32), torch.zeros(0, dtype=torch.int16)
+    return GlassRays(table, none, short, short, none, torch.zeros(0, 3, dtype=torch.uint8))

@@ -8,14 +8,12 @@ from typing import Literal
 import torch
 from torch import Tensor, nn
 
-from reconstruction.reflections.environment_map import EnvironmentMap
+from reconstruction.reflections.glass_light import GlassLight
 from reconstruction.reflections.glass_rays import GlassRays
 from reconstruction.reflections.harmonics import HarmonicTexture
-from reconstruction.reflections.reflection_mlp import ReflectionMlp
 from reconstruction.reflections.shading import display_from_linear, schlick, shade
 
-ModelName = Literal["mlp", "environment-map", "harmonics"]
-LightModel = ReflectionMlp | EnvironmentMap
+ModelName = Literal["mlp", "environment-map", "harmonics", "radiance-grid"]
 
 REFLECTIVITY, BASE_REFLECTANCE, DIFFUSE_SHARE = 0.8, 0.4, 0.5
 """R and F0 that every panel starts from, coated glass, and the share of its mean colour that is put down to c."""
@@ -36,7 +34,7 @@ class ReflectivePanels(nn.Module):
         Model of mirrored light L; without one all light is c, as in splatting without reflections.
     """
 
-    def __init__(self, diffuse: HarmonicTexture, light: LightModel | None) -> None:
+    def __init__(self, diffuse: HarmonicTexture, light: GlassLight | None) -> None:
         super().__init__()
         n_panels = len(diffuse.means)
         self.diffuse = diffuse
@@ -45,26 +43,35 @@ class ReflectivePanels(nn.Module):
         self.base_reflectance = nn.Parameter(torch.full((n_panels, 3), _logit(BASE_REFLECTANCE)))
         self.corner_loss = nn.Parameter(torch.zeros(()))
 
-    def linear(self, rays: GlassRays) -> Tensor:
-        """Linear light of rays as it reaches the sensor, shape (n, 3)."""
+    def linear(self, rays: GlassRays, generator: torch.Generator | None = None) -> Tensor:
+        """Linear light of rays as it reaches the sensor, shape (n, 3).
+
+        Parameters
+        ----------
+        generator
+            See `GlassLight`.
+        """
         panels = rays.panels.long()
         kept = 1.0 - torch.clamp(self.corner_loss * rays.off_axis, max=0.9)[:, None]
-        diffuse: Tensor = self.diffuse(rays.points, rays.omega_r, panels)
+        middle = rays.middle()
+        diffuse: Tensor = self.diffuse(middle.points, middle.omega_r, panels)
         if self.light is None:
             return kept * diffuse
-        fresnel = schlick(torch.sigmoid(self.base_reflectance)[panels], rays.cosines)
-        reflectivity = torch.sigmoid(self.reflectivity)[panels]
-        return kept * shade(diffuse, reflectivity, fresnel, self.light(rays.points, rays.omega_r))
+        light, cosines = self.light(rays, generator)
+        fresnel = schlick(torch.sigmoid(self.base_reflectance)[panels], cosines)
+        return kept * shade(diffuse, torch.sigmoid(self.reflectivity)[panels], fresnel, light)
 
-    def forward(self, rays: GlassRays, gain: float = 1.0) -> Tensor:
+    def forward(self, rays: GlassRays, gain: float = 1.0, generator: torch.Generator | None = None) -> Tensor:
         """Colours of rays as photos have them, sRGB, shape (n, 3), above 1 where a photo would be overexposed.
 
         Parameters
         ----------
         gain
             Exposure of all the rays' photos against that of those learned from.
+        generator
+            See `GlassLight`.
         """
-        return display_from_linear(gain * rays.gains[:, None] * self.linear(rays))
+        return display_from_linear(gain * rays.gains[:, None] * self.linear(rays, generator))
 
 
 def expected_reflection(mean: float) -> float:

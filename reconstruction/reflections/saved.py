@@ -16,12 +16,14 @@ from planning.errors import InputError
 from planning.json_file import expect_format, read_json, to_record, write_atomically
 from planning.progress import QualityPoint
 from reconstruction.reflections.config import Precision, ReflectionConfig
+from reconstruction.reflections.grid_box import GridBox
 from reconstruction.reflections.photo_set import PanelPlanes
+from reconstruction.reflections.radiance_grid import RadianceGrid
 from reconstruction.reflections.reflection_mlp import MlpHealth
-from reconstruction.reflections.reflective_panels import ModelName
+from reconstruction.reflections.reflective_panels import ModelName, ReflectivePanels
 from reconstruction.reflections.training import TrainedReflections, untrained_panels
 
-FORMAT = "reflight-reflections/1"
+FORMAT = "reflight-reflections/2"
 WEIGHTS, DESCRIPTION = "reflections.safetensors", "reflections.json"
 
 Corner = tuple[float, float, float]
@@ -39,6 +41,7 @@ class _Saved:
     seconds: float
     history: tuple[QualityPoint, ...]
     health: MlpHealth | None
+    box: GridBox | None = None
 
 
 def save_reflections(trained: TrainedReflections, folder: Path) -> None:
@@ -67,6 +70,7 @@ def save_reflections(trained: TrainedReflections, folder: Path) -> None:
         "seconds": trained.seconds,
         "history": [asdict(point) for point in trained.history],
         "health": None if trained.health is None else asdict(trained.health),
+        "box": None if trained.box is None else asdict(trained.box),
     }
     write_atomically(folder / DESCRIPTION, json.dumps(content, indent=1, allow_nan=False).encode())
 
@@ -86,15 +90,19 @@ def read_reflections(folder: Path) -> TrainedReflections:
     if not saved.corners_enu_m:
         raise InputError(f"{path}: corners_enu_m: expected at least one panel")
     planes = PanelPlanes(np.array(saved.corners_enu_m, float))
-    means = torch.full((len(saved.corners_enu_m), 3), 0.5)
-    panels = untrained_panels(planes, saved.model, saved.config, means, torch.Generator().manual_seed(0))
     weights = _weights(folder / WEIGHTS)
+    cells = weights.get("light.light.cells", np.zeros((0, 0, 0, 4), np.float32))
+    if saved.box is not None and cells.shape != (*reversed(saved.box.counts), 4):
+        raise InputError(f"{path}: box: expected that of the grid in {WEIGHTS}")
+    panels = _untrained(saved, planes, len(weights.get("light.moves", ())), path)
     expected = {name: tuple(value.shape) for name, value in panels.state_dict().items()}
     if {name: value.shape for name, value in weights.items()} != expected:
         raise InputError(f"{folder / WEIGHTS}: holds the weights of another model than {path.name} describes")
     if not all(np.isfinite(value).all() for value in weights.values()):
         raise InputError(f"{folder / WEIGHTS}: holds numbers that are not finite; train again")
     panels.load_state_dict({name: torch.from_numpy(value) for name, value in weights.items()})
+    if panels.light is not None and isinstance(panels.light.light, RadianceGrid):
+        panels.light.light.refresh()
     panels.eval()
     return TrainedReflections(
         panels,
@@ -109,6 +117,14 @@ def read_reflections(folder: Path) -> TrainedReflections:
         saved.history,
         saved.health,
     )
+
+
+def _untrained(saved: _Saved, planes: PanelPlanes, n_photos: int, path: Path) -> ReflectivePanels:
+    if (saved.box is None) == (saved.model == "radiance-grid"):
+        raise InputError(f"{path}: box: expected one where the model is 'radiance-grid', and none for others")
+    means = torch.full((len(saved.corners_enu_m), 3), 0.5)
+    generator = torch.Generator().manual_seed(0)
+    return untrained_panels(planes, saved.model, saved.config, means, generator, saved.box, n_photos)
 
 
 def _weights(path: Path) -> dict[str, NDArray[np.float32]]:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -16,15 +17,18 @@ from planning.errors import ReconstructionError
 from planning.progress import QUIET, Clock, Monitor, QualityPoint
 from reconstruction.reflections.config import Precision, ReflectionConfig
 from reconstruction.reflections.environment_map import EnvironmentMap
+from reconstruction.reflections.glass_learned import GlassLearned
+from reconstruction.reflections.glass_light import GlassLight, LightModel
 from reconstruction.reflections.glass_rays import GlassRays
+from reconstruction.reflections.grid_box import GridBox, box_of
 from reconstruction.reflections.harmonics import MAX_DEGREE, HarmonicTexture
 from reconstruction.reflections.losses import ray_errors, ray_loss
 from reconstruction.reflections.photo_set import PanelPlanes
+from reconstruction.reflections.radiance_grid import RadianceGrid
 from reconstruction.reflections.reflection_mlp import MlpHealth, MlpShape, ReflectionMlp
 from reconstruction.reflections.reflective_panels import (
     DIFFUSE_SHARE,
     REFLECTIVITY,
-    LightModel,
     ModelName,
     ReflectivePanels,
     expected_reflection,
@@ -81,6 +85,12 @@ class TrainedReflections:
     history: tuple[QualityPoint, ...]
     health: MlpHealth | None
 
+    @property
+    def box(self) -> GridBox | None:
+        """Of a radiance grid."""
+        light = None if self.panels.light is None else self.panels.light.light
+        return light.box if isinstance(light, RadianceGrid) else None
+
 
 def train_reflections(
     rays: GlassRays,
@@ -112,17 +122,18 @@ def train_reflections(
     if precision == "auto":
         precision = faster_precision(config.mlp, config.batch, config.threads) if model == "mlp" else "float32"
     checked = _sample(unseen, CHECKED, config.seed) if unseen is not None and len(unseen) else None
+    settings = config.for_grid if model == "radiance-grid" else config
     with _threads(config.threads):
         generator = torch.Generator().manual_seed(config.seed)
         panels = new_panels(rays, planes, model, config, generator)
         started_s = clock()
-        history, n_steps = _train(panels, rays, config, precision, generator, checked, monitor, clock)
+        history, n_steps = _train(panels, rays, settings, precision, generator, checked, monitor, clock)
         seconds = clock() - started_s
         panels.eval()
         health = None
-        if isinstance(panels.light, ReflectionMlp):
-            some = _sample(rays, CHECKED, config.seed)
-            health = panels.light.health(some.points, some.omega_r)
+        if panels.light is not None and isinstance(panels.light.light, ReflectionMlp):
+            some = _sample(rays, CHECKED, config.seed).middle()
+            health = panels.light.light.health(some.points, some.omega_r)
     return TrainedReflections(
         panels, model, config, planes, exposure, precision, len(rays), n_steps, seconds, tuple(history), health
     )
@@ -140,26 +151,49 @@ def new_panels(
     sums = torch.zeros(n_panels, 3).index_add(0, numbers, linear)
     # Panels that no ray shows are like all others on average.
     means = torch.where(counts > 0.0, sums / counts.clamp(min=1.0), mean)
-    return untrained_panels(planes, model, config, means, generator)
+    box = box_of(_sample(rays, CHECKED, config.seed), config.grid, len(rays)) if model == "radiance-grid" else None
+    return untrained_panels(planes, model, config, means, generator, box, len(rays.table.gains), config.grid.levels)
 
 
 def untrained_panels(
-    planes: PanelPlanes, model: ModelName, config: ReflectionConfig, means: Tensor, generator: torch.Generator
+    planes: PanelPlanes,
+    model: ModelName,
+    config: ReflectionConfig,
+    means: Tensor,
+    generator: torch.Generator,
+    box: GridBox | None = None,
+    n_photos: int = 0,
+    level: int = 0,
 ) -> ReflectivePanels:
-    """A model that starts from mean linear colours of the panels, shape (m, 3)."""
-    light: LightModel | None = None
-    diffuse, degree = means, MAX_DEGREE
-    if model != "harmonics":
-        diffuse, degree = DIFFUSE_SHARE * means / (1.0 - REFLECTIVITY), config.diffuse_degree
-        expected = expected_reflection(float(means.mean()))
-        if model == "mlp":
-            light = ReflectionMlp(config.mlp, expected, generator)
-        elif model == "environment-map":
-            light = EnvironmentMap(config.environment_rows, expected)
-        else:
-            raise ValueError(f"model: expected mlp, environment-map or harmonics, got {model!r}")
+    """A model that starts from mean linear colours of the panels, shape (m, 3).
+
+    Parameters
+    ----------
+    box, level
+        Of a radiance grid, and how often it is still to be made finer.
+    n_photos
+        That it will learn from.
+    """
     corners = torch.from_numpy(planes.rescaled(planes.corners_enu_m))
-    return ReflectivePanels(HarmonicTexture(corners, config.places, diffuse.clamp(0.01, 0.99), degree), light)
+    if model == "harmonics":
+        return ReflectivePanels(HarmonicTexture(corners, config.places, means.clamp(0.01, 0.99), MAX_DEGREE), None)
+    expected = expected_reflection(float(means.mean()))
+    places, degree, learned = config.places, config.diffuse_degree, GlassLearned()
+    light: LightModel
+    if model == "mlp":
+        light = ReflectionMlp(config.mlp, expected, generator)
+    elif model == "environment-map":
+        light = EnvironmentMap(config.environment_rows, expected)
+    elif model == "radiance-grid":
+        if box is None:
+            raise ValueError("box: expected that of the radiance grid")
+        light = RadianceGrid(box, expected, level, config.grid.far_side)
+        places, degree, learned = config.grid.places, config.grid.diffuse_degree, GlassLearned(tilts=True)
+    else:
+        raise ValueError(f"model: expected mlp, environment-map, harmonics or radiance-grid, got {model!r}")
+    diffuse = (DIFFUSE_SHARE * means / (1.0 - REFLECTIVITY)).clamp(0.01, 0.99)
+    glass = GlassLight(light, planes, config.learned or learned, n_photos)
+    return ReflectivePanels(HarmonicTexture(corners, places, diffuse, degree), glass)
 
 
 def _train(
@@ -173,8 +207,7 @@ def _train(
     clock: Clock,
 ) -> tuple[list[QualityPoint], int]:
     """History and steps taken; time spent on the history does not count."""
-    groups, rates = _rated(panels, config)
-    optimiser = torch.optim.Adam(groups, lr=rates[0], betas=BETAS)
+    optimiser = _optimiser(panels, config)
     history: list[QualityPoint] = []
     n_steps = config.steps_for(len(rays))
     every, spent_s, step = max(1, n_steps // HISTORY_POINTS), 0.0, 0
@@ -183,12 +216,14 @@ def _train(
         monitor.report("learning reflections", step, n_steps)
         begun_s = clock()
         progress = max(step / n_steps, spent_s / limit_s)
-        for group, rate in zip(optimiser.param_groups, rates, strict=True):
-            group["lr"] = rate * config.rate(step, progress)
+        for group in optimiser.param_groups:
+            group["lr"] = group["rate"] * config.rate(step, progress)
         batch = rays[torch.randint(len(rays), (config.batch,), generator=generator)]
         with torch.autocast("cpu", torch.bfloat16, enabled=precision == "bfloat16"):
-            colours = panels(batch)
+            colours = panels(batch, generator=generator)
         loss = ray_loss(ray_errors(colours, batch.display), config.stage(progress))
+        more = panels.light.regulariser(config, step) if panels.light is not None else None
+        loss = loss if more is None else loss + more
         if not bool(torch.isfinite(loss)):
             raise ReconstructionError(
                 f"learning reflections failed: the loss is not a number at step {step + 1} of {n_steps}; "
@@ -198,25 +233,35 @@ def _train(
         loss.backward()  # type: ignore[no-untyped-call]
         optimiser.step()
         step += 1
+        if panels.light is not None and panels.light.after_step(config, step - 1, max(step / n_steps, progress)):
+            optimiser = _optimiser(panels, config, optimiser)
         spent_s += clock() - begun_s
         is_last = step == n_steps or spent_s >= limit_s
         if checked is not None and (step % every == 0 or is_last):
+            panels.eval()
             history.append(QualityPoint(spent_s, psnr_db(mean_square_error(panels, checked))))
+            panels.train()
+    if panels.light is not None:
+        panels.light.finish(config)
     return history, step
 
 
-def _rated(panels: ReflectivePanels, config: ReflectionConfig) -> tuple[list[dict[str, list[Tensor]]], list[float]]:
-    """Groups of parameters for the optimiser, and the learning rate of each."""
-    tables: list[Tensor] = [*panels.diffuse.parameters()]
-    own: list[Tensor] = []
-    network: list[Tensor] = []
-    for name, value in panels.named_parameters():
-        if name.startswith("light."):
-            (network if isinstance(panels.light, ReflectionMlp) else tables).append(value)
-        elif not name.startswith("diffuse."):
-            own.append(value)
-    rated = [(tables, config.table_rate), (own, config.panel_rate), (network, config.mlp_rate)]
-    return [{"params": values} for values, _ in rated if values], [rate for values, rate in rated if values]
+def _optimiser(
+    panels: ReflectivePanels, config: ReflectionConfig, before: torch.optim.Adam | None = None
+) -> torch.optim.Adam:
+    """With what one `before` remembers of the parameters that are still there."""
+    own = [panels.corner_loss]
+    groups: list[dict[str, Any]] = [{"params": [*panels.diffuse.parameters()], "lr": config.table_rate}]
+    if panels.light is not None:
+        own += [panels.reflectivity, panels.base_reflectance]
+        groups += panels.light.parameter_groups(config)
+    groups.append({"params": own, "lr": config.panel_rate})
+    optimiser = torch.optim.Adam([{**group, "rate": group["lr"]} for group in groups], betas=BETAS, fused=True)
+    for group in optimiser.param_groups if before is not None else ():
+        for value in group["params"]:
+            if before is not None and value in before.state:
+                optimiser.state[value] = before.state[value]
+    return optimiser
 
 
 @torch.no_grad()

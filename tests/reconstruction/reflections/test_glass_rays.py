@@ -1,6 +1,6 @@
 """Rays of glass pixels against the camera's mirror image, and which pixels count."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -8,8 +8,16 @@ import pytest
 import torch
 
 from planning.errors import OperationCancelled
-from reconstruction.reflections.glass_rays import BYTES_PER_RAY, GlassRays, glass_rays, joined, rays_of_photo
+from reconstruction.reflections.glass_rays import (
+    BYTES_PER_RAY,
+    COLUMNS,
+    glass_rays,
+    joined,
+    rays_of_photo,
+    rays_of_pixels,
+)
 from reconstruction.reflections.photo_set import read_photo_set
+from reconstruction.reflections.ray_table import RayTable
 from tests.reconstruction.reflections.made_folder import LENS, far, mirror_directions, write_folder
 
 BENT = replace(LENS, distortion=(-0.12, 0.03, 0.002, -0.001, 0.0))
@@ -24,7 +32,7 @@ def source(request, tmp_path_factory):
 
 
 def places_of(source, rays):
-    return rays.points.double().numpy() * source.panels.half_side_m + source.panels.middle_enu_m
+    return rays.middle().points.double().numpy() * source.panels.half_side_m + source.panels.middle_enu_m
 
 
 def test_rays_meet_the_glass_at_the_middles_of_pixels_and_go_on_from_the_cameras_mirror_image(source):
@@ -35,8 +43,8 @@ def test_rays_meet_the_glass_at_the_middles_of_pixels_and_go_on_from_the_cameras
         assert len(rays) > 100
         assert np.abs(pixels - np.rint(pixels)).max() < 2e-4
         assert np.abs(places[:, 1]).max() < 1e-6
-        assert np.abs(rays.omega_r.numpy() - mirror_directions(photo, places)).max() < 1e-6
-        assert np.abs(rays.cosines.numpy() + rays.omega_r[:, 1].numpy()).max() < 1e-6
+        assert np.abs(rays.middle().omega_r.numpy() - mirror_directions(photo, places)).max() < 1e-6
+        assert np.abs(rays.middle().cosines.numpy() + rays.middle().omega_r[:, 1].numpy()).max() < 1e-6
 
 
 def test_colours_and_panels_are_those_of_the_pixels(source):
@@ -54,15 +62,15 @@ def test_a_small_memory_keeps_an_even_random_share(source):
     some = glass_rays(source, source.photos, BYTES_PER_RAY * 800)
     again = glass_rays(source, source.photos, BYTES_PER_RAY * 800)
     assert 0.3 * 800 < len(some) <= 1.1 * 800 < len(everything)
-    assert all(torch.equal(getattr(some, f.name), getattr(again, f.name)) for f in fields(GlassRays))
+    assert all(torch.equal(getattr(some, name), getattr(again, name)) for name in COLUMNS)
     shares = torch.bincount(some.panels, minlength=6) / torch.bincount(everything.panels, minlength=6)
     assert (shares - shares.mean()).abs().max() < 0.6 * shares.mean()
-    assert not torch.equal(some.points, glass_rays(source, source.photos, BYTES_PER_RAY * 800, seed=1).points)
+    assert not torch.equal(some.rows, glass_rays(source, source.photos, BYTES_PER_RAY * 800, seed=1).rows)
 
 
 def test_a_ray_takes_as_many_bytes_as_is_said(source):
     rays = glass_rays(source, source.photos)
-    taken = sum(getattr(rays, f.name).nbytes for f in fields(GlassRays))
+    taken = sum(getattr(rays, name).nbytes for name in COLUMNS)
     assert taken == BYTES_PER_RAY * len(rays)
 
 
@@ -92,10 +100,41 @@ def test_a_cancelled_reading_says_so(source):
 
 
 def test_joining_keeps_order(source):
-    parts = [rays_of_photo(source, photo) for photo in source.photos]
+    rays = glass_rays(source, source.photos)
+    parts = [rays[:100], rays[100:150], rays[150:]]
     whole = joined(parts)
-    assert len(whole) == sum(map(len, parts))
-    assert torch.equal(whole[len(parts[0]) : len(parts[0]) + len(parts[1])].points, parts[1].points)
+    assert len(whole) == len(rays)
+    assert torch.equal(whole[100:150].colours, parts[1].colours)
+
+
+def test_rays_of_many_photos_are_those_of_each(source):
+    whole = glass_rays(source, source.photos)
+    for number, photo in enumerate(source.photos):
+        alone = rays_of_photo(source, photo)
+        part = whole[torch.nonzero(whole.photos == number).squeeze(1)]
+        assert torch.equal(part.middle().omega_r, alone.middle().omega_r)
+        assert torch.equal(part.colours, alone.colours)
+
+
+def test_pixels_whose_middle_lies_on_a_panel_are_more_than_whole_ones_and_hold_them(source):
+    whole, middle = (glass_rays(source, source.photos, which=which) for which in ("whole", "middle"))
+    drawn = sum(int((source.panel_numbers(photo) >= 0).sum()) for photo in source.photos)
+    assert len(whole) < len(middle) == pytest.approx(drawn, abs=4)
+    found, every = (
+        set(zip(rays.photos.tolist(), rays.rows.tolist(), rays.columns.tolist(), strict=True))
+        for rays in (whole, middle)
+    )
+    assert found < every
+
+
+def test_pixels_that_are_given_meet_the_plane_of_the_panel_that_is_said(source):
+    photo = source.photos[0]
+    table = RayTable.of([photo], source.panels, {})
+    columns, rows, panels = torch.tensor([3, 20]), torch.tensor([4, 15]), torch.tensor([0, 5])
+    rays = rays_of_pixels(table, 0, columns, rows, panels)
+    pixels = photo.pixels(places_of(source, rays))
+    assert np.abs(pixels - [[3.5, 4.5], [20.5, 15.5]]).max() < 1e-4
+    assert rays.colours.sum() == 0
 
 
 def test_whole_pixels_are_those_whose_corners_all_lie_in_the_drawn_panel(tmp_path):

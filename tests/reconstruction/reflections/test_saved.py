@@ -9,7 +9,7 @@ import torch
 from safetensors.numpy import load_file, save_file
 
 from planning.errors import InputError
-from reconstruction.reflections.config import PAPER_STAGES, ReflectionConfig
+from reconstruction.reflections.config import PAPER_STAGES, GridSettings, ReflectionConfig
 from reconstruction.reflections.glass_rays import glass_rays
 from reconstruction.reflections.photo_set import read_photo_set
 from reconstruction.reflections.reflection_mlp import MlpShape
@@ -20,6 +20,7 @@ from tests.reconstruction.reflections.made_folder import far, write_folder
 SMALL = ReflectionConfig(
     mlp=MlpShape(16, 3, 2, 2, staged=False),
     environment_rows=8,
+    grid=GridSettings(most_cells=512, levels=1, far_side=8),
     steps=5,
     batch=64,
     precision="float32",
@@ -43,7 +44,7 @@ def saved(rays, tmp_path):
     return tmp_path / "model"
 
 
-@pytest.mark.parametrize("model", ["mlp", "environment-map", "harmonics"])
+@pytest.mark.parametrize("model", ["mlp", "environment-map", "harmonics", "radiance-grid"])
 def test_what_comes_back_tells_the_same_colours_and_the_same_of_itself(rays, tmp_path, model):
     trained = train_reflections(*rays, model, SMALL, 0.7, rays[0])
     save_reflections(trained, tmp_path / "new" / "model")
@@ -120,3 +121,18 @@ def test_weights_that_are_missing_are_refused(saved):
     (saved / WEIGHTS).unlink()
     with pytest.raises(InputError, match="cannot be read"):
         read_reflections(saved)
+
+
+def test_grids_that_are_not_of_the_box_that_is_told_are_refused(rays, tmp_path):
+    folder = tmp_path / "grid"
+    save_reflections(train_reflections(*rays, "radiance-grid", SMALL), folder)
+    path = folder / DESCRIPTION
+    content = json.loads(path.read_text())
+    for box in (
+        None,
+        {**content["box"], "counts": [10**6, 10**6, 10**6]},
+        {**content["box"], "halves": [0.0, 1.0, 1.0]},
+    ):
+        path.write_text(json.dumps({**content, "box": box}))
+        with pytest.raises(InputError, match="box"):
+            read_reflections(folder)

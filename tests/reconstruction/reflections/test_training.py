@@ -7,7 +7,14 @@ import pytest
 import torch
 
 from planning.errors import OperationCancelled, ReconstructionError
-from reconstruction.reflections.config import LEAST_STEPS, PAPER_STAGES, HighFrequencyStage, ReflectionConfig
+from reconstruction.reflections.config import (
+    LEAST_STEPS,
+    PAPER_STAGES,
+    GridSettings,
+    HighFrequencyStage,
+    ReflectionConfig,
+)
+from reconstruction.reflections.glass_learned import GlassLearned
 from reconstruction.reflections.glass_rays import GlassRays, glass_rays
 from reconstruction.reflections.losses import high_frequency_loss, ray_errors, ray_loss
 from reconstruction.reflections.photo_set import read_photo_set
@@ -22,8 +29,9 @@ from reconstruction.reflections.training import (
 )
 from tests.reconstruction.reflections.made_folder import far, near, write_folder
 
+GRID = GridSettings(most_cells=2048, levels=1, far_side=16, batch_share=1.0)
 SMALL = ReflectionConfig(
-    mlp=MlpShape(40, 4, 4, 3), environment_rows=16, steps=150, batch=768, warm_up=20, precision="float32"
+    mlp=MlpShape(40, 4, 4, 3), environment_rows=16, grid=GRID, steps=150, batch=768, warm_up=20, precision="float32"
 )
 SHORT = replace(SMALL, steps=12, warm_up=3)
 N_LEARNED = 20
@@ -67,7 +75,7 @@ def test_where_it_is_far_directions_are_enough(tmp_path):
     assert 20.0 < few_harmonics < mlp
 
 
-@pytest.mark.parametrize("model", ["mlp", "environment-map", "harmonics"])
+@pytest.mark.parametrize("model", ["mlp", "environment-map", "harmonics", "radiance-grid"])
 @pytest.mark.parametrize("precision", ["float32", "bfloat16"])
 def test_the_same_seed_gives_the_same_bits_and_another_one_does_not(plain, model, precision):
     rays, unseen, planes = plain
@@ -129,7 +137,9 @@ def test_cancelling_ends_it_at_once(plain):
 
 def test_a_loss_that_is_no_number_is_an_error_that_says_what_to_do(plain):
     rays, _, planes = plain
-    broken = replace(rays, cosines=torch.full_like(rays.cosines, float("nan")))
+    broken = replace(
+        rays, table=replace(rays.table, lenses=rays.table.lenses * torch.tensor([1, 1, 1, 1, torch.nan, 1]))
+    )
     with pytest.raises(ReconstructionError, match="step 1 of 12; lower the learning rates"):
         train_reflections(broken, planes, "mlp", SHORT)
 
@@ -267,4 +277,44 @@ def test_settings_that_make_no_sense_are_refused(changes):
 def test_rays_are_picked_by_rows_and_slices(plain):
     rays, _, _ = plain
     assert isinstance(rays[:5], GlassRays)
-    assert torch.equal(rays[torch.tensor([3, 1])].points, rays.points[[3, 1]])
+    assert torch.equal(rays[torch.tensor([3, 1])].rows, rays.rows[[3, 1]])
+
+
+def test_a_radiance_grid_is_as_fine_as_its_box_in_the_end_also_where_time_ran_out(plain):
+    rays, _, planes = plain
+    ticks = itertools.count()
+    config = replace(SHORT, grid=replace(GRID, levels=3), time_limit_s=2.0)
+    trained = train_reflections(rays, planes, "radiance-grid", config, clock=lambda: 0.5 * next(ticks))
+    light = trained.panels.light.light
+    assert trained.n_steps == 4
+    assert light.level == 0
+    assert tuple(light.cells.shape) == (*reversed(trained.box.counts), 4)
+
+
+def test_pose_corrections_of_a_training_are_saved_with_it_and_used_in_it(plain):
+    rays, _, planes = plain
+    config = replace(SHORT, learned=GlassLearned(rays=4, tilts=True, bows=True, poses=True))
+    trained = train_reflections(rays, planes, "radiance-grid", config)
+    assert trained.panels.light.moves.shape == (4, 6)
+    for value in (trained.panels.light.moves, trained.panels.light.bows, trained.panels.light.tilts):
+        assert value.detach().abs().max() > 0.0
+
+
+def test_batches_and_rates_of_a_grid_are_its_own():
+    config = ReflectionConfig(steps=900, batch=8000, grid=GridSettings(batch_share=0.25, rate=0.07, warm_up=5))
+    assert (config.for_grid.batch, config.for_grid.steps) == (2000, 3600)
+    assert (config.for_grid.table_rate, config.for_grid.warm_up) == (0.07, 5)
+
+
+def test_a_grid_is_made_finer_step_by_step_over_the_first_part_of_a_training():
+    grid = GridSettings(levels=3, grown=0.4)
+    assert [grid.level(progress) for progress in (0.0, 0.09, 0.11, 0.25, 0.31, 0.4, 1.0)] == [3, 3, 2, 1, 0, 0, 0]
+    assert GridSettings(levels=2, grown=0.0).level(0.0) == 0
+
+
+@pytest.mark.parametrize(
+    "changes", [{"cell": 0.0}, {"far_side": 12}, {"levels": -1}, {"reach_m": -1.0}, {"grown": 2.0}]
+)
+def test_settings_of_a_grid_that_make_no_sense_are_refused(changes):
+    with pytest.raises(ValueError, match=next(iter(changes))):
+        GridSettings(**changes)
