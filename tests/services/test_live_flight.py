@@ -141,8 +141,8 @@ def test_what_cannot_be_done_now_is_refused_in_words(flight):
 
 
 def test_start_is_refused_while_the_list_is_not_well(flight):
-    """A wind above the aircraft's limit stands on the list until it calms."""
-    live, follower = flight(simulation(conditions=Conditions(wind_m_s=13.0), wishes={"wind": "on"}))
+    """A wind that no lull takes below the aircraft's limit stands on the list."""
+    live, follower = flight(simulation(conditions=Conditions(wind_m_s=18.0), wishes={"wind": "on"}))
     follower.until_may(Request.UPLOAD)
     live.request(Request.UPLOAD)
     follower.until(lambda event: isinstance(event, Answered) and event.request is Request.UPLOAD)
