@@ -57,9 +57,9 @@ class GridSettings:
     cell
         Side of a cell that is wished for, of what a pixel covers half way to `reach_m`.
     reach_m
-        From the glass, up to which cells are equally large; None for the longest side of the box around all panels,
-        which is about how far apart the cameras are, and so how far away parallax can be told well. What is further
-        away is contracted.
+        From the glass, up to which cells are equally large; None for 1.25 times the longest side of the box around all
+        panels, which is about how far apart the cameras are, and so how far away parallax can be told well. What is
+        further away is contracted.
     outer
         Of the grid, what is beyond the inner box on each side, against half of that.
     levels
@@ -68,15 +68,18 @@ class GridSettings:
         Pixels along the picture of what is far away by direction.
     places, diffuse_degree
         Of the diffuse colour c beside it, in the place of those for the other models: rooms show through the panes, and
-        what is mirrored no longer hides that.
+        what is mirrored no longer hides that. Degree 2 brings 0.1 dB with 85 photos, and costs 0.3 to 0.5 dB with 43.
     rough_density, rough_light
-        Weights of differences between neighbours: keep empty places smooth, and fill in what no ray has seen.
+        Weights of differences between neighbours: keep empty places smooth, and fill in what no ray has seen. A quarter
+        of them cost up to 0.3 dB with 43 photos; four times as much of both costs as much.
     emptier
-        Weight of raw density: places that no ray needs become empty, and rays leap over them.
+        Weight of raw density: places that no ray needs become empty, and rays leap over them. From a quarter to four
+        times of it scores are the same within 0.2 dB.
     rest
         Steps from one look at what is empty to the next, and of the weights above, which are applied every fourth.
     rate, tilt_rate
         Learning rates of density and light, and of c beside them; of tilts and bows of panes, and corrections of poses.
+        Half of `rate` scored 0.4 to 0.8 dB less after 9 s, twice as much 0.3 dB less after 30 s.
     batch_share
         Of the configuration's batch: of so many more steps, each on fewer rays, the grid learns faster.
     warm_up
@@ -92,12 +95,12 @@ class GridSettings:
     grown: float = 0.3
     far_side: int = 128
     places: int = 5
-    diffuse_degree: int = 2
-    rough_density: float = 1e-9
-    rough_light: float = 1e-9
-    emptier: float = 1e-8
+    diffuse_degree: int = 1
+    rough_density: float = 4e-9
+    rough_light: float = 4e-9
+    emptier: float = 2.5e-9
     rest: int = 25
-    rate: float = 4e-2
+    rate: float = 2e-2
     tilt_rate: float = 2e-4
     batch_share: float = 0.375
     warm_up: int = 10
