@@ -33,7 +33,7 @@ from reconstruction.modelling.ranks import ALONE, Ranks
 from reconstruction.modelling.rates import adam_of, set_rates, take_step
 from reconstruction.modelling.recovery import NotFinite, is_out_of_memory, require_finite
 from reconstruction.modelling.watching import HeldOut, Preview, Progress, Watching
-from reconstruction.reflections.training import psnr_db
+from reconstruction.scores.image_metrics import psnr_db
 from reconstruction.splatting.densification import Densification, FixedNumber
 from reconstruction.splatting.raster import Raster
 

@@ -18,7 +18,8 @@ from reconstruction.reflections.config import ReflectionConfig
 from reconstruction.reflections.glass_rays import GlassRays
 from reconstruction.reflections.photo_set import PanelPlanes
 from reconstruction.reflections.reflective_panels import ModelName
-from reconstruction.reflections.training import TrainedReflections, mean_square_error, psnr_db, train_reflections
+from reconstruction.reflections.training import TrainedReflections, mean_square_error, train_reflections
+from reconstruction.scores.image_metrics import psnr_db
 
 TRIED: tuple[ModelName, ...] = ("harmonics", "environment-map", "radiance-grid")
 

@@ -13,7 +13,8 @@ from planning.errors import InputError
 from planning.progress import QUIET, Monitor
 from reconstruction.reflections.glass_rays import rays_of_photo
 from reconstruction.reflections.photo_set import PhotoSet
-from reconstruction.reflections.training import TrainedReflections, mean_square_error, psnr_db
+from reconstruction.reflections.training import TrainedReflections, mean_square_error
+from reconstruction.scores.image_metrics import psnr_db
 
 LEAST_RAYS = 200
 """Of a view that is scored: of fewer the score says more about where they lie than about the model."""

@@ -34,6 +34,7 @@ from reconstruction.reflections.reflective_panels import (
     expected_reflection,
 )
 from reconstruction.reflections.shading import linear_from_display
+from reconstruction.scores.image_metrics import psnr_db
 
 HISTORY_POINTS = 12
 """Times at which the quality is measured on the way."""
@@ -278,11 +279,6 @@ def mean_square_error(panels: ReflectivePanels, rays: GlassRays, gain: float = 1
         part = rays[start : start + CHECKED]
         total += float((panels(part, gain).clamp(0.0, 1.0) - part.display).square().sum(dtype=torch.float64))
     return total / (3 * len(rays)) if len(rays) else math.nan
-
-
-def psnr_db(mean_square: float) -> float:
-    """Peak signal-to-noise ratio of colours 0 to 1; at most 100 dB, where there is no error at all."""
-    return -10.0 * math.log10(max(mean_square, 1e-10))
 
 
 def _sample(rays: GlassRays, n: int, seed: int) -> GlassRays:

@@ -21,8 +21,9 @@ from reconstruction.reflections.glass_rays import GlassRays, glass_rays
 from reconstruction.reflections.photo_set import PanelPlanes, PhotoSet, held_out_names, read_photo_set
 from reconstruction.reflections.ray_table import RayTable
 from reconstruction.reflections.reflective_panels import ModelName
-from reconstruction.reflections.training import mean_square_error, psnr_db, train_reflections
+from reconstruction.reflections.training import mean_square_error, train_reflections
 from reconstruction.scenes.renderer import RenderSettings
+from reconstruction.scores.image_metrics import psnr_db
 from tests.benchmarks.harness import Benchmark, Context, Row
 
 Array = NDArray[np.float64]
