@@ -11,12 +11,12 @@ from torch import Tensor, nn
 from reconstruction.reflections.glass_light import GlassLight
 from reconstruction.reflections.glass_rays import GlassRays
 from reconstruction.reflections.harmonics import HarmonicTexture
-from reconstruction.reflections.shading import display_from_linear, schlick, shade
+from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY, display_from_linear, schlick, shade
 
 ModelName = Literal["mlp", "environment-map", "harmonics", "radiance-grid"]
 
-REFLECTIVITY, BASE_REFLECTANCE, DIFFUSE_SHARE = 0.8, 0.4, 0.5
-"""R and F0 that every panel starts from, coated glass, and the share of its mean colour that is put down to c."""
+DIFFUSE_SHARE = 0.5
+"""Of a panel's mean colour, what is put down to c at first."""
 
 
 class ReflectivePanels(nn.Module):

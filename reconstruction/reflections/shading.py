@@ -8,6 +8,9 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
+REFLECTIVITY, BASE_REFLECTANCE = 0.8, 0.4
+"""R and F0 that glass starts from: coated panes."""
+
 DARKEST = 0.0031308
 """Linear light below which sRGB's curve is a straight line (IEC 61966-2-1)."""
 

@@ -28,12 +28,11 @@ from reconstruction.reflections.radiance_grid import RadianceGrid
 from reconstruction.reflections.reflection_mlp import MlpHealth, MlpShape, ReflectionMlp
 from reconstruction.reflections.reflective_panels import (
     DIFFUSE_SHARE,
-    REFLECTIVITY,
     ModelName,
     ReflectivePanels,
     expected_reflection,
 )
-from reconstruction.reflections.shading import linear_from_display
+from reconstruction.reflections.shading import REFLECTIVITY, linear_from_display
 from reconstruction.scores.image_metrics import psnr_db
 
 HISTORY_POINTS = 12

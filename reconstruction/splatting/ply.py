@@ -18,9 +18,10 @@ import torch
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY
 from reconstruction.splatting.harmonic_colour import N_HARMONICS
 from reconstruction.splatting.ply_file import AT_ONCE, PlyHeader, read_blocks, read_header, write_blocks
-from reconstruction.splatting.splats import F0, NO_PANEL, REFLECTIVITY, SHAPES, Splats, normals_of
+from reconstruction.splatting.splats import NO_PANEL, SHAPES, Splats, normals_of
 
 Kind = Literal["2dgs", "3dgs"]
 
@@ -140,7 +141,7 @@ def read_splats(path: Path) -> SplatsOfFile:
     n = header.n_rows
     values = {name: np.zeros((n, *shape), np.float32) for name, shape in SHAPES.items()}
     values["reflectivity_logits"][:] = math.log(REFLECTIVITY / (1.0 - REFLECTIVITY))
-    values["f0_logits"][:] = math.log(F0 / (1.0 - F0))
+    values["f0_logits"][:] = math.log(BASE_REFLECTANCE / (1.0 - BASE_REFLECTANCE))
     panels = np.full(n, NO_PANEL, np.int32)
     first = 0
     for block in read_blocks(path, header):

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from planning.errors import InputError
+from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY
 from reconstruction.splatting.harmonic_colour import (
     N_HARMONICS,
     display_colours,
@@ -34,9 +35,6 @@ FEATURES = {"colour": slice(0, 3), "reflectivity": slice(3, 4), "f0": slice(4, 7
 
 NO_PANEL = -1
 """Panel of splats that are not glass."""
-
-REFLECTIVITY, F0 = 0.8, 0.4
-"""That glass starts from: coated panes, as `reconstruction.reflections` starts from."""
 
 LEAST_SQUARE = 1e-12
 """Squared length of a quaternion below which it is no rotation; then nothing is turned, and it has no gradient."""
@@ -89,7 +87,7 @@ class Splats(nn.Module):
         colours: Tensor,
         panels: Tensor | None = None,
         reflectivity: float = REFLECTIVITY,
-        f0: float = F0,
+        f0: float = BASE_REFLECTANCE,
     ) -> Splats:
         """Splats that look alike from all sides.
 

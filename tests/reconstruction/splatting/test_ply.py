@@ -5,10 +5,11 @@ import pytest
 import torch
 
 from planning.errors import InputError
+from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY
 from reconstruction.splatting.harmonic_colour import display_colours
 from reconstruction.splatting.ply import read_splats, write_splats
 from reconstruction.splatting.ply_file import read_blocks, read_header, write_blocks
-from reconstruction.splatting.splats import F0, REFLECTIVITY, SHAPES
+from reconstruction.splatting.splats import SHAPES
 from tests.reconstruction.splatting.learned_scenes import random_splats
 
 
@@ -86,7 +87,7 @@ def test_splats_of_another_program_with_lower_harmonics_are_no_glass(tmp_path, s
     found = read_splats(tmp_path / "a.ply").splats
     assert (found.panels == -1).all()
     assert torch.allclose(torch.sigmoid(found.reflectivity_logits), torch.tensor(REFLECTIVITY))
-    assert torch.allclose(found.f0, torch.tensor(F0))
+    assert torch.allclose(found.f0, torch.tensor(BASE_REFLECTANCE))
     assert (found.sh[:, 1:4] != 0.0).any()
     assert (found.sh[:, 4:] == 0.0).all()
 
