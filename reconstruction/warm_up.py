@@ -12,6 +12,7 @@ from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels
 from reconstruction.modelling.dssim_kernel import dissimilarity
 from reconstruction.photos.sharpness import sharpness
+from reconstruction.reflections.environment_map import EnvironmentMap
 from reconstruction.reflections.grid_box import GridBox
 from reconstruction.reflections.radiance_grid import RadianceGrid
 from reconstruction.scenes.bundled import bundled_scene
@@ -52,7 +53,7 @@ def compile_kernels() -> None:
 
 
 def _draw_splats() -> None:
-    """Colours, raster and sky of a few splats, there and back."""
+    """Colours, raster and sky of a few splats and an environment map, there and back."""
     view = View(16, 16, 16.0, 16.0, 8.0, 8.0, torch.eye(4, dtype=torch.float64))
     means = torch.tensor([[0.0, 0.0, 2.0], [0.1, 0.0, 3.0]])
     quats, panels = torch.tensor([[1.0, 0.0, 0.0, 0.0]]).expand(2, 4), torch.zeros(2, dtype=torch.int32)
@@ -63,6 +64,8 @@ def _draw_splats() -> None:
     )  # fmt: skip
     light = Sky(rows=4).behind(view.directions(), raster.alphas)
     (raster.features.sum() + raster.depths.sum() + light.sum()).backward()  # type: ignore[no-untyped-call]
+    directions = view.directions().reshape(-1, 3)
+    EnvironmentMap(4, 0.5)(directions, directions).sum().backward()
 
 
 def _march_grid() -> None:

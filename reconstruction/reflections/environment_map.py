@@ -7,8 +7,7 @@ import math
 import torch
 from torch import Tensor, nn
 
-LEVEL = 1e-12
-"""Squared horizontal part of a direction below which it is up or down, and has no heading."""
+from reconstruction.reflections.environment_map_kernels import LEVEL, looked_up
 
 
 class EnvironmentMap(nn.Module):
@@ -37,11 +36,13 @@ class EnvironmentMap(nn.Module):
 
     def forward(self, points: Tensor, omega_r: Tensor, panels: Tensor | None = None) -> Tensor:
         """Light, shape (n, 3), 0 to 1, from unit directions `omega_r`, shape (n, 3); the others are not asked for."""
-        x, y = turns_and_rows(omega_r)
-        logits: Tensor = self.mean
-        for texels in self.levels:
-            logits = logits + _looked_up(texels, x, y)
-        return torch.sigmoid(logits)
+        return torch.sigmoid(self.mean + self._looked_up(omega_r))
+
+    def _looked_up(self, directions: Tensor) -> Tensor:
+        levels = list(self.levels)
+        if directions.device.type == "cpu" and directions.dtype == levels[0].dtype == torch.float32:
+            return looked_up(directions, levels)
+        return looked_up_twin(directions, levels)
 
 
 def turns_and_rows(directions: Tensor) -> tuple[Tensor, Tensor]:
@@ -57,6 +58,12 @@ def turns_and_rows(directions: Tensor) -> tuple[Tensor, Tensor]:
     east = torch.where(is_level, torch.zeros_like(east), east)
     level = torch.sqrt(torch.where(is_level, torch.full_like(square, LEVEL), square))
     return torch.atan2(east, north) / (2.0 * math.pi), 0.5 - torch.atan2(up, level) / math.pi
+
+
+def looked_up_twin(directions: Tensor, levels: list[Tensor]) -> Tensor:
+    """What pictures show in unit directions, added up, in plain torch, of any precision on any device, shape (n, 3)."""
+    turns, rows = turns_and_rows(directions)
+    return torch.stack([_looked_up(texels, turns, rows) for texels in levels]).sum(dim=0)
 
 
 def _looked_up(texels: Tensor, turns: Tensor, rows: Tensor) -> Tensor:

@@ -12,9 +12,12 @@ from torch import Tensor
 from torch.autograd.function import once_differentiable
 
 from planning.jit import chunks
-from reconstruction.splatting.numba_blend import blend_tiles, limits_of
+from reconstruction.splatting.numba_blend import blend_tiles
+from reconstruction.splatting.numba_blocks import bytes_a_splat, limits_of
 from reconstruction.splatting.numba_gradients import gradients_of_tiles
-from reconstruction.splatting.numba_projection import N_GEOMETRY, N_GRADIENTS, gradients_of_splats, project_splats
+from reconstruction.splatting.numba_lanes import N_LANES
+from reconstruction.splatting.numba_projection import N_GEOMETRY, project_splats
+from reconstruction.splatting.numba_splat_gradients import N_OTHERS, gradients_of_splats
 from reconstruction.splatting.numba_tiles import run_on_threads, sort_into_tiles
 from reconstruction.splatting.raster import Raster, RasterSettings
 from reconstruction.splatting.views import View
@@ -34,7 +37,7 @@ class _Rasterise(torch.autograd.Function):
         n, limits, size = len(means), limits_of(settings), settings.tile_px
         camera = np.ascontiguousarray(view.cam_from_world.numpy())
         lens = np.array([view.fx_px, view.fy_px, view.cx_px, view.cy_px])
-        geometry, centres, depth = np.empty((n, N_GEOMETRY), np.float32), np.empty((n, 2)), np.empty(n)
+        geometry, depth = np.empty((n, N_GEOMETRY), np.float32), np.empty(n)
         boxes, radii = np.empty((n, 4), np.int32), np.empty(n, np.float32)
         least_change = settings.least_depth_change(min(view.fx_px, view.fy_px))
         of_projection = np.array(
@@ -44,7 +47,7 @@ class _Rasterise(torch.autograd.Function):
         def project(start: int, stop: int) -> None:
             project_splats(
                 means, quats, scales, opacities, offsets, camera, lens, (view.width_px, view.height_px), of_projection,
-                start, stop, geometry, centres, depth, boxes, radii,
+                start, stop, geometry, depth, boxes, radii,
             )  # fmt: skip
 
         run_on_threads(project, chunks(n, SPLATS_AT_ONCE), settings.threads)
@@ -56,16 +59,17 @@ class _Rasterise(torch.autograd.Function):
         )
         heaviest = np.full(picture.shape[:2] if labels is not None else (0, 0), -1, np.int32)
         slot_weights = np.empty(len(tiles.splats), np.float32)
+        reached = np.empty((len(tiles.splats), bytes_a_splat(size)), np.uint8)
 
         def blend(start: int, stop: int) -> None:
             blend_tiles(
-                geometry, centres, boxes, features, tiles.starts, tiles.splats, limits, size, tiles.n_columns,
-                wanted_labels, start, stop, picture, alphas, depths, heaviest, slot_weights,
+                geometry, features, tiles.starts, tiles.splats, limits, size, tiles.n_columns,
+                wanted_labels, start, stop, picture, alphas, depths, heaviest, slot_weights, reached,
             )  # fmt: skip
 
         run_on_threads(blend, chunks(len(tiles.starts) - 1, TILES_AT_ONCE), settings.threads)
         weights = np.bincount(tiles.splats, slot_weights, n).astype(np.float32)
-        ctx.kept = (view, settings, tiles, geometry, centres, boxes, limits, camera, lens)
+        ctx.kept = (view, settings, tiles, geometry, reached, limits, camera, lens)
         ctx.save_for_backward(*inputs)
         out = [torch.from_numpy(a) for a in (picture, alphas, depths, heaviest, weights, radii)]
         ctx.mark_non_differentiable(*out[3:])
@@ -74,19 +78,19 @@ class _Rasterise(torch.autograd.Function):
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, *wanted: Any) -> Any:
-        view, settings, tiles, geometry, centres, boxes, limits, camera, lens = ctx.kept
+        view, settings, tiles, geometry, reached, limits, camera, lens = ctx.kept
         arrays = [np.ascontiguousarray(t.detach().numpy()) for t in ctx.saved_tensors]
         means, quats, scales = arrays[:3]
         features = _padded(arrays[4])
         shape = (view.height_px, view.width_px)
         of_features = _gradient(wanted[0], (*shape, arrays[4].shape[1]))
-        of_more = np.ascontiguousarray(np.stack([_gradient(w, shape) for w in wanted[1:3]], axis=-1))
-        slots = np.empty((len(tiles.splats), N_GRADIENTS + features.shape[1]), np.float32)
+        of_alphas, of_depths = (_gradient(w, shape) for w in wanted[1:3])
+        slots = np.empty((len(tiles.splats), N_OTHERS + features.shape[1]), np.float32)
 
         def of_tiles(start: int, stop: int) -> None:
             gradients_of_tiles(
-                geometry, centres, boxes, features, tiles.starts, tiles.splats, limits, settings.tile_px,
-                tiles.n_columns, of_features, of_more, start, stop, slots,
+                geometry, features, tiles.starts, tiles.splats, limits, settings.tile_px,
+                tiles.n_columns, reached, of_features, of_alphas, of_depths, start, stop, slots,
             )  # fmt: skip
 
         run_on_threads(of_tiles, chunks(len(tiles.starts) - 1, TILES_AT_ONCE), settings.threads)
@@ -110,8 +114,8 @@ def _gradient(wanted: Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float
 
 
 def _padded(features: NDArray[np.float32]) -> NDArray[np.float32]:
-    """With as many columns of 0 as make their number a multiple of four, which the way back takes at once."""
-    missing = -features.shape[1] % 4
+    """With as many columns of 0 as make their number a multiple of eight, which are taken at once."""
+    missing = -features.shape[1] % N_LANES
     return np.pad(features, ((0, 0), (0, missing))) if missing else features
 
 

@@ -1,4 +1,4 @@
-"""Splats as a camera sees them, compiled: geometry of each, the box it can touch, and the way back to its parameters.
+"""Splats as a camera sees them, compiled: the geometry of each, its outline, and the box that it can touch.
 
 The formulas are those of `projection`, in float64; what the tiles need is rounded to float32 only afterwards.
 """
@@ -10,39 +10,55 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import kernel
+from planning.jit import inline, kernel
 from reconstruction.splatting.projection import LEAST_NORM
 from reconstruction.splatting.torch_twin import LEAST_AREA_PX2, LIMITS_WIDENED, MOST_CHANGE
 
 Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+Pair = tuple[float, float]
 Triple = tuple[float, float, float]
+Four = tuple[float, float, float, float]
 Quat = tuple[float, float, float, float, float]
 """Length, and w, x, y, z at length 1."""
 
 J_XU, J_XV, J_YU, J_YV, E, F, DEPTH, OPACITY, LOWEST, HIGHEST = range(10)
 """Columns of a splat's geometry. J, and e, f with t = x e + y f, are divided by the area a, det J: then D = 1 + t, and
 nothing leaves the range of float32 for tiny, huge and edge-on splats. The last two are the limits of t."""
-N_GEOMETRY = 10
-CENTRE_X, CENTRE_Y = 8, 9
-"""Columns of gradients, in the place of the limits, which have none."""
-N_GRADIENTS = 10
+WHOLE_X, WHOLE_Y, REST_X, REST_Y = range(10, 14)
+"""Its middle, in pixels: whole ones and what is left, so that nothing is lost in float32."""
+LEFT, RIGHT, TOP, BOTTOM = range(14, 18)
+"""Half-open ranges of the columns and rows that it can touch."""
+DISC_X, DISC_Y, OVER_HALF_HEIGHT, HALF_WIDTH, SHEAR, DOT_RADIUS2 = range(18, 24)
+"""Its outline as far as it counts, in pixels: of the disc, an ellipse, the middle from the splat's own, 1 / half its
+height, half the width of the row through its middle, and by how much rows move sideways from row to row; of the
+low-pass filter's circle the squared radius."""
+N_GEOMETRY = 24
 
 EDGE_ON_JACOBIAN = 1e6
 """Of a splat seen edge-on: with it and a flat plane the disc never wins against the low-pass filter."""
 
 SLACK_PX = 1e-3
-"""Of boxes: more than the rounding of float32 near them."""
+"""Of boxes and outlines: more than the rounding of float32 near them."""
+
+LARGEST_OUTLINE_PX = 1e4
+"""Half-axes and distances up to which an outline is exact enough in float32; what is larger is as wide as its box."""
+WIDEST_PX = 1e30
+
+ROUNDING = 1e-5
+"""Of outlines: as a share of their size, more than that of float32."""
 
 N_CORNERS = 12
 """Of the polygon around a disc of which a part is too near: its box is at most 4 % too large."""
 
 
-@kernel
-def _rotation_columns(q: tuple[float, float, float, float]) -> tuple[Triple, Triple, Quat]:
+@inline
+def _rotation_columns(w: float, x: float, y: float, z: float) -> tuple[Triple, Triple, Quat]:
     """First two columns of the rotation of a quaternion, and its length (0 where it says nothing)."""
-    norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    norm = math.sqrt(w * w + x * x + y * y + z * z)
     if norm > LEAST_NORM:
-        w, x, y, z = q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm
+        over = 1.0 / norm
+        w, x, y, z = w * over, x * over, y * over, z * over
     else:
         norm, w, x, y, z = 0.0, 1.0, 0.0, 0.0, 0.0
     first = (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y))
@@ -50,7 +66,7 @@ def _rotation_columns(q: tuple[float, float, float, float]) -> tuple[Triple, Tri
     return first, second, (norm, w, x, y, z)
 
 
-@kernel
+@inline
 def _in_camera(camera: Array, x: float, y: float, z: float) -> Triple:
     """A direction of the model's frame in camera axes."""
     return (
@@ -60,19 +76,33 @@ def _in_camera(camera: Array, x: float, y: float, z: float) -> Triple:
     )
 
 
-@kernel
-def _in_world(camera: Array, x: float, y: float, z: float) -> Triple:
-    """A direction of camera axes in the model's frame."""
-    return (
-        camera[0, 0] * x + camera[1, 0] * y + camera[2, 0] * z,
-        camera[0, 1] * x + camera[1, 1] * y + camera[2, 1] * z,
-        camera[0, 2] * x + camera[1, 2] * y + camera[2, 2] * z,
-    )
+@inline
+def see(
+    means: Floats, quats_wxyz: Floats, scales: Floats, camera: Array, lens: Array, i: int
+) -> tuple[Triple, Quat, Triple, Triple, Pair, Four]:
+    """Splat `i` in camera axes: middle, rotation, two tangents, slopes, Jacobian (xu, xv, yu, yv); see `projection`."""
+    x, y, z = _in_camera(camera, np.float64(means[i, 0]), np.float64(means[i, 1]), np.float64(means[i, 2]))
+    x, y, z = x + camera[0, 3], y + camera[1, 3], z + camera[2, 3]
+    first, second, quat = _rotation_columns(
+        np.float64(quats_wxyz[i, 0]), np.float64(quats_wxyz[i, 1]),
+        np.float64(quats_wxyz[i, 2]), np.float64(quats_wxyz[i, 3]),
+    )  # fmt: skip
+    first = _in_camera(camera, first[0], first[1], first[2])
+    second = _in_camera(camera, second[0], second[1], second[2])
+    over_z = 1.0 / z
+    s_u, s_v, across, down = scales[i, 0] * over_z, scales[i, 1] * over_z, x * over_z, y * over_z
+    q_u, q_v = s_u * first[2], s_v * second[2]
+    jacobian = (
+        lens[0] * (s_u * first[0] - across * q_u), lens[0] * (s_v * second[0] - across * q_v),
+        lens[1] * (s_u * first[1] - down * q_u), lens[1] * (s_v * second[1] - down * q_v),
+    )  # fmt: skip
+    return (x, y, z), quat, first, second, (q_u, q_v), jacobian
 
 
 @kernel
-def _clipped_box(jacobian: Array, slopes: Array, depth: float, reach: float, near_m: float, box: Array) -> None:
-    """Widen `box` (left, right, top, bottom, from the middle) by the part of a disc that is not too near."""
+def _clipped_box(jacobian: Four, slopes: Pair, depth: float, reach: float, near_m: float) -> Four:
+    """Box (left, right, top, bottom, from the middle) of the part of a disc that is not too near."""
+    left, right, top, bottom = 0.0, 0.0, 0.0, 0.0
     out = reach / math.cos(math.pi / N_CORNERS)
     for corner in range(N_CORNERS):
         first, second = 2.0 * math.pi * corner / N_CORNERS, 2.0 * math.pi * (corner + 1) / N_CORNERS
@@ -90,88 +120,62 @@ def _clipped_box(jacobian: Array, slopes: Array, depth: float, reach: float, nea
                     continue
                 share = -here / change
             w = 1.0 + slopes[0] * (u + share * du) + slopes[1] * (v + share * dv)
-            x = (jacobian[0, 0] * (u + share * du) + jacobian[0, 1] * (v + share * dv)) / w
-            y = (jacobian[1, 0] * (u + share * du) + jacobian[1, 1] * (v + share * dv)) / w
-            box[0], box[1] = min(box[0], x), max(box[1], x)
-            box[2], box[3] = min(box[2], y), max(box[3], y)
+            x = (jacobian[0] * (u + share * du) + jacobian[1] * (v + share * dv)) / w
+            y = (jacobian[2] * (u + share * du) + jacobian[3] * (v + share * dv)) / w
+            left, right, top, bottom = min(left, x), max(right, x), min(top, y), max(bottom, y)
+    return left, right, top, bottom
 
 
-@kernel
-def _widen_box(jacobian: Array, slopes: Array, depth: float, reach: float, near_m: float, box: Array) -> None:
-    """Widen `box` (left, right, top, bottom, from the middle) by a disc as far as it counts.
+@inline
+def _outline(jacobian: Four, slopes: Pair, reach: float) -> tuple[Four, tuple[float, float, float, float, float]]:
+    """Box (left, right, top, bottom, from the middle) and outline of a disc that is in front of the camera altogether.
 
     The extremes of a circle's projection are the roots of a quadratic in its dual conic.
     """
-    steepness = math.sqrt(slopes[0] * slopes[0] + slopes[1] * slopes[1])
-    if depth * (1.0 - reach * steepness) < near_m:
-        _clipped_box(jacobian, slopes, depth, reach, near_m, box)
-        return
-    r2 = reach * reach
-    in_front = 1.0 - r2 * steepness * steepness
-    for axis in range(2):
-        ju, jv = jacobian[axis, 0], jacobian[axis, 1]
-        middle = -r2 * (ju * slopes[0] + jv * slopes[1])
-        half = math.sqrt(middle * middle + in_front * r2 * (ju * ju + jv * jv))
-        box[2 * axis] = min(box[2 * axis], (middle - half) / in_front)
-        box[2 * axis + 1] = max(box[2 * axis + 1], (middle + half) / in_front)
+    j_xu, j_xv, j_yu, j_yv = jacobian
+    q_u, q_v = slopes
+    share = reach * reach / (1.0 - reach * reach * (q_u * q_u + q_v * q_v))
+    x, y = -share * (j_xu * q_u + j_xv * q_v), -share * (j_yu * q_u + j_yv * q_v)
+    xx = x * x + share * (j_xu * j_xu + j_xv * j_xv)
+    yy = y * y + share * (j_yu * j_yu + j_yv * j_yv)
+    half_width, half_height = math.sqrt(xx), math.sqrt(yy)
+    box = (x - half_width, x + half_width, y - half_height, y + half_height)
+    shear = (x * y + share * (j_xu * j_yu + j_xv * j_yv)) / yy
+    in_row = math.sqrt(max(xx - shear * shear * yy, 0.0)) * (1.0 + ROUNDING) + SLACK_PX
+    return box, (x, y, 1.0 / (half_height * (1.0 + ROUNDING) + SLACK_PX), in_row, shear)
 
 
-@kernel
-def _pixels_between(low: float, high: float, size: int) -> tuple[int, int]:
-    """Half-open range of the pixels, of `size`, whose middles lie between two places, empty where there are none."""
-    first = math.ceil(min(max(low - 0.5 - SLACK_PX, -1.0), size + 1.0))
-    last = math.floor(min(max(high - 0.5 + SLACK_PX, -2.0), size + 1.0))
-    return max(int(first), 0), min(int(last) + 1, size)
+@inline
+def _first_pixel(low: float, size: int) -> int:
+    """The first pixel, of `size`, whose middle is not before a place."""
+    return max(math.ceil(min(max(low - 0.5 - SLACK_PX, -1.0), size + 1.0)), 0)
 
 
-@kernel
-def _see(
-    means: NDArray[np.float32],
-    quats_wxyz: NDArray[np.float32],
-    scales: NDArray[np.float32],
-    camera: Array,
-    lens: Array,
-    i: int,
-    tangents: Array,
-    slopes: Array,
-    jacobian: Array,
-) -> tuple[Triple, Quat]:
-    """Splat `i` in camera axes: its middle and rotation come back, tangents, slopes and Jacobian are filled in."""
-    x, y, z = _in_camera(camera, np.float64(means[i, 0]), np.float64(means[i, 1]), np.float64(means[i, 2]))
-    x, y, z = x + camera[0, 3], y + camera[1, 3], z + camera[2, 3]
-    qw, qx = np.float64(quats_wxyz[i, 0]), np.float64(quats_wxyz[i, 1])
-    qy, qz = np.float64(quats_wxyz[i, 2]), np.float64(quats_wxyz[i, 3])
-    first, second, quat = _rotation_columns((qw, qx, qy, qz))
-    tangents[0, 0], tangents[0, 1], tangents[0, 2] = _in_camera(camera, first[0], first[1], first[2])
-    tangents[1, 0], tangents[1, 1], tangents[1, 2] = _in_camera(camera, second[0], second[1], second[2])
-    for k in range(2):
-        scale = np.float64(scales[i, k])
-        slopes[k] = scale * tangents[k, 2] / z
-        jacobian[0, k] = lens[0] * (scale * tangents[k, 0] - x * slopes[k]) / z
-        jacobian[1, k] = lens[1] * (scale * tangents[k, 1] - y * slopes[k]) / z
-    return (x, y, z), quat
+@inline
+def _behind_last(high: float, size: int) -> int:
+    """Of the pixels, of `size`, whose middles are not behind a place the last, and one more."""
+    return min(math.floor(min(max(high - 0.5 + SLACK_PX, -2.0), size + 1.0)) + 1, size)
 
 
 @kernel
 def project_splats(
-    means: NDArray[np.float32],
-    quats_wxyz: NDArray[np.float32],
-    scales: NDArray[np.float32],
-    opacities: NDArray[np.float32],
-    offsets: NDArray[np.float32],
+    means: Floats,
+    quats_wxyz: Floats,
+    scales: Floats,
+    opacities: Floats,
+    offsets: Floats,
     camera: Array,
     lens: Array,
     size: tuple[int, int],
     limits: Array,
     start: int,
     stop: int,
-    geometry: NDArray[np.float32],
-    centres: Array,
+    geometry: Floats,
     depths: Array,
     boxes: NDArray[np.int32],
-    radii: NDArray[np.float32],
+    radii: Floats,
 ) -> None:
-    """Fill the last five arrays for splats `start` to `stop`; those that are not drawn get an empty box and radius 0.
+    """Fill the last four arrays for splats `start` to `stop`; those that are not drawn get an empty box and radius 0.
 
     Parameters
     ----------
@@ -181,156 +185,67 @@ def project_splats(
         Model's frame to camera axes, shape (4, 4); fx, fy, cx, cy; width, height.
     limits
         Nearest depth, least alpha, standard deviation of the low-pass filter, reach and least change of depth.
-    geometry, centres, depths
-        Shapes (n, 10), (n, 2), (n,).
+    geometry, depths
+        Shapes (n, 24) and (n,).
     boxes
         Half-open ranges of columns and rows, shape (n, 4): left, right, top, bottom.
     """
     near_m, least, low_pass, far_reach, least_change = limits
-    jacobian, slopes, box, tangents = np.empty((2, 2)), np.empty(2), np.empty(4), np.empty((2, 3))
     for i in range(start, stop):
         boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = 0, 0, 0, 0
         radii[i] = 0.0
-        (x, y, z), _ = _see(means, quats_wxyz, scales, camera, lens, i, tangents, slopes, jacobian)
+        (x, y, z), _, _, _, slopes, jacobian = see(means, quats_wxyz, scales, camera, lens, i)
         su, sv, opacity = np.float64(scales[i, 0]), np.float64(scales[i, 1]), np.float64(opacities[i])
         # What is no number makes the sum one, and what is infinite the product.
         total = x + y + z + su + sv + opacity
-        for k in range(4):
-            total += quats_wxyz[i, k]
+        total += quats_wxyz[i, 0] + quats_wxyz[i, 1] + quats_wxyz[i, 2] + quats_wxyz[i, 3]
         is_finite = math.isfinite(0.0 * total)
         if not (is_finite and z > near_m and opacity >= least and su > 0.0 and sv > 0.0):
             continue
         cx, cy = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
         if len(offsets) > 0:
             cx, cy = cx + offsets[i, 0], cy + offsets[i, 1]
-        area = jacobian[0, 0] * jacobian[1, 1] - jacobian[0, 1] * jacobian[1, 0]
+        j_xu, j_xv, j_yu, j_yv = jacobian
+        area = j_xu * j_yv - j_xv * j_yu
         has_disc = abs(area) >= LEAST_AREA_PX2
+        steepness = math.sqrt(slopes[0] * slopes[0] + slopes[1] * slopes[1])
         reach = math.sqrt(max(2.0 * math.log(opacity / least), 0.0))
-        box[0], box[1], box[2], box[3] = -low_pass * reach, low_pass * reach, -low_pass * reach, low_pass * reach
+        box, outline = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, WIDEST_PX, 0.0, 0.0)
         if has_disc:
-            _widen_box(jacobian, slopes, z, reach, near_m, box)
-        left, right = _pixels_between(cx + box[0], cx + box[1], size[0])
-        top, bottom = _pixels_between(cy + box[2], cy + box[3], size[1])
+            outline = (0.0, 0.0, 0.0, WIDEST_PX, 0.0)
+            if z * (1.0 - reach * steepness) < near_m:
+                box = _clipped_box(jacobian, slopes, z, reach, near_m)
+            else:
+                box, exact = _outline(jacobian, slopes, reach)
+                if max(box[1] - box[0], box[3] - box[2]) < LARGEST_OUTLINE_PX:
+                    outline = exact
+        dot = low_pass * reach
+        box = (min(box[0], -dot), max(box[1], dot), min(box[2], -dot), max(box[3], dot))
+        left, right = _first_pixel(cx + box[0], size[0]), _behind_last(cx + box[1], size[0])
+        top, bottom = _first_pixel(cy + box[2], size[1]), _behind_last(cy + box[3], size[1])
         if left >= right or top >= bottom:
             continue
         boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = left, right, top, bottom
         radii[i] = 0.5 * max(box[1] - box[0], box[3] - box[2])
-        centres[i, 0], centres[i, 1], depths[i] = cx, cy, z
+        depths[i] = z
+        whole_x, whole_y = np.float32(math.floor(cx)), np.float32(math.floor(cy))
+        geometry[i, WHOLE_X], geometry[i, REST_X] = whole_x, cx - np.float64(whole_x)
+        geometry[i, WHOLE_Y], geometry[i, REST_Y] = whole_y, cy - np.float64(whole_y)
+        geometry[i, LEFT], geometry[i, RIGHT], geometry[i, TOP], geometry[i, BOTTOM] = left, right, top, bottom
+        geometry[i, DISC_X], geometry[i, DISC_Y], geometry[i, OVER_HALF_HEIGHT] = outline[0], outline[1], outline[2]
+        geometry[i, HALF_WIDTH], geometry[i, SHEAR] = outline[3], outline[4]
+        geometry[i, DOT_RADIUS2] = (dot + SLACK_PX) * (dot + SLACK_PX)
         geometry[i, DEPTH], geometry[i, OPACITY] = z, opacity
-        steepness = math.sqrt(slopes[0] * slopes[0] + slopes[1] * slopes[1])
         change = min(max(far_reach * steepness, least_change) * LIMITS_WIDENED, MOST_CHANGE)
         nearest = z / near_m - 1.0
         geometry[i, LOWEST] = -change / (1.0 + change)
         geometry[i, HIGHEST] = min(change / (1.0 - change), nearest) if change < 1.0 else nearest
         if has_disc:
-            geometry[i, J_XU], geometry[i, J_XV] = jacobian[0, 0] / area, jacobian[0, 1] / area
-            geometry[i, J_YU], geometry[i, J_YV] = jacobian[1, 0] / area, jacobian[1, 1] / area
-            geometry[i, E] = (jacobian[1, 0] * slopes[1] - jacobian[1, 1] * slopes[0]) / area
-            geometry[i, F] = (jacobian[0, 1] * slopes[0] - jacobian[0, 0] * slopes[1]) / area
+            over = 1.0 / area
+            geometry[i, J_XU], geometry[i, J_XV] = j_xu * over, j_xv * over
+            geometry[i, J_YU], geometry[i, J_YV] = j_yu * over, j_yv * over
+            geometry[i, E] = (j_yu * slopes[1] - j_yv * slopes[0]) * over
+            geometry[i, F] = (j_xv * slopes[0] - j_xu * slopes[1]) * over
         else:
             geometry[i, J_XU], geometry[i, J_XV], geometry[i, J_YU] = EDGE_ON_JACOBIAN, 0.0, 0.0
             geometry[i, J_YV], geometry[i, E], geometry[i, F] = EDGE_ON_JACOBIAN, 0.0, 0.0
-
-
-@kernel
-def _back_through_disc(jacobian: Array, slopes: Array, g: Array, g_jacobian: Array, g_slopes: Array) -> None:
-    """From the gradients of the geometry to those of the Jacobian and the slopes."""
-    j_xu, j_xv, j_yu, j_yv = jacobian[0, 0], jacobian[0, 1], jacobian[1, 0], jacobian[1, 1]
-    over_area = 1.0 / (j_xu * j_yv - j_xv * j_yu)
-    e, f = j_yu * slopes[1] - j_yv * slopes[0], j_xv * slopes[0] - j_xu * slopes[1]
-    g_xu, g_xv, g_yu, g_yv = g[J_XU] * over_area, g[J_XV] * over_area, g[J_YU] * over_area, g[J_YV] * over_area
-    g_e, g_f = g[E] * over_area, g[F] * over_area
-    g_area = -(g_xu * j_xu + g_xv * j_xv + g_yu * j_yu + g_yv * j_yv + g_e * e + g_f * f) * over_area
-    g_jacobian[0, 0] = g_xu + g_area * j_yv - g_f * slopes[1]
-    g_jacobian[0, 1] = g_xv - g_area * j_yu + g_f * slopes[0]
-    g_jacobian[1, 0] = g_yu - g_area * j_xv + g_e * slopes[1]
-    g_jacobian[1, 1] = g_yv + g_area * j_xu - g_e * slopes[0]
-    g_slopes[0] = g_f * j_xv - g_e * j_yv
-    g_slopes[1] = g_e * j_yu - g_f * j_xu
-
-
-@kernel
-def _back_to_quat(q: Quat, g: Array, out: NDArray[np.float32], i: int) -> None:
-    """From the gradient of a rotation's first two columns, shape (2, 3), to the quaternion of any length."""
-    norm, w, x, y, z = q
-    if norm == 0.0:
-        return
-    unit = (w, x, y, z)
-    g_unit = (
-        2.0 * (z * g[0, 1] - y * g[0, 2] - z * g[1, 0] + x * g[1, 2]),
-        2.0 * (y * g[0, 1] + z * g[0, 2] + y * g[1, 0] - 2.0 * x * g[1, 1] + w * g[1, 2]),
-        2.0 * (x * g[0, 1] - 2.0 * y * g[0, 0] - w * g[0, 2] + x * g[1, 0] + z * g[1, 2]),
-        2.0 * (w * g[0, 1] - 2.0 * z * g[0, 0] + x * g[0, 2] - w * g[1, 0] - 2.0 * z * g[1, 1] + y * g[1, 2]),
-    )
-    along = w * g_unit[0] + x * g_unit[1] + y * g_unit[2] + z * g_unit[3]
-    for k in range(4):
-        out[i, k] = (g_unit[k] - unit[k] * along) / norm
-
-
-@kernel
-def gradients_of_splats(
-    means: NDArray[np.float32],
-    quats_wxyz: NDArray[np.float32],
-    scales: NDArray[np.float32],
-    geometry: NDArray[np.float32],
-    camera: Array,
-    lens: Array,
-    firsts: NDArray[np.int64],
-    places: NDArray[np.int64],
-    slots: NDArray[np.float32],
-    start: int,
-    stop: int,
-    g_means: NDArray[np.float32],
-    g_quats: NDArray[np.float32],
-    g_scales: NDArray[np.float32],
-    g_opacities: NDArray[np.float32],
-    g_features: NDArray[np.float32],
-    g_offsets: NDArray[np.float32],
-) -> None:
-    """Add up the slots of splats `start` to `stop`, and take them back to the parameters; the last six begin as 0."""
-    n_features = g_features.shape[1]
-    g, g_all = np.empty(N_GRADIENTS), np.empty(n_features)
-    jacobian, slopes, tangents = np.empty((2, 2)), np.empty(2), np.empty((2, 3))
-    g_jacobian, g_slopes, g_columns = np.empty((2, 2)), np.empty(2), np.empty((2, 3))
-    for i in range(start, stop):
-        if firsts[i] == firsts[i + 1]:
-            continue
-        for k in range(N_GRADIENTS):
-            g[k] = 0.0
-        for k in range(n_features):
-            g_all[k] = 0.0
-        for at in range(firsts[i], firsts[i + 1]):
-            place = places[at]
-            for k in range(N_GRADIENTS):
-                g[k] += slots[place, k]
-            for k in range(n_features):
-                g_all[k] += slots[place, N_GRADIENTS + k]
-        for k in range(n_features):
-            g_features[i, k] = g_all[k]
-        g_opacities[i] = g[OPACITY]
-        g_offsets[i, 0], g_offsets[i, 1] = g[CENTRE_X], g[CENTRE_Y]
-        (x, y, z), quat = _see(means, quats_wxyz, scales, camera, lens, i, tangents, slopes, jacobian)
-        has_disc = geometry[i, J_XU] != EDGE_ON_JACOBIAN
-        for k in range(2):
-            g_jacobian[0, k], g_jacobian[1, k], g_slopes[k] = 0.0, 0.0, 0.0
-        if has_disc:
-            _back_through_disc(jacobian, slopes, g, g_jacobian, g_slopes)
-        # x / z and y / z appear in the middle's pixel and in the Jacobian; the rest is divided by z.
-        g_xz, g_yz, g_over_z = g[CENTRE_X] * lens[0], g[CENTRE_Y] * lens[1], 0.0
-        for k in range(2):
-            g_x, g_y = g_jacobian[0, k] * lens[0], g_jacobian[1, k] * lens[1]
-            g_slope = g_slopes[k] - g_x * x / z - g_y * y / z
-            g_xz -= g_x * slopes[k]
-            g_yz -= g_y * slopes[k]
-            scale = np.float64(scales[i, k])
-            along = g_x * tangents[k, 0] + g_y * tangents[k, 1] + g_slope * tangents[k, 2]
-            g_over_z += scale * along
-            g_scales[i, k] = along / z
-            r = _in_world(camera, g_x, g_y, g_slope)
-            for axis in range(3):
-                g_columns[k, axis] = scale * r[axis] / z
-        g_over_z += g_xz * x + g_yz * y
-        r = _in_world(camera, g_xz / z, g_yz / z, g[DEPTH] - g_over_z / (z * z))
-        for axis in range(3):
-            g_means[i, axis] = r[axis]
-        _back_to_quat(quat, g_columns, g_quats, i)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, cast
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
+from torch.autograd.function import once_differentiable
 from torch.nn import functional
 
-from planning.jit import inline, kernel
-from reconstruction.reflections.environment_map import LEVEL, turns_and_rows
+from planning.jit import chunks, inline, kernel, run_chunks
+from reconstruction.reflections.environment_map import turns_and_rows
+from reconstruction.reflections.environment_map_kernels import place_of
 
 Floats = NDArray[np.float32]
 
@@ -126,56 +127,73 @@ def behind_twin(picture: Tensor, directions: Tensor, alphas: Tensor) -> Tensor:
     return torch.where(shares > SEEN, shares, 0.0)[:, None] * torch.lerp(upper, lower, b)
 
 
+PARTS = 8
+"""In which pixels are worked on threads, each with a picture of its own for the gradients: always as many, so that sums
+are the same bits for any number of threads."""
+
+
 class _Behind(torch.autograd.Function):
     @staticmethod
     def forward(ctx: Any, picture: Tensor, directions: Tensor, alphas: Tensor) -> Tensor:
-        ctx.save_for_backward(picture, directions, alphas)
-        out = torch.empty(len(alphas), 3)
-        _look_up(_array(picture), _array(directions), _array(alphas), out.numpy())
+        ctx.save_for_backward(picture, alphas)
+        known, out = (_array(picture), _array(directions), _array(alphas)), torch.empty(len(alphas), 3)
+        ctx.places = np.empty((len(alphas), 2), np.float32)
+
+        def look_up(start: int, stop: int) -> None:
+            _look_up(*known, start, stop, ctx.places, out.numpy())
+
+        run_chunks(look_up, _parts(len(alphas)))
         return out
 
     @staticmethod
+    @once_differentiable
     def backward(ctx: Any, *gradients: Any) -> tuple[Tensor, None, Tensor]:
-        picture, directions, alphas = ctx.saved_tensors
-        of_picture, of_alphas = torch.zeros(picture.shape), torch.zeros(alphas.shape)
-        known = _array(picture), _array(directions), _array(alphas)
-        _give_back(known[0], known[1], known[2], _array(gradients[0]), of_picture.numpy(), of_alphas.numpy())
-        return of_picture, None, of_alphas
+        picture, alphas = ctx.saved_tensors
+        of_alphas, known = np.zeros(alphas.shape, np.float32), (_array(picture), ctx.places, _array(alphas))
+        given = _array(gradients[0])
+
+        def give_back(start: int, stop: int) -> Floats:
+            of_picture = np.zeros(picture.shape, np.float32)
+            _give_back(*known, given, start, stop, of_picture, of_alphas)
+            return of_picture
+
+        of_picture = np.add.reduce(run_chunks(give_back, _parts(len(alphas))))
+        return torch.from_numpy(of_picture), None, torch.from_numpy(of_alphas)
+
+
+def _parts(n: int) -> list[tuple[int, int]]:
+    return chunks(n, max(-(-n // PARTS), 1)) or [(0, 0)]
 
 
 def _array(tensor: Tensor) -> Floats:
     return np.asarray(tensor.detach().contiguous().numpy())
 
 
-TURN, HALF = np.float32(0.5 / math.pi), np.float32(0.5)
-SEEN_32, LEVEL_32, ZERO, ONE = np.float32(SEEN), np.float32(LEVEL), np.float32(0.0), np.float32(1.0)
+HALF, ZERO, ONE, SEEN_32 = np.float32(0.5), np.float32(0.0), np.float32(1.0), np.float32(SEEN)
 
 
 @inline
-def _place(directions: Any, i: Any, height: Any) -> Any:
-    """Rows and columns of the four texels around a direction, and the shares of the right and the lower ones."""
-    east, north, up = directions[i, 0], directions[i, 1], directions[i, 2]
-    square = east * east + north * north
-    turns, level = ZERO, np.sqrt(LEVEL_32)
-    if square >= LEVEL_32:
-        turns, level = np.arctan2(east, north) * TURN, np.sqrt(square)
-    rows = HALF - np.arctan2(up, level) * np.float32(2.0) * TURN
+def _texels_around(turns: Any, rows: Any, height: Any) -> Any:
+    """Rows and columns of the four texels around a place, and the shares of the right and the lower ones."""
     width = 2 * height
     x = turns * np.float32(width) + np.float32(0.5 * width - 0.5)
     y = min(max(rows * np.float32(height) - HALF, ZERO), np.float32(height - 1))
     left, top = np.floor(x), min(np.floor(y), np.float32(height - 2))
-    column, row = int(left) % width, int(top)
-    return row, column, (column + 1) % width, x - left, y - top
+    column, row = int(left), int(top)
+    column = column + width if column < 0 else column
+    return row, column, column + 1 if column + 1 < width else 0, x - left, y - top
 
 
 @kernel
-def _look_up(picture: Any, directions: Any, alphas: Any, out: Any) -> None:
-    for i in range(len(alphas)):
+def _look_up(picture: Any, directions: Any, alphas: Any, start: int, stop: int, places: Any, out: Any) -> None:
+    """Light behind some pixels; places only of those that show it."""
+    for i in range(start, stop):
         share = ONE - alphas[i]
         if share <= SEEN_32:
             out[i, 0] = out[i, 1] = out[i, 2] = ZERO
             continue
-        row, column, beside, a, b = _place(directions, i, picture.shape[0])
+        places[i, 0], places[i, 1] = place_of(directions, i)
+        row, column, beside, a, b = _texels_around(places[i, 0], places[i, 1], picture.shape[0])
         for c in range(3):
             upper = picture[row, column, c] + a * (picture[row, beside, c] - picture[row, column, c])
             lower = picture[row + 1, column, c] + a * (picture[row + 1, beside, c] - picture[row + 1, column, c])
@@ -183,13 +201,14 @@ def _look_up(picture: Any, directions: Any, alphas: Any, out: Any) -> None:
 
 
 @kernel
-def _give_back(picture: Any, directions: Any, alphas: Any, gradient: Any, of_picture: Any, of_alphas: Any) -> None:
-    """One pixel after the other, so that sums are the same bits always."""
-    for i in range(len(alphas)):
+def _give_back(
+    picture: Any, places: Any, alphas: Any, gradient: Any, start: int, stop: int, of_picture: Any, of_alphas: Any
+) -> None:
+    for i in range(start, stop):
         share = ONE - alphas[i]
         if share <= SEEN_32:
             continue
-        row, column, beside, a, b = _place(directions, i, picture.shape[0])
+        row, column, beside, a, b = _texels_around(places[i, 0], places[i, 1], picture.shape[0])
         total = ZERO
         for c in range(3):
             upper = picture[row, column, c] + a * (picture[row, beside, c] - picture[row, column, c])

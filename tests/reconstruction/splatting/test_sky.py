@@ -78,6 +78,16 @@ def test_the_kernel_gives_what_plain_torch_gives_in_double_precision():
         assert (one - other).norm() < 1e-5 * other.norm()
 
 
+def test_any_number_of_threads_gives_the_same_bits(monkeypatch):
+    sky, rays, found = textured(), directions(40, 50), []
+    for threads in (1, 3):
+        monkeypatch.setattr("planning.jit.n_threads", lambda threads=threads: threads)
+        alphas = torch.rand(40, 50, generator=torch.Generator().manual_seed(6)).requires_grad_()
+        light = sky.behind(rays, alphas)
+        found.append([light, *torch.autograd.grad(light.square().sum(), [alphas, *sky.parameters()])])
+    assert all(torch.equal(one, many) for one, many in zip(*found, strict=True))
+
+
 def test_the_sky_has_no_seam_in_the_south_and_no_hole_at_the_poles():
     sky = textured()
     angle = torch.tensor([3.14155, -3.14155])
