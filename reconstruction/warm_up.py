@@ -13,8 +13,15 @@ from reconstruction.dataset.panel_images import draw_panels
 from reconstruction.modelling.dssim_kernel import dissimilarity
 from reconstruction.photos.sharpness import sharpness
 from reconstruction.reflections.environment_map import EnvironmentMap
+from reconstruction.reflections.glass_learned import GlassLearned
+from reconstruction.reflections.glass_light import GlassLight
+from reconstruction.reflections.glass_rays import rays_of_pixels
 from reconstruction.reflections.grid_box import GridBox
+from reconstruction.reflections.harmonics import HarmonicTexture
+from reconstruction.reflections.photo_set import PanelPlanes
 from reconstruction.reflections.radiance_grid import RadianceGrid
+from reconstruction.reflections.ray_table import RayTable
+from reconstruction.reflections.reflective_panels import ReflectivePanels
 from reconstruction.scenes.bundled import bundled_scene
 from reconstruction.scenes.effect_names import NEAR_FIELD
 from reconstruction.scenes.renderer import Renderer, RenderSettings
@@ -43,6 +50,7 @@ def compile_kernels() -> None:
     dissimilarity(np.zeros((12, 36)), np.zeros((12, 36)), 3, True)
     _draw_splats()
     _march_grid()
+    _shade_panes()
     court = bundled_scene("court")
     eastwards = court.panes.corners_enu_m[0].mean(axis=0) + np.array([12.0, 0.0, 0.0])
     facing = PosedPhoto("", Path(), lens, Pose.looking(eastwards, -90.0, 0.0))
@@ -75,6 +83,18 @@ def _march_grid() -> None:
     for is_moved in (False, True):
         light = grid(points.clone().requires_grad_(is_moved), directions)
         (light.sum() + grid.roughness(1.0, 1.0, 1.0)).backward()
+
+
+def _shade_panes() -> None:
+    """A few rays of one pane, there and back: met, mirrored, with what is behind the glass, and their colours."""
+    corners = np.array([[[-1.0, 5.0, -1.0], [1.0, 5.0, -1.0], [1.0, 5.0, 1.0], [-1.0, 5.0, 1.0]]])
+    planes = PanelPlanes(corners)
+    photo = PosedPhoto("", Path(), Intrinsics(32, 24, 20.0, 20.0, 16.0, 12.0), Pose.looking(np.zeros(3), 0.0, 0.0))
+    pixels, panes = torch.arange(14, 18), torch.zeros(4, dtype=torch.long)
+    rays = rays_of_pixels(RayTable.of([photo], planes, {}), 0, pixels, panes + 12, panes)
+    texture = HarmonicTexture(torch.from_numpy(planes.rescaled(corners)), 2, torch.full((1, 3), 0.5), 1)
+    grid = RadianceGrid(GridBox(0.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (4, 4, 4), 0.5, 1.0), 0.5, 0, 4)
+    ReflectivePanels(texture, GlassLight(grid, planes, GlassLearned(tilts=True)))(rays).sum().backward()
 
 
 if __name__ == "__main__":

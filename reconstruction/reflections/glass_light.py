@@ -11,9 +11,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 
+from reconstruction.reflections import glass_ray_kernels as kernels
 from reconstruction.reflections.config import ReflectionConfig
 from reconstruction.reflections.environment_map import EnvironmentMap
 from reconstruction.reflections.glass_learned import GlassLearned
@@ -79,10 +81,8 @@ class GlassLight(nn.Module):
         moves = self.moves - self.moves.mean(dim=0) if self.moves is not None and self.training else None
         met = rays.repeated(k).met(offsets, moves)
         panels = rays.panels.long().repeat_interleave(k)
-        normals = self.normals(rays.table, met, panels)
-        directions = met.directions.float()
-        light = self.light(rays.table.rescaled(met.points_m).float(), reflected_directions(directions, normals), panels)
-        cosines = (directions * normals).sum(dim=1).abs().clamp(max=1.0)
+        omega_r, cosines = self.mirrored(rays.table, met, panels)
+        light = self.light(rays.table.rescaled(met.points_m).float(), omega_r, panels)
         if k == 1:
             return light, cosines
         shares = met.shares.detach()
@@ -128,6 +128,17 @@ class GlassLight(nn.Module):
         """What follows the last step of all, also of a training that a time limit ended."""
         self.after_step(config, config.grid.rest - 1, 1.0)
 
+    def mirrored(self, table: RayTable, met: Met, panels: Tensor) -> tuple[Tensor, Tensor]:
+        """Where rays go on, unit, shape (n, 3), and cosines of their angles of incidence, shape (n,), float32."""
+        if met.directions.requires_grad or met.directions.device.type != "cpu":
+            normals, directions = self.normals(table, met, panels), met.directions.float()
+            cosines = (directions * normals).sum(dim=1).abs().clamp(max=1.0)
+            return reflected_directions(directions, normals), cosines
+        normals = table.normals.float()
+        bows = torch.zeros(len(normals), 2) if self.bows is None else self.bows
+        found: tuple[Tensor, Tensor] = _Mirror.apply(self.true_tilts(), bows, met, panels, normals, self.edges)  # type: ignore[no-untyped-call]
+        return found
+
     def normals(self, table: RayTable, met: Met, panels: Tensor) -> Tensor:
         """Unit, at the places that rays meet, shape (n, 3), float32."""
         normals = table.normals[panels].float()
@@ -149,6 +160,31 @@ class GlassLight(nn.Module):
         # Sums of products, as autocast would shorten a matrix product to half precision.
         shares = (self.common * flat).sum(dim=0)
         return (flat[:, 0] - (self.common * shares).sum(dim=1)).reshape(-1, 2)
+
+
+class _Mirror(torch.autograd.Function):
+    @staticmethod
+    def forward(
+        ctx: Any, tilts: Tensor, bows: Tensor, met: Met, panels: Tensor, normals: Tensor, edges: Tensor
+    ) -> tuple[Tensor, Tensor]:
+        n = len(panels)
+        values = (met.directions, met.shares, panels, normals, edges, tilts, bows)
+        fixed: Any = tuple(np.ascontiguousarray(value.detach().numpy()) for value in values)
+        omega_r, cosines = np.empty((n, 3), np.float32), np.empty(n, np.float32)
+        mirror: Any = kernels.mirror
+        mirror(*fixed, omega_r, cosines)
+        ctx.fixed = fixed
+        return torch.from_numpy(omega_r), torch.from_numpy(cosines)
+
+    @staticmethod
+    def backward(ctx: Any, by_omega_r: Tensor, by_cosines: Tensor) -> tuple[Tensor | None, ...]:
+        fixed: Any = ctx.fixed
+        found = np.zeros((2, len(fixed[5]), 2))
+        slopes = (np.ascontiguousarray(part.numpy()) for part in (by_omega_r, by_cosines))
+        mirror_back: Any = kernels.mirror_back
+        mirror_back(*fixed, *slopes, *found)
+        by_tilts, by_bows = (torch.from_numpy(part).float() for part in found)
+        return by_tilts, by_bows, None, None, None, None
 
 
 def pixel_offsets(n: int, k: int, generator: torch.Generator | None) -> Tensor:

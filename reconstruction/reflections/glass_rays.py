@@ -65,8 +65,11 @@ class GlassRays:
         return len(self.panels)
 
     def __getitem__(self, rows: Tensor | slice) -> GlassRays:
-        """Some of the rays."""
-        return GlassRays(self.table, *(getattr(self, name)[rows] for name in COLUMNS))
+        """Some of the rays, by numbers, shape (k,), a mask, shape (n,), or a range."""
+        if isinstance(rows, slice):
+            return GlassRays(self.table, *(getattr(self, name)[rows] for name in COLUMNS))
+        numbers = torch.nonzero(rows).squeeze(1) if rows.dtype == torch.bool else rows
+        return GlassRays(self.table, *(getattr(self, name).index_select(0, numbers) for name in COLUMNS))
 
     def repeated(self, times: int) -> GlassRays:
         """Each ray so many times in a row."""

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor, nn
+
+from reconstruction.reflections import harmonic_kernels as kernels
 
 MAX_DEGREE = 3
 
@@ -88,6 +92,10 @@ class HarmonicTexture(nn.Module):
         panels
             Which panels the places are on, from 0, shape (n,).
         """
+        is_compiled = points.device.type == "cpu" and self.coefficients.dtype == torch.float32
+        if is_compiled and not (points.requires_grad or omega_r.requires_grad):
+            found: Tensor = _Blend.apply(self.coefficients, self.means, points, omega_r, panels, self)  # type: ignore[no-untyped-call]
+            return found
         # Values move with places, not with directions: harmonics are blended before they meet the direction.
         blended = self._at(points, panels).reshape(-1, self.n_harmonics, 3)
         values = harmonics(omega_r)[:, : self.n_harmonics, None]
@@ -108,6 +116,31 @@ class HarmonicTexture(nn.Module):
         lower = torch.lerp(table[first], table[first + 1], a)
         upper = torch.lerp(table[first + self.side], table[first + self.side + 1], a)
         return torch.lerp(lower, upper, b)
+
+
+class _Blend(torch.autograd.Function):
+    @staticmethod
+    def forward(
+        ctx: Any, coefficients: Tensor, means: Tensor, points: Tensor, omega_r: Tensor, panels: Tensor,
+        texture: HarmonicTexture,
+    ) -> Tensor:  # fmt: skip
+        values = (points.float(), omega_r.float(), panels.long(), texture.corners)
+        fixed: Any = (*(np.ascontiguousarray(value.detach().numpy()) for value in values), texture.side)
+        light = np.empty((len(points), 3), np.float32)
+        table = coefficients.detach().numpy().reshape(len(coefficients), -1, 3)
+        blend: Any = kernels.blend
+        blend(*fixed, table, means.detach().numpy(), light)
+        ctx.fixed, ctx.light, ctx.shapes = fixed, light, (table.shape, means.shape)
+        return torch.from_numpy(light)
+
+    @staticmethod
+    def backward(ctx: Any, slopes: Tensor) -> tuple[Tensor | None, ...]:
+        fixed: Any = ctx.fixed
+        by_table, by_means = (np.zeros(shape, np.float32) for shape in ctx.shapes)
+        blend_back: Any = kernels.blend_back
+        blend_back(*fixed, ctx.light, np.ascontiguousarray(slopes.numpy()), by_table, by_means)
+        by_coefficients = torch.from_numpy(by_table.reshape(len(by_table), -1))
+        return by_coefficients, torch.from_numpy(by_means), None, None, None, None
 
 
 def _share(offsets: Tensor, edges: Tensor) -> Tensor:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from torch import Tensor
+from torch.nn.functional import huber_loss
 
 from reconstruction.reflections.config import HighFrequencyStage
 
@@ -10,9 +11,17 @@ EPSILON = 1e-6
 """Of Eq. 24: with no ray above the threshold the loss is 0, and so is its gradient."""
 
 
-def ray_errors(found: Tensor, truth: Tensor) -> Tensor:
-    """Sum of the absolute errors of red, green and blue, shape (n,), of colours 0 to 1, shape (n, 3)."""
-    return (found - truth).abs().sum(dim=-1)
+def ray_errors(found: Tensor, truth: Tensor, squared_to: float = 0.0) -> Tensor:
+    """Sum of the absolute errors of red, green and blue, shape (n,), of colours 0 to 1, shape (n, 3).
+
+    Parameters
+    ----------
+    squared_to
+        Errors e up to s count e^2 / (2 s), larger ones e - s / 2 (P. J. Huber, 1964); 0 for e.
+    """
+    if squared_to == 0.0:
+        return (found - truth).abs().sum(dim=-1)
+    return huber_loss(found, truth, reduction="none", delta=squared_to).sum(dim=-1) / squared_to
 
 
 def high_frequency_loss(errors: Tensor, threshold: float) -> Tensor:

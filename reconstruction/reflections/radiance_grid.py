@@ -21,12 +21,19 @@ from reconstruction.reflections import radiance_grid_kernels as kernels
 from reconstruction.reflections import radiance_grid_twin as twin
 from reconstruction.reflections.grid_box import GridBox
 
-FEW_RAYS, FEW_CHUNKS, MANY_CHUNKS = 6144, 2, 4
-"""Chunks of rays up to a number, and beyond it: as many threads can march, and as many arrays hold gradients before
-they are added up. Clearing and adding those up takes as long as a thousand rays each."""
+FEW_RAYS, MANY_CHUNKS = 4096, 4
+"""Rays up to which there is one chunk, and chunks of more: as many threads can march, and as many arrays hold gradients
+before they are added up. Clearing and adding those up, and waking a thread, takes as long as a thousand rays each."""
+
+KEPT_RAYS = 16384
+"""At most, of which is kept where they lost light, about 500 bytes each; more are marched again on the way back."""
 
 STEP = 1.0
 """Of the shortest side of a cell, between places along a ray."""
+
+MOVED_EVERY, MANY_MOVED = 4, 1024
+"""Of so many rays or more, each fourth has gradients of its own place and direction, four times as large: on average
+the same, and what is learned from them, two numbers for each pane, is learned as well for half the time back."""
 
 FAR_TIMES = 12.0
 """Times the box's reach, to where rays are followed; what is further away has no parallax to speak of."""
@@ -124,7 +131,7 @@ class RadianceGrid(nn.Module):
             self.unit * self.box.cell(self._counts())
         )
         most = maximum_filter(reach, size=2, origin=-1, mode="nearest")[:-1, :-1, :-1]
-        is_full = maximum_filter(most > -math.log1p(-EMPTY), size=3, mode="constant")
+        is_full = most > -math.log1p(-EMPTY)
         if is_full.all():
             self.skips = np.zeros(is_full.shape, np.uint8)
         elif not is_full.any():
@@ -184,36 +191,66 @@ class _March(torch.autograd.Function):
         ctx: Any, origins: Tensor, directions: Tensor, cells: Tensor, far: Tensor, starts: Tensor, grid: RadianceGrid
     ) -> Tensor:
         arrays = [value.detach().contiguous().numpy() for value in (origins, directions, starts, cells, far)]
-        light, left = np.empty((len(origins), 3), np.float32), np.empty(len(origins), np.float32)
-        fixed: Any = (*arrays[:4], grid.skips, arrays[4], grid.numbers, grid.times, grid.steps, np.float32(grid.unit))
-        march: Any = kernels.march
-        size = max(1, -(-len(origins) // (FEW_CHUNKS if len(origins) <= FEW_RAYS else MANY_CHUNKS)))
-        run_chunks(lambda first, last: march(*fixed, first, last, light, left), chunks(len(origins), size))
-        ctx.fixed, ctx.light, ctx.size = fixed, light, size
-        return torch.from_numpy(light)
+        fixed = (*arrays[:4], grid.skips, arrays[4], grid.numbers, grid.times, grid.steps, np.float32(grid.unit))
+        marched = _Marched(fixed, len(origins))
+        is_kept = grid.training and any(ctx.needs_input_grad) and len(origins) <= KEPT_RAYS
+        run_chunks(lambda first, last: marched.march(first, last, is_kept), marched.chunks)
+        ctx.marched = marched
+        return torch.from_numpy(marched.light)
 
     @staticmethod
     def backward(ctx: Any, slopes: Tensor) -> tuple[Tensor | None, ...]:
-        fixed: Any = ctx.fixed
-        light = ctx.light
-        n = len(light)
+        marched = ctx.marched
+        is_moved = ctx.needs_input_grad[0] or ctx.needs_input_grad[1]
+        moved = np.empty((2, len(marched.light) if is_moved else 0, 3), np.float32)
         by_light = np.ascontiguousarray(slopes.numpy())
-        moved = np.empty((2, n if ctx.needs_input_grad[0] or ctx.needs_input_grad[1] else 0, 3), np.float32)
-        cells, far = fixed[3], fixed[5]
-        march_back: Any = kernels.march_back
-
-        def back(first: int, last: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-            own = np.zeros_like(cells), np.zeros_like(far)
-            march_back(*fixed, first, last, light, by_light, *own, *moved)
-            return own
-
-        found = run_chunks(back, chunks(n, ctx.size))
+        every = MOVED_EVERY if len(marched.light) >= MANY_MOVED else 1
+        found = run_chunks(lambda *part: marched.back(*part, by_light, every, moved), marched.chunks)
         by_cells, by_far = found[0]
         for own_cells, own_far in found[1:]:
             by_cells += own_cells
             by_far += own_far
-        by_origins, by_directions = (torch.from_numpy(part) if len(part) else None for part in moved)
+        by_origins, by_directions = (torch.from_numpy(part) if is_moved else None for part in moved)
         return by_origins, by_directions, torch.from_numpy(by_cells), torch.from_numpy(by_far), None, None
+
+
+class _Marched:
+    """Rays that were marched: their light, and what is kept of each chunk of them for the way back."""
+
+    def __init__(self, fixed: Any, n: int) -> None:
+        self.fixed, self.light, self.left = fixed, np.empty((n, 3), np.float32), np.empty(n, np.float32)
+        n_chunks = 1 if n <= FEW_RAYS else MANY_CHUNKS
+        self.chunks = chunks(n, max(1, -(-n // n_chunks)))
+        self.kept: dict[int, tuple[NDArray[np.float32], NDArray[np.int64]]] = {}
+
+    def march(self, first: int, last: int, is_kept: bool) -> None:
+        march: Any = kernels.march
+        n_places, n_rays = ((last - first) * len(self.fixed[7]), len(self.light)) if is_kept else (0, 0)
+        kept = np.empty((n_places, kernels.KEPT), np.float32), np.empty(n_rays, np.int64)
+        march(*self.fixed, first, last, self.light, self.left, *kept)
+        if is_kept:
+            self.kept[first] = kept
+
+    def back(
+        self, first: int, last: int, slopes: NDArray[np.float32], every: int, moved: NDArray[np.float32]
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Gradients by cells and far light, of a chunk."""
+        origins, directions, _, cells, _, far, numbers = self.fixed[:7]
+        march_back: Any = kernels.march_back
+        own = np.zeros_like(cells), np.zeros_like(far)
+        for begin, end in [(first, last)] if first in self.kept else _ranges(first, last, KEPT_RAYS):
+            if first not in self.kept:
+                self.march(begin, end, True)
+            march_back(
+                origins, directions, cells, far, numbers, begin, end, self.light, self.left, *self.kept.pop(begin),
+                slopes, *own, every, *moved,
+            )  # fmt: skip
+        return own
+
+
+def _ranges(first: int, last: int, size: int) -> list[tuple[int, int]]:
+    """Half-open ranges of at most `size` that make up one."""
+    return [(first + begin, first + end) for begin, end in chunks(last - first, size)]
 
 
 class _Rough(torch.autograd.Function):

@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.jit import kernel
+from reconstruction.reflections.direction_picture_kernels import around, looked_up, turned
+from reconstruction.reflections.vertex_blends import blended, spread, weighed
 
 Array = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
+Numbers = NDArray[np.int64]
 Number = np.float32
-Pixels = tuple[int, int, int, int]
-Shares = tuple[Number, Number, Number, Number]
 Weights = tuple[Number, Number, Number, Number, Number, Number, Number, Number]
 
 ONE, HALF, TWO, NONE = np.float32(1.0), np.float32(0.5), np.float32(2.0), np.float32(0.0)
@@ -29,6 +30,11 @@ DENSITY_SCALE = np.float32(10.0)
 
 OPAQUE = np.float32(1e-3)
 """Share of the light of what lies behind below which a ray ends; what is left goes to what is far away."""
+
+
+KEPT = 9
+"""Numbers kept of a place where a ray lost light: when, where in the grid, the share lost, what its density is to raw
+density, and square roots of its light."""
 
 
 @kernel
@@ -51,28 +57,9 @@ def contracted(value: Number, outer: Number) -> tuple[Number, Number]:
 
 
 @kernel
-def unfolded(x: Number, y: Number, z: Number) -> tuple[Number, Number]:
-    """Place of a direction, -1 to 1, in a square picture of all directions.
-
-    The faces of an octahedron around the origin, the lower ones folded out.
-    """
-    length = abs(x) + abs(y) + abs(z)
-    u, v = x / length, y / length
-    if z < NONE:
-        u, v = ((ONE - abs(v)) * (ONE if u >= NONE else -ONE), (ONE - abs(u)) * (ONE if v >= NONE else -ONE))
-    return u, v
-
-
-@kernel
-def wrapped(column: int, row: int, side: int) -> int:
-    """First number of a pixel of the picture, also one step over its edges: each meets itself, turned about."""
-    if column < 0 or column >= side:
-        column = 0 if column < 0 else side - 1
-        row = side - 1 - row
-    if row < 0 or row >= side:
-        row = 0 if row < 0 else side - 1
-        column = side - 1 - column
-    return (row * side + column) * 3
+def first_of(place: Number, n: int) -> int:
+    """Of the two of `n` vertices along an axis that a place, counted in cells, is between; of NaN, one that exists."""
+    return max(min(int(place), n - 2), 0)
 
 
 @kernel
@@ -83,84 +70,14 @@ def weights_of(a: Number, b: Number, c: Number) -> Weights:
 
 
 @kernel
-def blended(flat: Array, at: int, over: int, up: int, w: Weights) -> Number:
-    """Of one channel's values at the vertices, the first of which is number `at`."""
-    p, q = at + over, at + up
-    r = q + over
-    lower = (w[0] * flat[at] + w[1] * flat[at + 4]) + (w[2] * flat[p] + w[3] * flat[p + 4])
-    value: Number = lower + ((w[4] * flat[q] + w[5] * flat[q + 4]) + (w[6] * flat[r] + w[7] * flat[r + 4]))
-    return value
-
-
-@kernel
-def spread(flat: Array, at: int, over: int, up: int, w: Weights, d: Number, e: Number, f: Number, g: Number) -> None:
-    """Add four channels' amounts to the vertices, the first of which is number `at`."""
-    p, q = at + over, at + up
-    r = q + over
-    for number, (place, weight) in enumerate(((at, w[0]), (p, w[2]), (q, w[4]), (r, w[6]))):
-        flat[place] += weight * d
-        flat[place + 1] += weight * e
-        flat[place + 2] += weight * f
-        flat[place + 3] += weight * g
-        beside = w[2 * number + 1]
-        flat[place + 4] += beside * d
-        flat[place + 5] += beside * e
-        flat[place + 6] += beside * f
-        flat[place + 7] += beside * g
-
-
-@kernel
-def rises(flat: Array, at: int, over: int, up: int, a: Number, b: Number, c: Number) -> tuple[Number, Number, Number]:
-    """How fast one channel's blend changes along the three sides of a cell, per cell."""
-    p, q = at + over, at + up
-    r = q + over
+def rises(v: Weights, a: Number, b: Number, c: Number) -> tuple[Number, Number, Number]:
+    """How fast a blend of values at the eight vertices changes along the three sides of a cell, per cell."""
     d, e, f = ONE - a, ONE - b, ONE - c
-    v0, v1, v2, v3 = flat[at], flat[at + 4], flat[p], flat[p + 4]
-    v4, v5, v6, v7 = flat[q], flat[q + 4], flat[r], flat[r + 4]
     return (
-        (v1 - v0) * e * f + (v3 - v2) * b * f + (v5 - v4) * e * c + (v7 - v6) * b * c,
-        (v2 - v0) * d * f + (v3 - v1) * a * f + (v6 - v4) * d * c + (v7 - v5) * a * c,
-        (v4 - v0) * d * e + (v5 - v1) * a * e + (v6 - v2) * d * b + (v7 - v3) * a * b,
+        (v[1] - v[0]) * e * f + (v[3] - v[2]) * b * f + (v[5] - v[4]) * e * c + (v[7] - v[6]) * b * c,
+        (v[2] - v[0]) * d * f + (v[3] - v[1]) * a * f + (v[6] - v[4]) * d * c + (v[7] - v[5]) * a * c,
+        (v[4] - v[0]) * d * e + (v[5] - v[1]) * a * e + (v[6] - v[2]) * d * b + (v[7] - v[3]) * a * b,
     )
-
-
-@kernel
-def looked_up(away: Array, n: Pixels, w: Shares, channel: int) -> Number:
-    """Square root of light between four pixels of the picture of what is far away."""
-    upper = w[0] * away[n[0] + channel] + w[1] * away[n[1] + channel]
-    value: Number = upper + (w[2] * away[n[2] + channel] + w[3] * away[n[3] + channel])
-    return value
-
-
-@kernel
-def around(
-    dx: Number, dy: Number, dz: Number, side: int
-) -> tuple[tuple[int, int, int, int], tuple[Number, Number, Number, Number]]:
-    """First numbers and weights of the four pixels around a direction."""
-    u, v = unfolded(dx, dy, dz)
-    half = HALF * np.float32(side)
-    u, v = u * half + half - HALF, v * half + half - HALF
-    column, row = math.floor(u), math.floor(v)
-    a, b = u - np.float32(column), v - np.float32(row)
-    numbers = (
-        wrapped(column, row, side),
-        wrapped(column + 1, row, side),
-        wrapped(column, row + 1, side),
-        wrapped(column + 1, row + 1, side),
-    )
-    return numbers, ((ONE - a) * (ONE - b), a * (ONE - b), (ONE - a) * b, a * b)
-
-
-@kernel
-def turned(dx: Number, dy: Number, dz: Number, by_u: Number, by_v: Number) -> tuple[Number, Number, Number]:
-    """Gradient by a direction of what has gradients by its place in the picture."""
-    length = abs(dx) + abs(dy) + abs(dz)
-    u, v = dx / length, dy / length
-    x_sign, y_sign, z_sign = (ONE if dx >= NONE else -ONE, ONE if dy >= NONE else -ONE, ONE if dz >= NONE else -ONE)
-    if dz < NONE:
-        by_u, by_v = -x_sign * y_sign * by_v, -x_sign * y_sign * by_u
-    along = by_u * u + by_v * v
-    return (by_u - along * x_sign) / length, (by_v - along * y_sign) / length, -along * z_sign / length
 
 
 @kernel
@@ -176,7 +93,8 @@ def next_number(number: int, skip: int, shortest: Number, times: Array) -> int:
 @kernel
 def march(
     origins: Array, directions: Array, starts: Array, cells: Array, skips: Bytes, far: Array, box: Array,
-    times: Array, steps: Array, unit: Number, first: int, last: int, light: Array, left: Array,
+    times: Array, steps: Array, unit: Number, first: int, last: int, light: Array, left: Array, passed: Array,
+    ends: Numbers,
 ) -> None:  # fmt: skip
     """Light that comes along rays `first` to `last`, and the share of it that comes from far away.
 
@@ -200,6 +118,9 @@ def march(
         Density, 1 over length, of a ramp of 1.
     light, left
         Shapes (n, 3) and (n,), written.
+    passed, ends
+        What `march_back` asks for, written: the places where these rays lost light, one ray after the other, shape
+        (at least s (last - first), KEPT), and where each ray's end, shape (n,). None are wanted where `ends` is empty.
     """
     nz, ny, nx = cells.shape[0], cells.shape[1], cells.shape[2]
     outer, shortest, widest = box[6], box[7], ONE + box[6]
@@ -207,39 +128,48 @@ def march(
     sx, sy, sz = np.float32(nx - 1) * scale, np.float32(ny - 1) * scale, np.float32(nz - 1) * scale
     flat, away, side = cells.reshape(-1), far.reshape(-1), far.shape[0]
     up, over = nx * ny * 4, nx * 4
+    is_kept, end = len(ends) > 0, 0
     for ray in range(first, last):
-        ox, oy, oz = origins[ray, 0], origins[ray, 1], origins[ray, 2]
-        dx, dy, dz = directions[ray, 0], directions[ray, 1], directions[ray, 2]
+        # Where a ray is in the inner box, -1 to 1 along each side, at a time t: p + t q.
+        px, qx = (origins[ray, 0] - box[0]) * box[3], directions[ray, 0] * box[3]
+        py, qy = (origins[ray, 1] - box[1]) * box[4], directions[ray, 1] * box[4]
+        pz, qz = (origins[ray, 2] - box[2]) * box[5], directions[ray, 2] * box[5]
         through, red, green, blue = ONE, NONE, NONE, NONE
         number = 0
         while number < len(times):
             step = steps[number]
             time = times[number] + starts[ray] * step
-            x = (contracted((ox + time * dx - box[0]) * box[3], outer)[0] + widest) * sx
-            y = (contracted((oy + time * dy - box[1]) * box[4], outer)[0] + widest) * sy
-            z = (contracted((oz + time * dz - box[2]) * box[5], outer)[0] + widest) * sz
-            i, j, k = min(int(x), nx - 2), min(int(y), ny - 2), min(int(z), nz - 2)
+            x = (contracted(px + time * qx, outer)[0] + widest) * sx
+            y = (contracted(py + time * qy, outer)[0] + widest) * sy
+            z = (contracted(pz + time * qz, outer)[0] + widest) * sz
+            i, j, k = first_of(x, nx), first_of(y, ny), first_of(z, nz)
             skip = skips[k, j, i]
             if skip > 0:
                 number = next_number(number, skip, shortest, times)
                 continue
             number += 1
             w = weights_of(x - np.float32(i), y - np.float32(j), z - np.float32(k))
-            at = ((k * ny + j) * nx + i) * 4
-            raw = DENSITY_SCALE * blended(flat, at, over, up, w)
+            raw, r0, r1, r2 = blended(flat, ((k * ny + j) * nx + i) * 4, over, up, w)
+            raw *= DENSITY_SCALE
             if raw <= -ONE:
                 continue
-            share = through * (ONE - np.float32(math.exp(-ramp(raw)[0] * unit * step)))
-            root = blended(flat, at + 1, over, up, w)
-            red += share * root * root
-            root = blended(flat, at + 2, over, up, w)
-            green += share * root * root
-            root = blended(flat, at + 3, over, up, w)
-            blue += share * root * root
+            density, slope = ramp(raw)
+            share = through * (ONE - np.float32(math.exp(-density * unit * step)))
+            red += share * r0 * r0
+            green += share * r1 * r1
+            blue += share * r2 * r2
             through -= share
+            if is_kept:
+                kept = passed[end]
+                kept[0], kept[1], kept[2], kept[3] = time, x, y, z
+                kept[4], kept[5] = share, DENSITY_SCALE * unit * step * slope
+                kept[6], kept[7], kept[8] = r0, r1, r2
+                end += 1
             if through < OPAQUE:
                 break
-        numbers, shares = around(dx, dy, dz, side)
+        if is_kept:
+            ends[ray] = end
+        numbers, shares = around(directions[ray, 0], directions[ray, 1], directions[ray, 2], side)
         root = looked_up(away, numbers, shares, 0)
         light[ray, 0] = red + through * root * root
         root = looked_up(away, numbers, shares, 1)
@@ -251,11 +181,11 @@ def march(
 
 @kernel
 def march_back(
-    origins: Array, directions: Array, starts: Array, cells: Array, skips: Bytes, far: Array, box: Array,
-    times: Array, steps: Array, unit: Number, first: int, last: int, light: Array, slopes: Array,
-    cell_slopes: Array, far_slopes: Array, origin_slopes: Array, direction_slopes: Array,
+    origins: Array, directions: Array, cells: Array, far: Array, box: Array, first: int, last: int, light: Array,
+    left: Array, passed: Array, ends: Numbers, slopes: Array, cell_slopes: Array, far_slopes: Array,
+    every: int, origin_slopes: Array, direction_slopes: Array,
 ) -> None:  # fmt: skip
-    """Gradients of `light` that `march` wrote; its first arguments are the same.
+    """Gradients of `light` that `march` wrote, with all else; arguments of the same names are the same.
 
     With c the light and s the density at a place, a step t long, and B the light that comes from behind it, the slope
     by s is t (T' c - B) for the share T' that is let through up to its end; B is the whole less what came before.
@@ -266,67 +196,50 @@ def march_back(
         Of the loss by `light`, shape (n, 3).
     cell_slopes, far_slopes
         By `cells` and `far`: added to.
+    every
+        Gradients of origins and directions are those of each `every`-th ray, so many times; 0 for all others.
     origin_slopes, direction_slopes
         Shape (n, 3), written; none are wanted where their length is 0.
     """
     nz, ny, nx = cells.shape[0], cells.shape[1], cells.shape[2]
-    outer, shortest, widest = box[6], box[7], ONE + box[6]
+    outer, widest = box[6], ONE + box[6]
     scale = HALF / widest
     sx, sy, sz = np.float32(nx - 1) * scale, np.float32(ny - 1) * scale, np.float32(nz - 1) * scale
     flat, away, side, grown = cells.reshape(-1), far.reshape(-1), far.shape[0], cell_slopes.reshape(-1)
     far_grown = far_slopes.reshape(-1)
     up, over = nx * ny * 4, nx * 4
-    is_moved = len(origin_slopes) > 0
+    times_as_much = np.float32(every)
+    number = 0
     for ray in range(first, last):
+        is_moved = len(origin_slopes) > 0 and ray % every == 0
         ox, oy, oz = origins[ray, 0], origins[ray, 1], origins[ray, 2]
         dx, dy, dz = directions[ray, 0], directions[ray, 1], directions[ray, 2]
         g0, g1, g2 = slopes[ray, 0], slopes[ray, 1], slopes[ray, 2]
         behind = g0 * light[ray, 0] + g1 * light[ray, 1] + g2 * light[ray, 2]
         through = ONE
         mx, my, mz, tx, ty, tz = NONE, NONE, NONE, NONE, NONE, NONE
-        number = 0
-        while number < len(times):
-            step = steps[number]
-            time = times[number] + starts[ray] * step
-            x, slope_x = contracted((ox + time * dx - box[0]) * box[3], outer)
-            y, slope_y = contracted((oy + time * dy - box[1]) * box[4], outer)
-            z, slope_z = contracted((oz + time * dz - box[2]) * box[5], outer)
-            x, y, z = (x + widest) * sx, (y + widest) * sy, (z + widest) * sz
-            i, j, k = min(int(x), nx - 2), min(int(y), ny - 2), min(int(z), nz - 2)
-            skip = skips[k, j, i]
-            if skip > 0:
-                number = next_number(number, skip, shortest, times)
-                continue
+        while number < ends[ray]:
+            kept = passed[number]
             number += 1
-            a, b, c = x - np.float32(i), y - np.float32(j), z - np.float32(k)
-            w = weights_of(a, b, c)
-            at = ((k * ny + j) * nx + i) * 4
-            raw = DENSITY_SCALE * blended(flat, at, over, up, w)
-            if raw <= -ONE:
-                continue
-            density, slope = ramp(raw)
-            share = through * (ONE - np.float32(math.exp(-density * unit * step)))
-            r0 = blended(flat, at + 1, over, up, w)
-            r1 = blended(flat, at + 2, over, up, w)
-            r2 = blended(flat, at + 3, over, up, w)
+            time, x, y, z, share = kept[0], kept[1], kept[2], kept[3], kept[4]
+            r0, r1, r2 = kept[6], kept[7], kept[8]
             here = g0 * r0 * r0 + g1 * r1 * r1 + g2 * r2 * r2
             through -= share
             behind -= share * here
-            by_raw = DENSITY_SCALE * unit * step * slope * (through * here - behind)
-            by0, by1, by2 = TWO * share * r0 * g0, TWO * share * r1 * g1, TWO * share * r2 * g2
-            spread(grown, at, over, up, w, by_raw, by0, by1, by2)
+            twice = TWO * share
+            amounts = (kept[5] * (through * here - behind), twice * r0 * g0, twice * r1 * g1, twice * r2 * g2)
+            i, j, k = first_of(x, nx), first_of(y, ny), first_of(z, nz)
+            a, b, c = x - np.float32(i), y - np.float32(j), z - np.float32(k)
+            at = ((k * ny + j) * nx + i) * 4
+            spread(grown, at, over, up, weights_of(a, b, c), amounts)
             if is_moved:
-                x0, y0, z0 = rises(flat, at, over, up, a, b, c)
-                x1, y1, z1 = rises(flat, at + 1, over, up, a, b, c)
-                x2, y2, z2 = rises(flat, at + 2, over, up, a, b, c)
-                x3, y3, z3 = rises(flat, at + 3, over, up, a, b, c)
-                x = (by_raw * x0 + by0 * x1 + by1 * x2 + by2 * x3) * sx * slope_x * box[3]
-                y = (by_raw * y0 + by0 * y1 + by1 * y2 + by2 * y3) * sy * slope_y * box[4]
-                z = (by_raw * z0 + by0 * z1 + by1 * z2 + by2 * z3) * sz * slope_z * box[5]
+                x, y, z = rises(weighed(flat, at, over, up, amounts), a, b, c)
+                x *= sx * box[3] * contracted((ox + time * dx - box[0]) * box[3], outer)[1]
+                y *= sy * box[4] * contracted((oy + time * dy - box[1]) * box[4], outer)[1]
+                z *= sz * box[5] * contracted((oz + time * dz - box[2]) * box[5], outer)[1]
                 mx, my, mz = mx + x, my + y, mz + z
                 tx, ty, tz = tx + time * x, ty + time * y, tz + time * z
-            if through < OPAQUE:
-                break
+        through = left[ray]
         numbers, shares = around(dx, dy, dz, side)
         n0, n1, n2, n3 = numbers
         by_u, by_v = NONE, NONE
@@ -338,11 +251,24 @@ def march_back(
             v0, v1, v2, v3 = away[n0 + channel], away[n1 + channel], away[n2 + channel], away[n3 + channel]
             by_u += by_root * ((v1 - v0) * (shares[0] + shares[1]) + (v3 - v2) * (shares[2] + shares[3]))
             by_v += by_root * ((v2 - v0) * (shares[0] + shares[2]) + (v3 - v1) * (shares[1] + shares[3]))
-        if is_moved:
-            x, y, z = turned(dx, dy, dz, by_u, by_v)
-            tx, ty, tz = tx + x, ty + y, tz + z
-            origin_slopes[ray, 0], origin_slopes[ray, 1], origin_slopes[ray, 2] = mx, my, mz
-            direction_slopes[ray, 0], direction_slopes[ray, 1], direction_slopes[ray, 2] = tx, ty, tz
+        if len(origin_slopes) > 0:
+            if is_moved:
+                x, y, z = turned(dx, dy, dz, by_u, by_v)
+                tx, ty, tz = tx + x, ty + y, tz + z
+            origin_slopes[ray, 0], origin_slopes[ray, 1] = times_as_much * mx, times_as_much * my
+            origin_slopes[ray, 2] = times_as_much * mz
+            direction_slopes[ray, 0], direction_slopes[ray, 1] = times_as_much * tx, times_as_much * ty
+            direction_slopes[ray, 2] = times_as_much * tz
+
+
+@kernel
+def pull(here: Array, there: Array, inverses: Array, factors: Array, slopes: Array) -> None:
+    """Add the slopes of Huber's function of differences; the loop is one that Numba's compiler makes vectors of."""
+    for number in range(len(here)):
+        off = (here[number] - there[number]) * inverses[number]
+        off = ONE if off > ONE else off
+        off = -ONE if off < -ONE else off
+        slopes[number] += factors[number] * off
 
 
 @kernel
@@ -360,19 +286,18 @@ def rough(cells: Array, amounts: Array, corners: Array, emptier: Number, first: 
     """
     nz, ny, nx = cells.shape[0], cells.shape[1], cells.shape[2]
     flat, grown = cells.reshape(-1), slopes.reshape(-1)
-    up, over = nx * ny * 4, nx * 4
-    inverses = ONE / corners
+    row, up = nx * 4, ny * nx * 4
+    inverses, factors, added = np.empty(row, np.float32), np.empty(row, np.float32), np.zeros(row, np.float32)
+    for number in range(row):
+        inverses[number], factors[number] = ONE / corners[number % 4], amounts[number % 4]
+    added[::4] = emptier
     for k in range(first, last):
-        below, above = (-up if k > 0 else 0), (up if k < nz - 1 else 0)
         for j in range(ny):
-            before, after = (-over if j > 0 else 0), (over if j < ny - 1 else 0)
-            for i in range(nx):
-                left, right = (-4 if i > 0 else 0), (4 if i < nx - 1 else 0)
-                for channel in range(4):
-                    at = k * up + j * over + i * 4 + channel
-                    here, inverse = flat[at], inverses[channel]
-                    slope = NONE
-                    for other in (left, right, before, after, below, above):
-                        slope += min(max((here - flat[at + other]) * inverse, -ONE), ONE)
-                    grown[at] = amounts[channel] * slope
-                grown[k * up + j * over + i * 4] += emptier
+            at = k * up + j * row
+            here, slope = flat[at : at + row], grown[at : at + row]
+            slope[:] = added
+            pull(here[4:], here[:-4], inverses, factors, slope[4:])
+            pull(here[:-4], here[4:], inverses, factors, slope[:-4])
+            for other, is_there in ((at - row, j > 0), (at + row, j < ny - 1), (at - up, k > 0), (at + up, k < nz - 1)):
+                if is_there:
+                    pull(here, flat[other : other + row], inverses, factors, slope)

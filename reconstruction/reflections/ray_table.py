@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 import torch
 from torch import Tensor
 
 from reconstruction.cameras import PosedPhoto
+from reconstruction.reflections import glass_ray_kernels as kernels
 from reconstruction.reflections.photo_set import PanelPlanes
 
 LEAST_COSINE = 1e-3
@@ -114,6 +116,8 @@ class RayTable:
             Corrections of each photo's pose, shape (p, 6): metres along ENU, and a small rotation vector, radians,
             ENU; gradients flow through.
         """
+        if moves is None and not places_px.requires_grad and places_px.device.type == "cpu":
+            return self._met(photos, places_px, panels)
         lenses = self.lenses[photos]
         bent = (places_px - lenses[:, 2:4]) / lenses[:, :2]
         x, y = self._unbent(bent[:, 0], bent[:, 1], photos).unbind(dim=1)
@@ -132,6 +136,19 @@ class RayTable:
         distances = heights / cosines.clamp(min=LEAST_COSINE)
         points = origins + distances[:, None] * directions
         return Met(points, directions, cosines, _shares(points, corners), distances)
+
+    def _met(self, photos: Tensor, places_px: Tensor, panels: Tensor) -> Met:
+        """The same without corrections, on a processor."""
+        n = len(photos)
+        found = tuple(np.empty((n, *shape)) for shape in ((3,), (3,), (), (2,), ()))
+        parts = self.positions_m, self.enu_from_cam, self.lenses, self.distortions, self.corners_m, self.normals
+        meet: Any = kernels.meet
+        meet(
+            photos.long().numpy(), places_px.double().contiguous().numpy(), panels.long().numpy(),
+            *(np.ascontiguousarray(part.numpy()) for part in parts),
+            UNBENT_STEPS if bool(self.distortions.any()) else 0, LEAST_COSINE, *found,
+        )  # fmt: skip
+        return Met(*(torch.from_numpy(part) for part in found))
 
     def inside(self, met: Met, panels: Tensor) -> Tensor:
         """Whether rays meet the fronts of their panels, which are convex, inside their edges, shape (n,), bool."""

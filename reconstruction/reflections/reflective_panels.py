@@ -11,6 +11,7 @@ from torch import Tensor, nn
 from reconstruction.reflections.glass_light import GlassLight
 from reconstruction.reflections.glass_rays import GlassRays
 from reconstruction.reflections.harmonics import HarmonicTexture
+from reconstruction.reflections.pane_colours import pane_colours
 from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY, display_from_linear, schlick, shade
 
 ModelName = Literal["mlp", "environment-map", "harmonics", "radiance-grid"]
@@ -71,7 +72,16 @@ class ReflectivePanels(nn.Module):
         generator
             See `GlassLight`.
         """
-        return display_from_linear(gain * rays.gains[:, None] * self.linear(rays, generator))
+        light = self.light
+        if light is None or rays.panels.device.type != "cpu":
+            return display_from_linear(gain * rays.gains[:, None] * self.linear(rays, generator))
+        panels, middle = rays.panels.long(), rays.middle()
+        mirrored, cosines = light(rays, generator)
+        diffuse = self.diffuse(middle.points, middle.omega_r, panels)
+        return pane_colours(
+            diffuse.float(), mirrored.float(), cosines, self.reflectivity, self.base_reflectance, self.corner_loss,
+            panels, gain * rays.gains, rays.off_axis,
+        )  # fmt: skip
 
 
 def expected_reflection(mean: float) -> float:

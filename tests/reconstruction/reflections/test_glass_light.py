@@ -119,6 +119,29 @@ def test_a_tilted_pane_mirrors_twice_as_far(source):
     assert torch.allclose(torch.asin(normals[:, 2]), torch.atan(expected), atol=1e-6)
 
 
+def test_mirrored_rays_and_what_tilts_and_bows_learn_are_those_of_plain_torch(source):
+    rays = glass_rays(source, source.photos)[:200]
+    met, panels = rays.met(), rays.panels.long()
+    generator = torch.Generator().manual_seed(5)
+    weights, more = torch.randn(200, 3, generator=generator), torch.randn(200, generator=generator)
+    found = []
+    for is_plain in (False, True):
+        glass = light_of(source.panels, tilts=True, bows=True)
+        with torch.no_grad():
+            glass.tilts += torch.linspace(-0.02, 0.03, glass.tilts.numel()).reshape(-1, 2)
+            glass.bows += torch.linspace(0.02, -0.01, glass.bows.numel()).reshape(-1, 2)
+        if is_plain:
+            normals, directions = glass.normals(rays.table, met, panels), met.directions.float()
+            along = (directions * normals).sum(dim=1, keepdim=True)
+            omega_r, cosines = directions - 2.0 * along * normals, along[:, 0].abs()
+        else:
+            omega_r, cosines = glass.mirrored(rays.table, met, panels)
+        ((omega_r * weights).sum() + (cosines * more).sum()).backward()
+        found.append([omega_r.detach(), cosines.detach(), glass.tilts.grad, glass.bows.grad])
+    for value, truth in zip(*found, strict=True):
+        assert (value - truth).norm() < 1e-5 * truth.norm()
+
+
 def test_tilts_of_panes_are_found_from_what_they_mirror(tmp_path):
     leans = np.array([0.012, -0.008, 0.0, 0.01, -0.012, -0.002])
 

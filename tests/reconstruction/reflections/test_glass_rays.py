@@ -35,6 +35,24 @@ def places_of(source, rays):
     return rays.middle().points.double().numpy() * source.panels.half_side_m + source.panels.middle_enu_m
 
 
+def test_rays_are_taken_by_numbers_masks_and_ranges(source):
+    rays = glass_rays(source, source.photos)
+    is_first = rays.photos == 0
+    for rows in (torch.nonzero(is_first).squeeze(1), is_first, slice(0, int(is_first.sum()))):
+        for name in COLUMNS:
+            assert torch.equal(getattr(rays[rows], name), getattr(rays, name)[rows])
+
+
+def test_rays_are_those_that_plain_torch_makes(source):
+    rays = glass_rays(source, source.photos)
+    n_photos = len(source.photos)
+    found = rays.met()
+    # With corrections, be they none, they are made in torch.
+    expected = rays.met(moves=torch.zeros(n_photos, 6, dtype=torch.float64))
+    for name in ("points_m", "directions", "cosines", "shares", "distances_m"):
+        assert torch.allclose(getattr(found, name), getattr(expected, name), rtol=1e-12, atol=1e-12)
+
+
 def test_rays_meet_the_glass_at_the_middles_of_pixels_and_go_on_from_the_cameras_mirror_image(source):
     for photo in source.photos:
         rays = rays_of_photo(source, photo)

@@ -6,6 +6,7 @@ import torch
 from torch.nn.functional import normalize
 
 from planning import jit
+from reconstruction.reflections import radiance_grid
 from reconstruction.reflections import radiance_grid_twin as twin
 from reconstruction.reflections.grid_box import GridBox
 from reconstruction.reflections.radiance_grid import CORNERS, RadianceGrid
@@ -75,6 +76,7 @@ def test_passing_over_what_is_empty_changes_nothing_but_time():
 
 def test_the_number_of_threads_changes_no_bit(monkeypatch):
     found = []
+    monkeypatch.setattr(radiance_grid, "FEW_RAYS", 50)
     for n_threads in (1, 3):
         monkeypatch.setattr(jit, "n_threads", lambda n=n_threads: n)
         grid = grid_of()
@@ -83,6 +85,29 @@ def test_the_number_of_threads_changes_no_bit(monkeypatch):
         (light.square().sum() + grid.roughness(0.1, 0.2, 0.3)).backward()
         found.append([light.detach(), grid.cells.grad, grid.far.grad, points.grad])
     assert all(torch.equal(a, b) for a, b in zip(*found, strict=True))
+
+
+def gradients_of(n):
+    grid = grid_of()
+    own = [part.requires_grad_() for part in rays(n)]
+    grid(*own).square().sum().backward()
+    return [grid.cells.grad, grid.far.grad, *(part.grad for part in own)]
+
+
+def test_rays_that_are_marched_again_on_the_way_back_have_the_same_gradients(monkeypatch):
+    expected = gradients_of(101)
+    monkeypatch.setattr(radiance_grid, "KEPT_RAYS", 30)
+    assert all(torch.equal(a, b) for a, b in zip(gradients_of(101), expected, strict=True))
+
+
+def test_of_many_rays_each_fourth_has_four_times_its_own_gradients(monkeypatch):
+    expected = gradients_of(102)
+    monkeypatch.setattr(radiance_grid, "MANY_MOVED", 100)
+    *of_grid, of_points, of_directions = gradients_of(102)
+    assert all(torch.equal(a, b) for a, b in zip(of_grid, expected[:2], strict=True))
+    for found, truth in zip((of_points, of_directions), expected[2:], strict=True):
+        assert torch.allclose(found[::4], 4.0 * truth[::4])
+        assert not found[torch.arange(102) % 4 > 0].any()
 
 
 def test_roughness_has_the_gradient_of_its_twin():
@@ -174,6 +199,18 @@ def test_grids_of_any_density_give_finite_light_and_gradients():
         points, directions = rays(20)
         grid(points, directions).sum().backward()
         assert grid.cells.grad.isfinite().all()
+
+
+def test_rays_that_are_no_numbers_have_light_that_is_none_and_harm_no_other_ray():
+    grid = grid_of()
+    points, directions = rays(4)
+    expected = grid(points, directions)[1:]
+    points[0], directions[0] = float("nan"), float("nan")
+    light = grid(points, directions)
+    assert light[0].isnan().all()
+    assert torch.equal(light[1:], expected)
+    light.sum().backward()
+    assert grid.cells.grad.shape == grid.cells.shape
 
 
 def test_no_rays_have_no_light():
