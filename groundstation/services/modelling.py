@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from planning.errors import InputError
+from planning.folders import make_folder
 from planning.json_file import check_output, write_atomically
 from planning.progress import QUIET, Monitor, Stop, Trace, never
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from reconstruction.modelling.ranks import Ranks
     from reconstruction.modelling.saved import TrainedModel
     from reconstruction.modelling.score import ViewScores
+    from reconstruction.modelling.stopwatch import Stopwatch
     from reconstruction.modelling.watching import Preview, Watching
 
 ViewChoice = Literal["held-out", "all"]
@@ -32,6 +35,8 @@ class TrainWish:
     ----------
     settings
         TOML file with settings that differ from the preset's.
+    start
+        PLY file of splats to start from.
     """
 
     preset: str = DEFAULT_PRESET
@@ -41,6 +46,7 @@ class TrainWish:
     time_limit_s: float | None = None
     seed: int | None = None
     settings: Path | None = None
+    start: Path | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,11 +101,17 @@ def train_files(
     stop: Stop = never,
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
+    begun_s: float | None = None,
 ) -> TrainedFiles:
     """Train a model of a data set folder into a folder; or go on with the training that was interrupted there.
 
     A finished model that is there stays until the new one is whole. Cancelled, the training's state is kept, and
     `resume` goes on with it; stopped, the model is what it is then.
+
+    Parameters
+    ----------
+    begun_s
+        What `time.perf_counter` said when the time limit began to count; None for now.
 
     Raises
     ------
@@ -110,20 +122,26 @@ def train_files(
     OperationCancelled
         From `monitor`.
     """
+    # Before the libraries are loaded, which takes seconds.
+    begun_s = time.perf_counter() if begun_s is None else begun_s
     from reconstruction.modelling.ranks import ranks_of_environment
     from reconstruction.modelling.saved import CHECKPOINT, save_model
+    from reconstruction.modelling.stopwatch import Stopwatch
     from reconstruction.modelling.watching import Watching
 
+    watch = Stopwatch(begun_s=begun_s)
     with ranks_of_environment() as ranks:
         watching = Watching(monitor, stop, pause, trace, preview if ranks.is_first else None)
-        trained = _trained(dataset, out, wish, resume, watching, ranks)
+        trained = _trained(dataset, out, wish, resume, watching, ranks, watch)
         if ranks.is_first:
             save_model(trained, out)
             (out / CHECKPOINT).unlink(missing_ok=True)
     return TrainedFiles(out, trained, ranks.is_first)
 
 
-def _trained(dataset: Path, out: Path, wish: TrainWish, resume: bool, watching: Watching, ranks: Ranks) -> TrainedModel:
+def _trained(
+    dataset: Path, out: Path, wish: TrainWish, resume: bool, watching: Watching, ranks: Ranks, watch: Stopwatch
+) -> TrainedModel:
     from reconstruction.modelling.saved import CHECKPOINT
     from reconstruction.modelling.train import resume_model, train_model
 
@@ -131,11 +149,11 @@ def _trained(dataset: Path, out: Path, wish: TrainWish, resume: bool, watching: 
     if resume:
         if not checkpoint.is_file():
             raise InputError(f"{out}: holds no training that was interrupted; train without --resume")
-        return resume_model(dataset, checkpoint, watching, method=wish.method, ranks=ranks)
+        return resume_model(dataset, checkpoint, watching, method=wish.method, ranks=ranks, watch=watch)
     config = config_of_wish(wish)
     if ranks.is_first:
         _check_begin(dataset, out, checkpoint)
-    return train_model(dataset, config, watching, checkpoint, ranks=ranks)
+    return train_model(dataset, config, watching, checkpoint, given=wish.start, ranks=ranks, watch=watch)
 
 
 def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:
@@ -147,10 +165,7 @@ def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:
         )
     if not (dataset / "dataset.json").is_file():
         raise InputError(f"{dataset}: has no dataset.json; name a folder that `prepare` or `scene render` has finished")
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{out}: cannot be made ({error.strerror or error}); name another folder") from error
+    make_folder(out)
     check_output(checkpoint)
 
 

@@ -148,9 +148,9 @@ class TrainConfig:
     iterations
         Steps of Adam, one photo or window each.
     time_limit_s
-        After which the training ends with its rates at their last, the learning of light included; None for none.
+        For all of it, from reading photos to writing the model; it ends with its rates at their last. None for none.
     light_share
-        Of the time limit, at most, for learning light alone.
+        Of the time that is left when light begins to be learned alone, at most, for that.
     reflections
         How light is learned alone, from random rays of glass.
     n_splats, max_splats
@@ -172,7 +172,7 @@ class TrainConfig:
     memory_bytes
         For decoded photos, and as much for rays of glass.
     device
-        `cuda` needs the extra of that name; light is learned alone on the processor all the same.
+        `cuda` needs the extra of that name.
     threads
         Of torch and the rasteriser. With one of torch, the same seed gives the same bits on a processor.
     checkpoint_every_s

@@ -186,7 +186,7 @@ class SceneModel(nn.Module):
         return Picture(display, light, diffuse, reflection, mirrored, reflectivity, normals, panels, raster)
 
     def train(self, mode: bool = True) -> SceneModel:
-        """As of any module; corrections of poses, learned with light alone, are not applied: views come one by one."""
+        """As of any module; corrections of poses, learned with light alone, are in the views already."""
         super().train(mode)
         if self.light is not None:
             self.light.training = False

@@ -17,6 +17,7 @@ from reconstruction.dataset.records import DATASET_FORMAT
 from reconstruction.modelling.config import TrainConfig
 from reconstruction.modelling.exposures import Exposures
 from reconstruction.modelling.model import SceneModel
+from reconstruction.modelling.photo_moves import Move
 from reconstruction.reflections.config import Precision
 from reconstruction.reflections.environment_map import EnvironmentMap
 from reconstruction.reflections.glass_learned import GlassLearned
@@ -108,6 +109,8 @@ class ModelRecord:
         Size of the scene.
     decisions
         About effects, with their reasons.
+    moves
+        Corrections of the poses of `learned`; none where they were not learned.
     """
 
     config: TrainConfig
@@ -120,6 +123,7 @@ class ModelRecord:
     held_out: tuple[str, ...]
     extent_m: float
     decisions: tuple[Decision, ...] = ()
+    moves: tuple[Move, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("corner_square", "exposure", "extent_m"):
@@ -128,6 +132,8 @@ class ModelRecord:
                 raise ValueError(f"{name}: expected more than 0, got {value}")
         if not self.learned:
             raise ValueError("learned: expected at least one photo")
+        if self.moves and len(self.moves) != len(self.learned):
+            raise ValueError(f"moves: expected one for each of {len(self.learned)} photos, got {len(self.moves)}")
 
 
 WIDEST, DEEPEST, MOST_ROWS, MOST_VERTICES = 8192, 64, 4096, 1 << 28

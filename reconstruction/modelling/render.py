@@ -13,7 +13,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from planning.errors import InputError
+from planning.folders import make_folder
 from planning.json_file import write_atomically
 from planning.progress import QUIET, Monitor
 from reconstruction.cameras import PosedPhoto
@@ -120,12 +120,7 @@ def render_files(
         From `monitor`; the views that are done stay.
     """
     for name in ("", *layers):
-        try:
-            (folder / name).mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(
-                f"{folder / name}: cannot be made ({error.strerror or error}); name another folder"
-            ) from error
+        make_folder(folder / name)
     written = []
     for done, photo in enumerate(photos):
         monitor.report("rendering", done, len(photos))

@@ -19,6 +19,7 @@ from safetensors.torch import load, save
 from torch import Tensor
 
 from planning.errors import InputError
+from planning.folders import make_folder
 from planning.json_file import expect_format, read_json, to_record, write_atomically
 from planning.progress import QualityPoint
 from reconstruction.modelling.exposures import Exposures
@@ -89,10 +90,7 @@ def save_model(trained: TrainedModel, folder: Path) -> None:
     InputError
         It cannot be written.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder}: cannot be made ({error.strerror or error}); name another folder") from error
+    make_folder(folder)
     content = save(_tensors(trained))
     digest = hashlib.sha256(content).hexdigest()
     name = f"weights-{digest[:12]}.safetensors"

@@ -1,11 +1,20 @@
-"""The strategy that a configuration asks for, with its schedule in steps."""
+"""The strategy that a configuration asks for, with its schedule in steps, and what it is shown."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
+import torch
+from torch import Tensor
+
 from reconstruction.modelling.config import TrainConfig
+from reconstruction.modelling.photo_stream import Sample
+from reconstruction.modelling.ranks import Ranks
 from reconstruction.splatting.densification import Densification, FixedNumber, Limits
 from reconstruction.splatting.densify_adaptive import AdaptiveControl, AdaptiveParameters
 from reconstruction.splatting.densify_mcmc import MarkovChain, McmcParameters
+from reconstruction.splatting.raster import Raster
 
 
 def strategy_of(config: TrainConfig, n_splats: int) -> Densification:
@@ -21,3 +30,21 @@ def strategy_of(config: TrainConfig, n_splats: int) -> Densification:
     if config.densification == "mcmc":
         return MarkovChain(McmcParameters(start=start, stop=stop, n_splats=config.max_splats), limits)
     return AdaptiveControl(AdaptiveParameters(start=start, stop=stop, reset_every=0), limits)
+
+
+def show(
+    strategy: Densification, raster: Raster, offsets: Tensor, samples: Sequence[Sample], ranks: Ranks, weight: float
+) -> None:
+    """Tell a strategy about a picture, and those of other processes, in the same order everywhere.
+
+    Parameters
+    ----------
+    offsets
+        Of the splats' screen positions, with their gradients.
+    weight
+        Of the high-frequency loss: it multiplies gradients, which says nothing about how many splats are needed.
+    """
+    pulls = torch.zeros_like(offsets) if offsets.grad is None else offsets.grad
+    seen = torch.cat([pulls / (1.0 + weight), raster.weights[:, None], raster.radii_px[:, None].to(pulls)], dim=1)
+    for found, sample in zip(ranks.gathered(seen), samples, strict=True):
+        strategy.seen(replace(raster, weights=found[:, 2], radii_px=found[:, 3]), found[:, :2], sample.view)

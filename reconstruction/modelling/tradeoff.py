@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from planning.progress import QUIET, Monitor, QualityPoint
+from planning.progress import QUIET, Clock, Monitor, QualityPoint
 from planning.tradeoff.curves import Curve, falling
 from planning.tradeoff.picture import Line, Panel
 from reconstruction.modelling.config import TrainConfig, config_of
 from reconstruction.modelling.saved import TrainedModel
 from reconstruction.modelling.score import mean_of, score_views
+from reconstruction.modelling.stopwatch import Stopwatch
 from reconstruction.modelling.train import train_model
 from reconstruction.modelling.watching import Watching
 from reconstruction.reflections.photo_set import read_photo_set
@@ -82,8 +84,15 @@ def settings_of(base: TrainConfig, knobs: Mapping[str, Sequence[Any]]) -> tuple[
     return tuple(found)
 
 
-def run_settings(folder: Path, settings: Sequence[Setting], monitor: Monitor = QUIET) -> tuple[Trial, ...]:
+def run_settings(
+    folder: Path, settings: Sequence[Setting], monitor: Monitor = QUIET, clock: Clock = time.perf_counter
+) -> tuple[Trial, ...]:
     """Train with each, one after the other, and score.
+
+    Parameters
+    ----------
+    clock
+        That time limits and curves go by.
 
     Raises
     ------
@@ -97,7 +106,7 @@ def run_settings(folder: Path, settings: Sequence[Setting], monitor: Monitor = Q
     trials = []
     for number, setting in enumerate(settings):
         named = _Named(monitor, number, len(settings))
-        trained = train_model(folder, setting.config, Watching(named))
+        trained = train_model(folder, setting.config, Watching(named), watch=Stopwatch(clock))
         trials.append(_trial(setting, trained, folder, named))
     return tuple(trials)
 

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import math
-import time
 from contextlib import ExitStack
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 
 from planning.errors import InputError
 from planning.json_file import to_record
-from planning.progress import Clock, QualityPoint
+from planning.progress import QualityPoint
 from reconstruction.modelling.checkpoints import read_checkpoint
 from reconstruction.modelling.config import TrainConfig
+from reconstruction.modelling.light_stage import begun_light
+from reconstruction.modelling.photo_moves import moved
 from reconstruction.modelling.photo_stream import PhotoStream, StreamSettings
 from reconstruction.modelling.ranks import ALONE, Ranks
 from reconstruction.modelling.record import ModelRecord, empty_model, light_record, site_record
 from reconstruction.modelling.saved import TrainedModel
-from reconstruction.modelling.start import start_model
+from reconstruction.modelling.start import Start, start_model
+from reconstruction.modelling.stopwatch import Stopwatch
 from reconstruction.modelling.strategies import strategy_of
 from reconstruction.modelling.trainer import SHOWN_VIEWS, Trainer
 from reconstruction.modelling.watching import HeldOut, Watching
@@ -39,8 +42,9 @@ def train_model(
     watching: Watching | None = None,
     checkpoint: Path | None = None,
     *,
+    given: Path | None = None,
     ranks: Ranks = ALONE,
-    clock: Clock = time.perf_counter,
+    watch: Stopwatch | None = None,
 ) -> TrainedModel:
     """Train a model of a data set folder.
 
@@ -48,8 +52,12 @@ def train_model(
     ----------
     checkpoint
         File that the training can go on from if it is interrupted; None for none.
+    given
+        PLY file of splats to start from; None for new ones, on what is known of the scene.
     ranks
         Processes that train together; all but the first begin with the checkpoint that that one writes.
+    watch
+        Of all that counts for the time limit; None where that begins now.
 
     Raises
     ------
@@ -60,21 +68,31 @@ def train_model(
     OperationCancelled
         From the monitor.
     """
-    watching = watching or Watching()
+    watching, watch = watching or Watching(), watch or Stopwatch()
     _check_device(config)
     if not ranks.is_first:
         if checkpoint is None:
             raise ValueError("checkpoint: expected one where several processes train together")
-        ranks.wait()
-        return resume_model(folder, checkpoint, watching, ranks=ranks, clock=clock)
+        return _joined_later(folder, checkpoint, watching, ranks, watch)
     source = read_photo_set(folder)
-    begun_s = clock()
-    start = start_model(source, config, watching.monitor)
-    spent_s = clock() - begun_s
+    start = start_model(source, config, watching.monitor, watch, checkpoint, given=given)
+    return _started(source, start, config, watching, checkpoint, ranks, watch)
+
+
+def _started(
+    source: PhotoSet,
+    start: Start,
+    config: TrainConfig,
+    watching: Watching,
+    checkpoint: Path | None,
+    ranks: Ranks,
+    watch: Stopwatch,
+) -> TrainedModel:
+    """The joint training after its start."""
     record = ModelRecord(
         config,
         light_record(start.model, start.light_name),
-        site_record(folder),
+        site_record(source.folder),
         tuple(start.model.origin_enu_m.tolist()),
         start.model.corner_square,
         source.exposure,
@@ -82,6 +100,7 @@ def train_model(
         start.held_out,
         start.extent_m,
         start.decisions,
+        start.moves,
     )
     with ExitStack() as closing:
         photos, shown = _photos(source, record, closing)
@@ -95,9 +114,9 @@ def train_model(
             extent_m=start.extent_m,
             checkpoint=checkpoint,
             record=asdict(record),
-            spent_s=spent_s,
+            notes=start.notes,
             ranks=ranks,
-            clock=clock,
+            watch=watch,
         )
         trainer.save()
         ranks.wait()
@@ -111,7 +130,7 @@ def resume_model(
     *,
     method: str | None = None,
     ranks: Ranks = ALONE,
-    clock: Clock = time.perf_counter,
+    watch: Stopwatch | None = None,
 ) -> TrainedModel:
     """Go on with a training, with the settings that it was begun with.
 
@@ -125,11 +144,43 @@ def resume_model(
     InputError
         The checkpoint is missing or damaged, or of another method or other photos.
     """
+    watching, watch = watching or Watching(), watch or Stopwatch()
     content = read_checkpoint(checkpoint)
+    # Nobody writes another one before all have read this one.
+    ranks.wait()
+    begun = begun_light(content, checkpoint)
+    if begun is None:
+        return _resumed(folder, checkpoint, content, watching, method, ranks, watch)
+    config = begun.stage.config
+    _check_method(config, method, checkpoint)
+    if not ranks.is_first:
+        return _joined_later(folder, checkpoint, watching, ranks, watch)
+    if site_record(folder) != begun.stage.site:
+        raise InputError(f"{folder}: shows other panels; name the data set that the training was begun with")
+    watch.before_s += begun.spent_s
+    source = read_photo_set(folder)
+    start = start_model(source, config, watching.monitor, watch, checkpoint, begun)
+    return _started(source, start, config, watching, checkpoint, ranks, watch)
+
+
+def _joined_later(folder: Path, checkpoint: Path, watching: Watching, ranks: Ranks, watch: Stopwatch) -> TrainedModel:
+    """The part of a process that waits until the first one has learned light."""
+    ranks.wait()
+    return _resumed(folder, checkpoint, read_checkpoint(checkpoint), watching, None, ranks, watch)
+
+
+def _resumed(
+    folder: Path,
+    checkpoint: Path,
+    content: dict[str, Any],
+    watching: Watching,
+    method: str | None,
+    ranks: Ranks,
+    watch: Stopwatch,
+) -> TrainedModel:
+    """A joint training that is gone on with."""
     record = to_record(content.get("record"), ModelRecord, checkpoint)
-    _check_device(record.config)
-    if method not in (None, record.config.method):
-        raise InputError(f"{checkpoint}: is of a training of {record.config.method}; resume with that method")
+    _check_method(record.config, method, checkpoint)
     state = content.get("training")
     if not isinstance(state, dict) or not isinstance(state.get("model"), dict):
         raise InputError(f"{checkpoint}: holds no state of a training; train without --resume")
@@ -155,10 +206,17 @@ def resume_model(
             checkpoint=checkpoint,
             record=asdict(record),
             ranks=ranks,
-            clock=clock,
+            watch=watch,
         )
         trainer.restore(state)
-        return _finished(trainer, record, watching or Watching())
+        watch.before_s += trainer.at.spent_s
+        return _finished(trainer, record, watching)
+
+
+def _check_method(config: TrainConfig, method: str | None, checkpoint: Path) -> None:
+    _check_device(config)
+    if method not in (None, config.method):
+        raise InputError(f"{checkpoint}: is of a training of {config.method}; resume with that method")
 
 
 def _check_device(config: TrainConfig) -> None:
@@ -169,6 +227,7 @@ def _check_device(config: TrainConfig) -> None:
 def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[PhotoStream, tuple[HeldOut, ...]]:
     """The stream of photos to learn from, and held-out ones to show."""
     config, origin = record.config, np.array(record.origin_enu_m)
+    source = _corrected(source, record)
     with_normals = config.method == "refglass-gs" and config.losses.normal_prior > 0.0
     settings = StreamSettings(
         round((1.0 - SHOWN_SHARE) * config.memory_bytes), config.window_px, config.reduce, with_normals
@@ -182,6 +241,14 @@ def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[
         HeldOut(shown.frame(number), source.own_exposures.get(photo.name, 1.0))
         for number, photo in enumerate(shown.photos)
     )
+
+
+def _corrected(source: PhotoSet, record: ModelRecord) -> PhotoSet:
+    """With the photos that are learned from where learning light found them to be; held-out ones stay."""
+    if not record.moves:
+        return source
+    learned = {photo.name: photo for photo in moved(source.named(record.learned), record.moves)}
+    return replace(source, photos=tuple(learned.get(photo.name, photo) for photo in source.photos))
 
 
 def _finished(trainer: Trainer, record: ModelRecord, watching: Watching) -> TrainedModel:

@@ -22,20 +22,19 @@ import torch
 from torch import Tensor
 
 from planning.errors import InputError, OperationCancelled, ReconstructionError
-from planning.progress import Clock
 from reconstruction.modelling.checkpoints import read_checkpoint, write_checkpoint
 from reconstruction.modelling.config import TrainConfig
 from reconstruction.modelling.exposures import Exposures
 from reconstruction.modelling.model import Picture, SceneModel
-from reconstruction.modelling.objective import display_of, objective, on_device
+from reconstruction.modelling.objective import objective, on_device
 from reconstruction.modelling.photo_stream import PhotoStream, Sample
 from reconstruction.modelling.ranks import ALONE, Ranks
 from reconstruction.modelling.rates import adam_of, set_rates, take_step
-from reconstruction.modelling.recovery import NotFinite, is_out_of_memory, require_finite
-from reconstruction.modelling.watching import HeldOut, Preview, Progress, Watching
-from reconstruction.scores.image_metrics import psnr_db
+from reconstruction.modelling.stopwatch import Stopwatch
+from reconstruction.modelling.strategies import show
+from reconstruction.modelling.watching import HeldOut, Preview, Progress, Watching, quality_db
+from reconstruction.recovery import NotFinite, is_out_of_memory, require_finite
 from reconstruction.splatting.densification import Densification, FixedNumber
-from reconstruction.splatting.raster import Raster
 
 MOST_HALVINGS = 8
 """Of the rates, over a whole training: beyond, they are so small that nothing is learned any more."""
@@ -48,6 +47,9 @@ PAUSE_S = 0.05
 
 SHOWN_VIEWS = 4
 """Held-out views that the quality is measured on while training runs."""
+
+WRITTEN = 2.0
+"""Time that a finished model takes to be written, as weights and for other programs, against a checkpoint's."""
 
 SEEDS = 1_000_003
 """Between the seeds of two steps, so that trainings with neighbouring seeds share none."""
@@ -70,10 +72,12 @@ class Trainer:
         File to write; None for none.
     record
         Of the model, to be written with each checkpoint.
-    spent_s
-        What went before, such as learning light alone; counts for the time limit.
+    notes
+        What had to be survived before.
     ranks
         Processes that train it together; each has a trainer of its own.
+    watch
+        Of all that counts for the time limit, what went before included.
     """
 
     def __init__(
@@ -88,28 +92,30 @@ class Trainer:
         extent_m: float = 1.0,
         checkpoint: Path | None = None,
         record: dict[str, Any] | None = None,
-        spent_s: float = 0.0,
+        notes: Sequence[str] = (),
         ranks: Ranks = ALONE,
-        clock: Clock = time.perf_counter,
+        watch: Stopwatch | None = None,
     ) -> None:
         self._device = torch.device(config.device)
         self.model, self.exposures = model.to(self._device), exposures.to(self._device)
         self.photos, self.strategy, self.config = photos, strategy, config
-        self.shown, self._path, self._record, self._clock = tuple(shown), checkpoint, record or {}, clock
-        self.at = Progress(spent_s=spent_s, saved_at_s=spent_s, window_px=photos.window_px or config.window_px)
+        self.shown, self._path, self._record, self._watch = tuple(shown), checkpoint, record or {}, watch or Stopwatch()
+        self.at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
+        self.at.spent_s = self.at.saved_at_s = self._watch()
         self.generator = torch.Generator().manual_seed(config.seed)
         self.optimiser = adam_of(model, exposures, config, extent_m)
         self._settings = replace(config.raster, threads=config.threads)
         self._extent_m, self._is_editing = extent_m, False
         self._no_more = FixedNumber()
         self._n_pixels, self._ranks = 0, ranks
+        self._reserve_s = 0.0
         self._with_glass = config.method != "2dgs"
 
     @property
     def progress(self) -> float:
         """Of the training, 0 to 1: by steps or by time, whichever is further."""
         limit_s = self.config.time_limit_s
-        by_time = 0.0 if limit_s is None else self.at.spent_s / limit_s
+        by_time = 0.0 if limit_s is None else (self.at.spent_s + self._reserve_s) / limit_s
         return min(1.0, max(self.at.step / self.config.iterations, by_time))
 
     def run(self, watching: Watching) -> None:
@@ -135,25 +141,33 @@ class Trainer:
     def _run(self, watching: Watching) -> None:
         self.model.train()
         self._score(watching)
-        while self.progress < 1.0 and not self._is_stopped(watching):
+        while not self._is_stopped(watching) and self.progress < 1.0:
             watching.monitor.report("training", self.progress, 1.0)
-            while watching.pause():
-                watching.monitor.report("paused", self.progress, 1.0)
-                time.sleep(PAUSE_S)
-            begun_s = self._clock()
+            self._wait(watching)
             self._survived_step()
-            self.at.spent_s += self._clock() - begun_s
             if self.at.spent_s - self.at.scored_at_s >= self.config.score_every_s:
                 self._score(watching)
             if self.at.spent_s - self.at.saved_at_s >= self.config.checkpoint_every_s:
                 self.save()
         self.model.finish(self.config.reflections)
         self._score(watching)
+        self.at.spent_s = self._watch()
+
+    def _wait(self, watching: Watching) -> None:
+        with self._watch.paused():
+            while watching.pause():
+                watching.monitor.report("paused", self.progress, 1.0)
+                time.sleep(PAUSE_S)
 
     def _is_stopped(self, watching: Watching) -> bool:
-        """Whether the first process is to stop; all others know what it has spent, too."""
-        self.at.spent_s, is_stopped = self._ranks.agreed([self.at.spent_s, float(watching.stop())])
+        """Whether the first process is to stop; all others know what it has spent and still needs, too."""
+        numbers = [self._watch(), self._needed_s(), float(watching.stop())]
+        self.at.spent_s, self._reserve_s, is_stopped = self._ranks.agreed(numbers)
         return bool(is_stopped)
+
+    def _needed_s(self) -> float:
+        """For the last look at the quality, and for writing the model."""
+        return self._watch.lasted_s.get("look", 0.0) + WRITTEN * self._watch.lasted_s.get("save", 0.0)
 
     def _survived_step(self) -> None:
         try:
@@ -191,7 +205,8 @@ class Trainer:
         require_finite(self._ranks.average_gradients(parameters, loss.detach()), parameters)
         self._is_editing = True
         strategy = self.strategy if self.progress < config.densify_until else self._no_more
-        self._show(strategy, picture.raster, offsets, samples)
+        stage = config.losses.stage(self.progress) if self._with_glass else None
+        show(strategy, picture.raster, offsets, samples, self._ranks, 0.0 if stage is None else stage.weight)
         strategy.before_step(at.step, splats, self.optimiser)
         take_step(self.optimiser, splats, config.rates.colour_details)
         self.exposures.project()
@@ -202,18 +217,6 @@ class Trainer:
         self._is_editing = False
         at.step += 1
         return terms
-
-    def _show(self, strategy: Densification, raster: Raster, offsets: Tensor, samples: Sequence[Sample]) -> None:
-        """Tell the strategy about the picture, and those of other processes, in the same order everywhere.
-
-        The high-frequency loss multiplies gradients by its weight, which says nothing about how many splats are needed.
-        """
-        stage = self.config.losses.stage(self.progress) if self._with_glass else None
-        pulls = torch.zeros_like(offsets) if offsets.grad is None else offsets.grad
-        pulls = pulls / (1.0 if stage is None else 1.0 + stage.weight)
-        seen = torch.cat([pulls, raster.weights[:, None], raster.radii_px[:, None].to(pulls)], dim=1)
-        for found, sample in zip(self._ranks.gathered(seen), samples, strict=True):
-            strategy.seen(replace(raster, weights=found[:, 2], radii_px=found[:, 3]), found[:, :2], sample.view)
 
     def picture(self, sample: Sample, gain: Tensor | float, offsets: Tensor | None = None) -> Picture:
         """What the model shows where a photo was taken; with `offsets` as a step looks at it."""
@@ -282,23 +285,22 @@ class Trainer:
         """Measure the quality where it was not measured at this step, and show it."""
         at = self.at
         at.scored_at_s = at.spent_s
-        if not self._ranks.is_first or not self.shown or (at.history and at.history[-1][0] == at.spent_s):
+        if not self._ranks.is_first or not self.shown or at.scored_step == at.step:
             return
+        at.scored_step = at.step
+
+        def displayed(held_out: HeldOut) -> Tensor:
+            watching.monitor.report("training", self.progress, 1.0)
+            display = self.picture(on_device(held_out.sample, self._device), held_out.gain).display.clamp(0.0, 1.0)
+            if held_out is self.shown[0] and watching.preview is not None:
+                watching.preview(Preview(at.step, (255.0 * display).round().to(torch.uint8).cpu().numpy()))
+            return display
+
         was_training = self.model.training
         self.model.eval()
-        squares, n_values = 0.0, 0
-        with torch.no_grad():
-            for number, held_out in enumerate(self.shown):
-                watching.monitor.report("training", self.progress, 1.0)
-                sample = on_device(held_out.sample, self._device)
-                display = self.picture(sample, held_out.gain).display.clamp(0.0, 1.0)
-                counted = sample.facade if bool(sample.facade.any()) else torch.ones_like(sample.facade)
-                errors = (display - display_of(sample))[counted].square()
-                squares, n_values = squares + float(errors.sum(dtype=torch.float64)), n_values + errors.numel()
-                if number == 0 and watching.preview is not None:
-                    watching.preview(Preview(at.step, (255.0 * display).round().to(torch.uint8).cpu().numpy()))
+        with self._watch.timing("look"):
+            at.history.append((at.spent_s, quality_db(self.shown, displayed, self._device)))
         self.model.train(was_training)
-        at.history.append((at.spent_s, psnr_db(squares / n_values)))
         if watching.trace is not None:
             watching.trace.record(at.history[-1][1])
 
@@ -307,7 +309,8 @@ class Trainer:
         if self._path is None or not self._ranks.is_first or not self._is_finite():
             return
         self.at.saved_at_s = self.at.spent_s
-        write_checkpoint(self._path, {"record": self._record, "training": self.state()})
+        with self._watch.timing("save"):
+            write_checkpoint(self._path, {"record": self._record, "training": self.state()})
 
     def state(self) -> dict[str, Any]:
         """All that the training is; what comes from the clock is seconds only."""

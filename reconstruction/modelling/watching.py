@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
+from torch import Tensor
 
 from planning.progress import QUIET, Monitor, Stop, Trace, never
+from reconstruction.modelling.objective import display_of, on_device
 from reconstruction.modelling.photo_stream import Sample
+from reconstruction.scores.image_metrics import psnr_db
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,11 +58,36 @@ class Watching:
     preview: Callable[[Preview], None] | None = None
 
 
+@torch.no_grad()
+def quality_db(shown: Sequence[HeldOut], displayed: Callable[[HeldOut], Tensor], device: torch.device) -> float:
+    """PSNR, dB, of all shown views together, over their facades; over all of a view that has none.
+
+    Parameters
+    ----------
+    displayed
+        A view as the model shows it, sRGB, 0 to 1, shape (h, w, 3).
+    """
+    squares, n_values = 0.0, 0
+    for held_out in shown:
+        sample = on_device(held_out.sample, device)
+        counted = sample.facade if bool(sample.facade.any()) else torch.ones_like(sample.facade)
+        errors = (displayed(held_out) - display_of(sample))[counted].square()
+        squares, n_values = squares + float(errors.sum(dtype=torch.float64)), n_values + errors.numel()
+    return psnr_db(squares / n_values)
+
+
 @dataclass(slots=True, eq=False)
 class Progress:
-    """Where a training stands; what a checkpoint has besides tensors."""
+    """Where a training stands; what a checkpoint has besides tensors.
+
+    Parameters
+    ----------
+    scored_step
+        At which the quality was measured last.
+    """
 
     step: int = 0
+    scored_step: int = -1
     spent_s: float = 0.0
     factor: float = 1.0
     n_undone: int = 0

@@ -97,6 +97,7 @@ def choose_light(
     config: ReflectionConfig,
     monitor: Monitor = QUIET,
     clock: Clock = time.process_time,
+    device: str = "cpu",
 ) -> tuple[ModelName, tuple[Decision, ...]]:
     """Try the models on some rays, and decide which one is trained.
 
@@ -107,6 +108,8 @@ def choose_light(
         chosen without a decision.
     clock
         Processor time, so that what else the machine does changes no decision.
+    device
+        Of torch, where they learn.
 
     Raises
     ------
@@ -121,7 +124,9 @@ def choose_light(
     found = []
     for done, model in enumerate(TRIED):
         monitor.report("choosing a model of mirrored light", done, len(TRIED))
-        found.append(_tried(model, seen, planes, config, monitor, clock))
+        # In a program's first run kernels are compiled here, which takes longer than a trial and tells nothing of it.
+        _tried(model, seen, planes, replace(config, steps=1, time_limit_s=None), monitor, clock, device)
+        found.append(_tried(model, seen, planes, config, monitor, clock, device))
     slow, far, near = (psnr_db(mean_square_error(trained.panels, unseen)) for trained in found)
     whole = config.steps_for(len(rays)) * config.batch / (found[1].n_steps * found[1].config.batch)
     return chosen(Trials((slow, far, near), found[1].seconds * whole))
@@ -148,7 +153,13 @@ def _split(rays: GlassRays, seed: int) -> tuple[GlassRays, GlassRays]:
 
 
 def _tried(
-    model: ModelName, seen: GlassRays, planes: PanelPlanes, config: ReflectionConfig, monitor: Monitor, clock: Clock
+    model: ModelName,
+    seen: GlassRays,
+    planes: PanelPlanes,
+    config: ReflectionConfig,
+    monitor: Monitor,
+    clock: Clock,
+    device: str,
 ) -> TrainedReflections:
     limit_s = None if config.time_limit_s is None else SHARE * config.time_limit_s
     grid = replace(config.grid, most_cells=min(TRIED_CELLS, config.grid.most_cells), levels=2)
@@ -166,4 +177,4 @@ def _tried(
         time_limit_s=limit_s,
         high_frequency=(),
     )
-    return train_reflections(seen, planes, model, trial, monitor=monitor, clock=clock)
+    return train_reflections(seen, planes, model, trial, monitor=monitor, clock=clock, device=device)

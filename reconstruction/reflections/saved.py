@@ -13,6 +13,7 @@ from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from planning.errors import InputError
+from planning.folders import make_folder
 from planning.json_file import expect_format, read_json, to_record, write_atomically
 from planning.progress import QualityPoint
 from reconstruction.reflections.config import Precision, ReflectionConfig
@@ -42,6 +43,7 @@ class _Saved:
     history: tuple[QualityPoint, ...]
     health: MlpHealth | None
     box: GridBox | None = None
+    notes: tuple[str, ...] = ()
 
 
 def save_reflections(trained: TrainedReflections, folder: Path) -> None:
@@ -52,10 +54,7 @@ def save_reflections(trained: TrainedReflections, folder: Path) -> None:
     InputError
         They cannot be written.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder}: cannot be made ({error.strerror or error}); name another folder") from error
+    make_folder(folder)
     weights = {name: value.detach().numpy() for name, value in trained.panels.state_dict().items()}
     write_atomically(folder / WEIGHTS, save(weights))
     content = {
@@ -71,6 +70,7 @@ def save_reflections(trained: TrainedReflections, folder: Path) -> None:
         "history": [asdict(point) for point in trained.history],
         "health": None if trained.health is None else asdict(trained.health),
         "box": None if trained.box is None else asdict(trained.box),
+        "notes": list(trained.notes),
     }
     write_atomically(folder / DESCRIPTION, json.dumps(content, indent=1, allow_nan=False).encode())
 
@@ -116,6 +116,7 @@ def read_reflections(folder: Path) -> TrainedReflections:
         saved.seconds,
         saved.history,
         saved.health,
+        saved.notes,
     )
 
 

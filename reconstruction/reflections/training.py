@@ -7,13 +7,11 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
-from typing import Any
+from functools import cache, partial
 
 import torch
 from torch import Tensor
 
-from planning.errors import ReconstructionError
 from planning.progress import QUIET, Clock, Monitor, QualityPoint
 from reconstruction.reflections.config import Precision, ReflectionConfig
 from reconstruction.reflections.environment_map import EnvironmentMap
@@ -22,7 +20,7 @@ from reconstruction.reflections.glass_light import GlassLight, LightModel
 from reconstruction.reflections.glass_rays import GlassRays
 from reconstruction.reflections.grid_box import GridBox, box_of
 from reconstruction.reflections.harmonics import MAX_DEGREE, HarmonicTexture
-from reconstruction.reflections.losses import ray_errors, ray_loss
+from reconstruction.reflections.light_training import Keeping, LightTraining, on_device
 from reconstruction.reflections.photo_set import PanelPlanes
 from reconstruction.reflections.radiance_grid import RadianceGrid
 from reconstruction.reflections.reflection_mlp import MlpHealth, MlpShape, ReflectionMlp
@@ -47,9 +45,6 @@ MEANT = 1 << 20
 WORTH_IT = 1.3
 """How much faster bfloat16 must be: it costs under 0.1 dB, and where a processor lacks it, it is slower."""
 
-BETAS = (0.9, 0.99)
-"""Of Adam; the second is shorter than usual, as batches are large and trainings short."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrainedReflections:
@@ -66,11 +61,13 @@ class TrainedReflections:
     precision
         What was used.
     n_rays, n_steps, seconds
-        Learned from, taken, and needed.
+        Learned from, taken, and needed, looking at the quality left out.
     history
         PSNR, dB, on rays that were not learned from, by seconds of training; empty where none were given.
     health
         Of an MLP, on rays learned from; None for other models.
+    notes
+        What had to be survived on the way.
     """
 
     panels: ReflectivePanels
@@ -84,6 +81,7 @@ class TrainedReflections:
     seconds: float
     history: tuple[QualityPoint, ...]
     health: MlpHealth | None
+    notes: tuple[str, ...] = ()
 
     @property
     def box(self) -> GridBox | None:
@@ -101,6 +99,8 @@ def train_reflections(
     unseen: GlassRays | None = None,
     monitor: Monitor = QUIET,
     clock: Clock = time.perf_counter,
+    keeping: Keeping | None = None,
+    device: str = "cpu",
 ) -> TrainedReflections:
     """Train a model on rays.
 
@@ -108,35 +108,57 @@ def train_reflections(
     ----------
     unseen
         Rays of views that are not learned from, for the history; nothing is chosen by them.
+    keeping
+        How its state is kept, and which one it goes on from: one of the same rays, model and settings.
+    device
+        Of torch, where it learns; the panels come back on the processor.
 
     Raises
     ------
     ReconstructionError
-        The loss is not a number any more; the message says from which step on.
+        It came to nothing: the loss is not a number, or there is no memory; the message says from which step on.
     OperationCancelled
         From `monitor`.
+    ValueError
+        There are no rays, or the state to go on from is that of another training.
     """
     if not len(rays):
         raise ValueError("rays: expected at least one")
     precision = config.precision
-    if precision == "auto":
+    if precision == "auto" and (keeping is None or keeping.before is None):
         precision = faster_precision(config.mlp, config.batch, config.threads) if model == "mlp" else "float32"
     checked = _sample(unseen, CHECKED, config.seed) if unseen is not None and len(unseen) else None
     settings = config.for_grid if model == "radiance-grid" else config
     with _threads(config.threads):
         generator = torch.Generator().manual_seed(config.seed)
-        panels = new_panels(rays, planes, model, config, generator)
-        started_s = clock()
-        history, n_steps = _train(panels, rays, settings, precision, generator, checked, monitor, clock)
-        seconds = clock() - started_s
-        panels.eval()
+        begun = new_panels(rays, planes, model, config, generator)
+        training = LightTraining(begun, rays, settings, precision, generator, keeping, device, clock)
+        quality = None if checked is None else partial(_quality, on_device(checked, training.device))
+        training.run(quality, max(1, training.n_steps // HISTORY_POINTS), monitor)
+        panels, at = training.panels, training.at
         health = None
         if panels.light is not None and isinstance(panels.light.light, ReflectionMlp):
             some = _sample(rays, CHECKED, config.seed).middle()
             health = panels.light.light.health(some.points, some.omega_r)
+    history = tuple(QualityPoint(t_s, value) for t_s, value in at.history)
     return TrainedReflections(
-        panels, model, config, planes, exposure, precision, len(rays), n_steps, seconds, tuple(history), health
+        panels,
+        model,
+        config,
+        planes,
+        exposure,
+        training.precision,
+        len(rays),
+        at.step,
+        at.spent_s,
+        history,
+        health,
+        tuple(at.notes),
     )
+
+
+def _quality(rays: GlassRays, panels: ReflectivePanels) -> float:
+    return psnr_db(mean_square_error(panels, rays))
 
 
 def new_panels(
@@ -194,74 +216,6 @@ def untrained_panels(
     diffuse = (DIFFUSE_SHARE * means / (1.0 - REFLECTIVITY)).clamp(0.01, 0.99)
     glass = GlassLight(light, planes, config.learned or learned, n_photos)
     return ReflectivePanels(HarmonicTexture(corners, places, diffuse, degree), glass)
-
-
-def _train(
-    panels: ReflectivePanels,
-    rays: GlassRays,
-    config: ReflectionConfig,
-    precision: Precision,
-    generator: torch.Generator,
-    checked: GlassRays | None,
-    monitor: Monitor,
-    clock: Clock,
-) -> tuple[list[QualityPoint], int]:
-    """History and steps taken; time spent on the history does not count."""
-    optimiser = _optimiser(panels, config)
-    history: list[QualityPoint] = []
-    n_steps = config.steps_for(len(rays))
-    every, spent_s, step = max(1, n_steps // HISTORY_POINTS), 0.0, 0
-    limit_s = math.inf if config.time_limit_s is None else config.time_limit_s
-    while step < n_steps and spent_s < limit_s:
-        monitor.report("learning reflections", step, n_steps)
-        begun_s = clock()
-        progress = max(step / n_steps, spent_s / limit_s)
-        for group in optimiser.param_groups:
-            group["lr"] = group["rate"] * config.rate(step, progress)
-        batch = rays[torch.randint(len(rays), (config.batch,), generator=generator)]
-        with torch.autocast("cpu", torch.bfloat16, enabled=precision == "bfloat16"):
-            colours = panels(batch, generator=generator)
-        loss = ray_loss(ray_errors(colours, batch.display), config.stage(progress))
-        more = panels.light.regulariser(config, step) if panels.light is not None else None
-        loss = loss if more is None else loss + more
-        if not bool(torch.isfinite(loss)):
-            raise ReconstructionError(
-                f"learning reflections failed: the loss is not a number at step {step + 1} of {n_steps}; "
-                "lower the learning rates"
-            )
-        optimiser.zero_grad(set_to_none=True)
-        loss.backward()  # type: ignore[no-untyped-call]
-        optimiser.step()
-        step += 1
-        if panels.light is not None and panels.light.after_step(config, step - 1, max(step / n_steps, progress)):
-            optimiser = _optimiser(panels, config, optimiser)
-        spent_s += clock() - begun_s
-        is_last = step == n_steps or spent_s >= limit_s
-        if checked is not None and (step % every == 0 or is_last):
-            panels.eval()
-            history.append(QualityPoint(spent_s, psnr_db(mean_square_error(panels, checked))))
-            panels.train()
-    if panels.light is not None:
-        panels.light.finish(config)
-    return history, step
-
-
-def _optimiser(
-    panels: ReflectivePanels, config: ReflectionConfig, before: torch.optim.Adam | None = None
-) -> torch.optim.Adam:
-    """With what one `before` remembers of the parameters that are still there."""
-    own = [panels.corner_loss]
-    groups: list[dict[str, Any]] = [{"params": [*panels.diffuse.parameters()], "lr": config.table_rate}]
-    if panels.light is not None:
-        own += [panels.reflectivity, panels.base_reflectance]
-        groups += panels.light.parameter_groups(config)
-    groups.append({"params": own, "lr": config.panel_rate})
-    optimiser = torch.optim.Adam([{**group, "rate": group["lr"]} for group in groups], betas=BETAS, fused=True)
-    for group in optimiser.param_groups if before is not None else ():
-        for value in group["params"]:
-            if before is not None and value in before.state:
-                optimiser.state[value] = before.state[value]
-    return optimiser
 
 
 @torch.no_grad()

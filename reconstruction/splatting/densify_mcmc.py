@@ -106,8 +106,7 @@ class MarkovChain:
 
     def seen(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Add up whether splats show."""
-        if len(self._seen) != len(raster.weights):
-            self._seen = SeenSplats.nothing(len(raster.weights), raster.weights.device)
+        self._seen = self._seen.before(raster)
         self._seen.add(raster, None, view)
 
     def after_step(self, step: int, splats: Splats, optimiser: Optimizer, generator: torch.Generator) -> Change:

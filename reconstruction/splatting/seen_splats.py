@@ -55,6 +55,15 @@ class SeenSplats:
     def __len__(self) -> int:
         return len(self.pulls)
 
+    def before(self, raster: Raster) -> SeenSplats:
+        """What a picture is added to: these sums, or none yet where the number of splats has changed."""
+        device = raster.weights.device
+        if len(self) != len(raster.weights):
+            return SeenSplats.nothing(len(raster.weights), device)
+        if self.pulls.device == device:
+            return self
+        return SeenSplats(*(value.to(device) for value in self.tensors().values()))
+
     def add(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Take in a picture.
 

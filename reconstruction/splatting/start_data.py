@@ -1,4 +1,4 @@
-"""What is known of a scene before splats are learned: of a data set folder, or of a COLMAP model alone."""
+"""What is known of the scene of a data set folder before splats are learned."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from planning.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.site_file import read_site
+from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.record import ColmapModel
 from reconstruction.reflections.photo_set import PhotoSet
 from reconstruction.splatting.ply_file import read_blocks, read_header
 
 Array = NDArray[np.float64]
 
-POINTS = "points.ply"
+POINTS, MODEL = "points.ply", Path("sparse", "0")
 
 MESHES = ("refined.ply", "building.ply")
 """Of `prepare`, and of `scene render`; the first that is there is taken."""
@@ -53,11 +54,6 @@ class KnownScene:
     rgb: NDArray[np.uint8]
     ground_z_m: float | None = None
 
-    @classmethod
-    def of_points(cls, points_enu_m: Array, rgb: NDArray[np.uint8]) -> KnownScene:
-        """Points alone, of a COLMAP model for example."""
-        return cls(np.zeros((0, 4, 3)), empty_mesh(), points_enu_m, rgb)
-
 
 def model_origin(scene: KnownScene) -> Array:
     """Middle of the panels, else of the points, else of the mesh, shape (3,): the origin of the model's frame.
@@ -80,6 +76,8 @@ def model_origin(scene: KnownScene) -> Array:
 def known_scene(photo_set: PhotoSet) -> KnownScene:
     """Panels, mesh and points of a folder that `prepare` or `scene render` wrote; mesh and points may be missing.
 
+    Points are those of `points.ply`, else of the COLMAP model.
+
     Raises
     ------
     InputError
@@ -91,6 +89,8 @@ def known_scene(photo_set: PhotoSet) -> KnownScene:
     points, rgb = np.zeros((0, 3)), np.zeros((0, 3), np.uint8)
     if (folder / POINTS).is_file():
         points, rgb = read_points(folder / POINTS)
+    elif (folder / MODEL).is_dir():
+        points, rgb = colmap_points(read_model(folder / MODEL))
     return KnownScene(photo_set.panels.corners_enu_m, mesh, points, rgb, _ground_z_m(folder, mesh))
 
 
@@ -101,19 +101,11 @@ def _ground_z_m(folder: Path, mesh: TriangleMesh) -> float | None:
     return float(mesh.corners_enu_m[..., 2].min()) if len(mesh.triangles) else None
 
 
-def known_points(model: ColmapModel) -> KnownScene:
-    """Points of a COLMAP model, less those that fit their photos badly.
-
-    Raises
-    ------
-    InputError
-        It has none.
-    """
+def colmap_points(model: ColmapModel) -> tuple[Array, NDArray[np.uint8]]:
+    """Points, shape (n, 3), and their colours, shape (n, 3), of a model, less those that fit their photos badly."""
     points = model.points
     kept = points.errors_px <= WORST_PX
-    if not kept.any():
-        raise InputError("the COLMAP model has no points to start from; export it with its points3D file")
-    return KnownScene.of_points(points.xyz[kept], points.rgb[kept])
+    return points.xyz[kept], points.rgb[kept]
 
 
 def read_points(path: Path) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:

@@ -51,22 +51,31 @@ def test_a_model_is_trained_and_says_what_it_is(reflight, glass, tmp_path):
     assert "next: app.py score" in text.err
 
 
+class Cancelling:
+    """Cancels at the n-th report of a stage."""
+
+    def __init__(self, stage, n):
+        self.stage, self.left = stage, n
+
+    def report(self, stage, done, total):
+        self.left -= stage == self.stage
+        if self.left < 0:
+            raise OperationCancelled("enough")
+
+
+def cancelled(monkeypatch, reflight, stage, n, *arguments):
+    true = modelling.train_files
+    with monkeypatch.context() as patched:
+        patched.setattr(modelling, "train_files", lambda *a, **k: true(*a, **{**k, "monitor": Cancelling(stage, n)}))
+        return reflight("train", *arguments)
+
+
 def test_a_training_that_was_cancelled_goes_on(reflight, glass, tmp_path, monkeypatch):
     whole = tmp_path / "whole"
     assert reflight("train", glass / "data", "-o", whole, *quick(glass), "--method", "2dgs").status == 0
     out = tmp_path / "model"
-    true = modelling.train_files
-    left = [4]
-
-    class Cancelling:
-        def report(self, stage, done, total):
-            left[0] -= stage == "training"
-            if left[0] < 0:
-                raise OperationCancelled("enough")
-
-    with monkeypatch.context() as patched:
-        patched.setattr(modelling, "train_files", lambda *a, **k: true(*a, **{**k, "monitor": Cancelling()}))
-        done = reflight("train", glass / "data", "-o", out, *quick(glass), "--method", "2dgs")
+    arguments = (glass / "data", "-o", out, *quick(glass), "--method", "2dgs")
+    done = cancelled(monkeypatch, reflight, "training", 4, *arguments)
     assert done.status == 1
     assert "--resume goes on with it" in done.err
     assert [path.name for path in out.iterdir()] == ["checkpoint.safetensors"]
@@ -81,6 +90,22 @@ def test_a_training_that_was_cancelled_goes_on(reflight, glass, tmp_path, monkey
     weights = [next(folder.glob("weights-*")).read_bytes() for folder in (whole, out)]
     assert weights[0] == weights[1]
     assert "holds no training" in reflight("train", glass / "data", "-o", out, "--resume").error
+
+
+def test_cancelled_while_it_learns_light_alone_it_goes_on_too(reflight, glass, tmp_path, monkeypatch):
+    out, light = tmp_path / "model", ("--light", "environment-map")
+    done = cancelled(monkeypatch, reflight, "learning reflections", 3, glass / "data", "-o", out, *quick(glass), *light)
+    assert done.status == 1
+    assert "--resume goes on with it" in done.err
+    assert "go on with its training" in reflight("score", out, glass / "data").error
+    assert "leave --start out" in reflight("train", glass, "-o", out, "--resume", "--start", "a.ply").error
+    done = reflight("train", glass / "data", "-o", out, "--resume", "--json")
+    assert (done.json["light"], done.json["iterations"]) == ("environment-map", 6)
+    # And from its splats another one begins.
+    again = reflight("train", glass / "data", "-o", out, *quick(glass), *light, "--start", out / "splats.ply", "--json")
+    assert again.json["splats"] >= done.json["splats"]
+    missing = reflight("train", glass / "data", "-o", out, *quick(glass), "--start", tmp_path / "none.ply")
+    assert "none.ply: cannot be read" in missing.error
 
 
 def test_views_are_rendered_with_their_layers(reflight, glass, tmp_path):

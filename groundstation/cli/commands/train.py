@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -34,12 +35,13 @@ examples:
   train tower.dataset -o tower.model --preset 1h --light mlp
   train tower.dataset -o splats.model --method 2dgs --iterations 3000 --json
   train tower.dataset -o tower.model --resume
+  train later.dataset -o later.model --start tower.model/splats.ply
 
 Several processes of one machine train together, each looking at other photos, when they are started by
   torchrun --nproc-per-node 4 app.py train tower.dataset -o tower.model
 """
 
-SETTINGS = ("preset", "light", "iterations", "time_budget", "seed", "settings")
+SETTINGS = ("preset", "light", "iterations", "time_budget", "seed", "settings", "start")
 """Options that a training begins with; one that is gone on with has them already."""
 
 
@@ -59,10 +61,11 @@ def add_parser(subparsers: Any) -> None:
     add("--method", choices=METHODS, help=f"splats with mirrored light, or splats alone (default {METHODS[0]})")
     add("--preset", choices=tuple(PRESETS), help="how long one can wait (default 10min)")
     add("--iterations", type=count, metavar="N", help="steps, whatever time they take, instead of the preset's")
-    add("--time-budget", type=above_zero, metavar="S", help="end after so many seconds of training")
+    add("--time-budget", type=above_zero, metavar="S", help="end after so many seconds, all in all")
     add("--light", choices=LIGHTS, help="what mirrored light is learned with (default auto)")
     add("--seed", type=int, metavar="N", help="of everything random (default 0)")
     add("--settings", type=Path, metavar="FILE", help="TOML file with settings that differ from the preset's")
+    add("--start", type=Path, metavar="PLY", help="splats to start from, instead of new ones")
     add("--resume", action="store_true", help="go on with a training that was interrupted")
     add("--preview", type=Path, metavar="PNG", help="picture of a held-out view, written anew as the training goes on")
     add("--json", action="store_true", help="print one JSON object instead of text")
@@ -70,6 +73,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Train and print; returns the exit status."""
+    begun_s = time.perf_counter()
     from groundstation.cli.console import print_json, run_job
     from groundstation.services.modelling import preview_to, train_files, train_summary
 
@@ -91,6 +95,7 @@ def run(options: argparse.Namespace) -> int:
                 stop=context.stop,
                 trace=context.trace,
                 monitor=context,
+                begun_s=begun_s,
             ),
         )
     except (KeyboardInterrupt, OperationCancelled):
@@ -119,6 +124,7 @@ def wish_of(options: argparse.Namespace) -> TrainWish:
         options.time_budget,
         None if options.seed is None else checked_seed(options.seed),
         options.settings,
+        options.start,
     )
 
 

@@ -13,6 +13,7 @@ from reconstruction.modelling.checkpoints import read_checkpoint
 from reconstruction.modelling.config import LossWeights, TrainConfig
 from reconstruction.modelling.photo_stream import PhotoStream, StreamSettings
 from reconstruction.modelling.start import start_model
+from reconstruction.modelling.stopwatch import Stopwatch
 from reconstruction.modelling.strategies import strategy_of
 from reconstruction.modelling.trainer import MOST_HALVINGS, Trainer
 from reconstruction.modelling.watching import HeldOut, Watching
@@ -36,14 +37,22 @@ TINY = ReflectionConfig(
 
 
 class FakeClock:
-    """Goes on by a second whenever it is asked."""
+    """Stands still but for what is put on it."""
 
     def __init__(self):
-        self.now = 0.0
+        self.now = 100.0
 
     def __call__(self):
-        self.now += 1.0
         return self.now
+
+    def lasting(self, seconds, true=lambda *_: None):
+        """A function, and the time that it takes."""
+
+        def done(*arguments):
+            self.now += seconds
+            return true(*arguments)
+
+        return done
 
 
 class Cancelling:
@@ -244,8 +253,20 @@ def test_other_errors_are_not_swallowed(make, monkeypatch):
         trainer._survived_step()
 
 
-def test_time_limits_end_it_with_rates_at_their_last(make):
-    trainer = make(replace(CONFIG, iterations=10_000, time_limit_s=7.5), clock=FakeClock())
+def timed(make, monkeypatch, limit_s, step_s=1.0, look_s=0.0, save_s=0.0, before_s=0.0):
+    """A training whose parts take known times, and its clock, which began at 100 s."""
+    clock = FakeClock()
+    trainer = make(
+        replace(CONFIG, iterations=10_000, time_limit_s=limit_s), "c", watch=Stopwatch(clock, 100.0 - before_s)
+    )
+    monkeypatch.setattr(trainer, "step", clock.lasting(step_s, trainer.step))
+    monkeypatch.setattr(trainer_module, "quality_db", clock.lasting(look_s, lambda *_: 20.0))
+    monkeypatch.setattr(trainer_module, "write_checkpoint", clock.lasting(save_s))
+    return trainer, clock
+
+
+def test_time_limits_end_it_with_rates_at_their_last(make, monkeypatch):
+    trainer, _ = timed(make, monkeypatch, 8.0)
     trainer.run(Watching())
     assert trainer.at.step == 8
     full = {group["name"]: group["full"] for group in trainer.optimiser.param_groups}
@@ -253,10 +274,29 @@ def test_time_limits_end_it_with_rates_at_their_last(make):
     assert lr["colours"] < 0.3 * full["colours"]
 
 
-def test_what_went_before_counts_for_the_time_limit(make):
-    trainer = make(replace(CONFIG, iterations=10_000, time_limit_s=7.5), clock=FakeClock(), spent_s=5.0)
+def test_what_went_before_counts_for_the_time_limit(make, monkeypatch):
+    trainer, _ = timed(make, monkeypatch, 8.0, before_s=5.0)
     trainer.run(Watching())
     assert trainer.at.step == 3
+
+
+def test_looks_and_files_count_for_the_time_limit_and_have_time_in_the_end(make, monkeypatch):
+    trainer, clock = timed(make, monkeypatch, 60.0, look_s=4.0, save_s=3.0)
+    trainer.save()
+    trainer.run(Watching())
+    # The model is written now, for up to twice as long as a checkpoint.
+    assert clock.now == 160.0 - 2 * 3.0
+    assert trainer.at.spent_s == 54.0
+    assert trainer.at.step == 54 - 3 - 2 * 4
+
+
+def test_pauses_do_not_count(make, monkeypatch):
+    trainer, clock = timed(make, monkeypatch, 8.0)
+    monkeypatch.setattr(trainer_module.time, "sleep", lambda _: clock.lasting(50.0)())
+    answers = iter([True, True, False] + [False] * 99)
+    trainer.run(Watching(pause=lambda: next(answers)))
+    assert trainer.at.step == 8
+    assert trainer.at.spent_s == 8.0
 
 
 def test_stopped_it_is_what_it_is_then_and_paused_it_waits(make, monkeypatch):

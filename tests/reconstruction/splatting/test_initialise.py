@@ -3,7 +3,7 @@ import pytest
 import torch
 
 from planning.errors import InputError
-from planning.mesh import from_corners
+from planning.mesh import empty_mesh, from_corners
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.splatting.initialise import InitialParameters, initial_splats
 from reconstruction.splatting.rasteriser import rasterise
@@ -37,6 +37,10 @@ def photos_of(shift, n=5):
         position = shift + np.array((1.0 + number, -7.0, 1.5 + 0.3 * number))
         made.append(PosedPhoto(f"{number}.png", None, LENS, Pose.looking(position, 2.0 * (2 - number), 0.0)))
     return tuple(made)
+
+
+def of_points(points, rgb):
+    return KnownScene(np.zeros((0, 4, 3)), empty_mesh(), points, rgb)
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +138,7 @@ def test_without_points_photos_tell_the_colours(scene):
 
 def test_points_alone_are_a_scene_too(scene):
     known, photos, _ = scene
-    cloud = KnownScene.of_points(known.points_enu_m, known.rgb)
+    cloud = of_points(known.points_enu_m, known.rgb)
     found = initial_splats(cloud, photos, model_origin(cloud), InitialParameters(n_splats=400))
     assert 300 <= len(found) <= 400
     assert (found.panels == -1).all()
@@ -169,7 +173,7 @@ def test_panels_that_no_photo_faces_get_no_splats(scene):
 
 def test_more_than_photos_can_tell_apart_is_not_placed(scene):
     known, photos, _ = scene
-    cloud = KnownScene.of_points(known.points_enu_m[:50], known.rgb[:50])
+    cloud = of_points(known.points_enu_m[:50], known.rgb[:50])
     assert len(initial_splats(cloud, photos, model_origin(cloud), InitialParameters(n_splats=5000))) <= 50
 
 
@@ -198,12 +202,12 @@ def test_origins_come_from_panels_points_or_mesh():
     corners, mesh, shift = facade()
     none, grey = np.zeros((0, 3)), np.zeros((0, 3), np.uint8)
     assert np.allclose(model_origin(KnownScene(corners, mesh, none, grey)), shift + np.array((3, 0, 2)))
-    assert np.allclose(model_origin(KnownScene.of_points(np.ones((3, 3)), grey)), 1.0)
+    assert np.allclose(model_origin(of_points(np.ones((3, 3)), grey)), 1.0)
     assert np.allclose(
         model_origin(KnownScene(np.zeros((0, 4, 3)), mesh, none, grey)), shift + np.array((3, 0.01, 2)), atol=1.0
     )
     with pytest.raises(InputError, match="no panels, no mesh and no points"):
-        model_origin(KnownScene.of_points(none, grey))
+        model_origin(of_points(none, grey))
 
 
 def test_what_cannot_be_started_from_is_said(scene):
@@ -214,7 +218,7 @@ def test_what_cannot_be_started_from_is_said(scene):
     with pytest.raises(InputError, match="seen by one of the 1 photos"):
         initial_splats(known, away, model_origin(known))
     with pytest.raises(InputError, match="within 1000 m"):
-        initial_splats(KnownScene.of_points(known.points_enu_m, known.rgb), photos, np.array([1e6, 0.0, 0.0]))
+        initial_splats(of_points(known.points_enu_m, known.rgb), photos, np.array([1e6, 0.0, 0.0]))
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,14 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from planning.errors import InputError
 from planning.mesh import from_corners, write_mesh
-from reconstruction.colmap.record import NO_POINTS, ColmapModel, ColmapPoints
+from reconstruction.colmap.folder import write_model
+from reconstruction.colmap.record import ColmapModel, ColmapPoints
 from reconstruction.dataset.records import coloured_ply
 from reconstruction.reflections.photo_set import PanelPlanes, PhotoSet
 from reconstruction.splatting.ply_file import write_blocks
-from reconstruction.splatting.start_data import known_points, known_scene, read_points
+from reconstruction.splatting.start_data import known_scene, read_points
 
 XYZ = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
 RGB = np.array([[10, 20, 30], [40, 50, 60]], np.uint8)
@@ -62,14 +61,12 @@ def test_points_that_are_none_are_refused(tmp_path, names, value, message):
         known_scene(photo_set(tmp_path))
 
 
-def test_points_of_colmap_that_fit_badly_are_left_out():
-    points = ColmapPoints(
-        np.array([1, 2]), XYZ, RGB, np.array([0.5, 9.0]), np.zeros(3, np.int64), np.zeros((0, 2), np.int64)
-    )
-    found = known_points(ColmapModel({}, {}, points))
+def test_without_a_file_of_their_own_points_are_those_of_colmap_but_for_those_that_fit_badly(tmp_path):
+    tracks = np.zeros(3, np.int64), np.zeros((0, 2), np.int64)
+    points = ColmapPoints(np.array([1, 2]), XYZ, RGB, np.array([0.5, 9.0]), *tracks)
+    write_model(tmp_path / "sparse" / "0", ColmapModel({}, {}, points))
+    found = known_scene(photo_set(tmp_path))
     assert np.array_equal(found.points_enu_m, XYZ[:1])
     assert np.array_equal(found.rgb, RGB[:1])
-    with pytest.raises(InputError, match="has no points to start from"):
-        known_points(ColmapModel({}, {}, NO_POINTS))
-    with pytest.raises(InputError, match="has no points to start from"):
-        known_points(ColmapModel({}, {}, replace(points, errors_px=np.array([5.0, 9.0]))))
+    (tmp_path / "points.ply").write_bytes(coloured_ply(XYZ, RGB))
+    assert len(known_scene(photo_set(tmp_path)).points_enu_m) == 2
