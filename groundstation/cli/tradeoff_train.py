@@ -52,7 +52,7 @@ def run_train(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
     from groundstation.cli.options import checked_seed
-    from groundstation.services.modelling import TrainWish
+    from groundstation.services.model_training import TrainWish
     from groundstation.services.train_tradeoff import train_tradeoff
     from reconstruction.modelling.tradeoff import trial_rows
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.services.modelling import TrainWish, config_of_wish
+from groundstation.services.model_training import TrainWish, config_of_wish
 from groundstation.services.tradeoff import output_folder, write_results
 from planning.errors import InputError
 from planning.progress import QUIET, Monitor

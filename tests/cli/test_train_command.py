@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from groundstation.services import modelling
+from groundstation.services import model_training
 from planning.errors import OperationCancelled
 from reconstruction.modelling.layer_names import LAYERS
 from tests.reconstruction.modelling.made_data_set import write_data_set
@@ -21,8 +21,8 @@ def glass(tmp_path_factory):
     folder = tmp_path_factory.mktemp("train")
     write_data_set(folder / "data", n=8)
     (folder / "quick.toml").write_text(SETTINGS)
-    wish = modelling.TrainWish("smoke", "2dgs", iterations=8, settings=folder / "quick.toml")
-    modelling.train_files(folder / "data", folder / "model", wish)
+    wish = model_training.TrainWish("smoke", "2dgs", iterations=8, settings=folder / "quick.toml")
+    model_training.train_files(folder / "data", folder / "model", wish)
     return folder
 
 
@@ -64,9 +64,11 @@ class Cancelling:
 
 
 def cancelled(monkeypatch, reflight, stage, n, *arguments):
-    true = modelling.train_files
+    true = model_training.train_files
     with monkeypatch.context() as patched:
-        patched.setattr(modelling, "train_files", lambda *a, **k: true(*a, **{**k, "monitor": Cancelling(stage, n)}))
+        patched.setattr(
+            model_training, "train_files", lambda *a, **k: true(*a, **{**k, "monitor": Cancelling(stage, n)})
+        )
         return reflight("train", *arguments)
 
 

@@ -47,7 +47,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Render and print; returns the exit status."""
     from groundstation.cli.console import counted, print_json, run_job
-    from groundstation.services.modelling import RenderWish, render_files
+    from groundstation.services.model_rendering import RenderWish, render_files
 
     unknown = next((name for name in options.layers if name not in LAYERS), None)
     if unknown is not None:

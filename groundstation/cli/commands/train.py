@@ -13,7 +13,7 @@ from planning.errors import InputError, OperationCancelled
 from reconstruction.modelling.preset_names import LIGHTS, METHODS, PRESETS
 
 if TYPE_CHECKING:
-    from groundstation.services.modelling import TrainedFiles, TrainWish
+    from groundstation.services.model_training import TrainedFiles, TrainWish
 
 PRESET_LINES = "\n".join(f"  {name:<11} {text}" for name, text in PRESETS.items())
 
@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
     """Train and print; returns the exit status."""
     begun_s = time.perf_counter()
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.modelling import preview_to, train_files, train_summary
+    from groundstation.services.model_training import preview_to, train_files, train_summary
 
     wish = wish_of(options)
     given = [name for name in SETTINGS if getattr(options, name) is not None]
@@ -114,7 +114,7 @@ def run(options: argparse.Namespace) -> int:
 def wish_of(options: argparse.Namespace) -> TrainWish:
     """What the options ask for."""
     from groundstation.cli.options import checked_seed
-    from groundstation.services.modelling import DEFAULT_PRESET, TrainWish
+    from groundstation.services.model_training import DEFAULT_PRESET, TrainWish
 
     return TrainWish(
         options.preset or DEFAULT_PRESET,

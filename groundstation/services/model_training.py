@@ -1,12 +1,12 @@
-"""Use cases of the modelling: a data set to a model, a model to pictures, and how good they are."""
+"""Use case of training: a data set to a model."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from planning.errors import InputError
 from planning.folders import make_folder
@@ -14,15 +14,11 @@ from planning.json_file import check_output, write_atomically
 from planning.progress import QUIET, Monitor, Stop, Trace, never
 
 if TYPE_CHECKING:
-    from reconstruction.cameras import PosedPhoto
     from reconstruction.modelling.config import TrainConfig
     from reconstruction.modelling.ranks import Ranks
     from reconstruction.modelling.saved import TrainedModel
-    from reconstruction.modelling.score import ViewScores
     from reconstruction.modelling.stopwatch import Stopwatch
     from reconstruction.modelling.watching import Preview, Watching
-
-ViewChoice = Literal["held-out", "all"]
 
 DEFAULT_PRESET = "10min"
 
@@ -205,142 +201,3 @@ def train_summary(made: TrainedFiles) -> dict[str, Any]:
         "history": [{"t_s": round(point.t_s, 3), "psnr_db": round(point.value, 3)} for point in trained.history],
         "notes": list(trained.notes),
     }
-
-
-@dataclass(frozen=True, slots=True)
-class RenderWish:
-    """What is to be rendered.
-
-    Parameters
-    ----------
-    views
-        Data set folder or plan: where its cameras are.
-    layers
-        Of `LAYERS`, beside the pictures.
-    width_px
-        Of the pictures; None: as the views have them.
-    n_frames
-        Along a path through the views, in their order; None: the views themselves.
-    held_out_only
-        Of a data set's views only those that the model did not learn from.
-    """
-
-    views: Path
-    layers: tuple[str, ...] = ()
-    width_px: int | None = None
-    n_frames: int | None = None
-    held_out_only: bool = False
-
-
-def render_files(model: Path, wish: RenderWish, out: Path, monitor: Monitor = QUIET) -> tuple[Path, ...]:
-    """Render a model's views into a folder; the pictures written.
-
-    Raises
-    ------
-    InputError
-        Model or views cannot be read, or a file cannot be written.
-    """
-    from reconstruction.modelling import render
-    from reconstruction.modelling.camera_path import cameras_between
-    from reconstruction.modelling.saved import read_model
-
-    trained = read_model(model)
-    photos = _cameras(wish, trained)
-    if wish.n_frames is not None:
-        photos = cameras_between(photos, wish.n_frames)
-    return render.render_files(trained.model, photos, out, wish.layers, trained.record.config.raster, monitor)
-
-
-def _cameras(wish: RenderWish, trained: TrainedModel) -> tuple[PosedPhoto, ...]:
-    from groundstation.services.given_files import read_given_plan
-    from reconstruction.reflections.photo_set import read_photo_set
-    from reconstruction.scenes.flight_views import WIDTHS_PX, lens_of, planned_shots, posed_photos
-
-    if wish.width_px is not None and not WIDTHS_PX[0] <= wish.width_px <= WIDTHS_PX[1]:
-        raise InputError(f"--width: expected {WIDTHS_PX[0]} to {WIDTHS_PX[1]}, got {wish.width_px}")
-    if not wish.views.is_dir():
-        plan = read_given_plan(wish.views)
-        return posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), Path())
-    source = read_photo_set(wish.views)
-    held_out = trained.record.held_out
-    photos = source.named(held_out) if wish.held_out_only else source.photos
-    if not photos:
-        raise InputError(f"{wish.views}: has none of the views that the model did not learn from; leave --held-out out")
-    return photos if wish.width_px is None else tuple(_resized(photo, wish.width_px) for photo in photos)
-
-
-def _resized(photo: PosedPhoto, width_px: int) -> PosedPhoto:
-    lens = photo.intrinsics
-    return replace(photo, intrinsics=lens.scaled(width_px, max(1, round(width_px * lens.height_px / lens.width_px))))
-
-
-@dataclass(frozen=True, slots=True)
-class ScoredFiles:
-    """Scores of a model's views.
-
-    Parameters
-    ----------
-    lpips
-        What it was scored with; "" where no weights were given.
-    """
-
-    views: tuple[ViewScores, ...]
-    lpips: str
-
-
-def score_files(
-    model: Path,
-    dataset: Path,
-    choice: ViewChoice = "held-out",
-    lpips_paths: Sequence[Path] = (),
-    *,
-    with_fitted_gain: bool = False,
-    monitor: Monitor = QUIET,
-) -> ScoredFiles:
-    """Score a model's pictures against photos.
-
-    Parameters
-    ----------
-    lpips_paths
-        Weights for LPIPS, which the user supplies; without any it is left out.
-    with_fitted_gain
-        Fit the exposure of each view, to see what is left where it alone was wrong.
-
-    Raises
-    ------
-    InputError
-        Model, photos or weights cannot be read, or the photos are of another site.
-    """
-    from reconstruction.modelling.saved import read_model
-    from reconstruction.modelling.score import score_views
-    from reconstruction.reflections.photo_set import read_photo_set
-    from reconstruction.scores.lpips_weights import read_lpips_weights
-
-    trained = read_model(model)
-    source = read_photo_set(dataset)
-    names: Sequence[str] = trained.record.held_out
-    if choice == "all":
-        names = [photo.name for photo in source.photos]
-    perceptual = read_lpips_weights(lpips_paths) if lpips_paths else None
-    gain: Literal["none", "fitted"] = "fitted" if with_fitted_gain else "none"
-    scores = score_views(trained, source, names, perceptual, gain, monitor=monitor)
-    return ScoredFiles(scores, "" if perceptual is None else perceptual.description)
-
-
-def score_summary(scored: ScoredFiles) -> dict[str, Any]:
-    """For `--json`: means, worst views, and every view."""
-    from reconstruction.modelling.score import mean_of
-
-    scores = scored.views
-    found: dict[str, Any] = {"views": len(scores), "lpips_weights": scored.lpips or None}
-    for part in ("facade", "whole"):
-        parts = [getattr(score, part) for score in scores]
-        known = [one.psnr_db for one in parts if one.psnr_db is not None]
-        found[part] = {
-            "psnr_db": mean_of(one.psnr_db for one in parts),
-            "worst_psnr_db": min(known, default=None),
-            "ssim": mean_of(one.ssim for one in parts),
-            "lpips": mean_of(getattr(score, f"{part}_lpips") for score in scores),
-        }
-    found["each"] = [asdict(score) for score in scores]
-    return found
