@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from planning.jit import n_threads
 from reconstruction.cameras import PosedPhoto
+from reconstruction.scenes.mitsuba_trial import render_pixel, survives
 from reconstruction.scenes.record import Glass
 
 Array = NDArray[np.float64]
@@ -66,22 +67,15 @@ def _works(variant: str) -> bool:
     """Whether a pixel can be rendered; the variant gets its plugins then."""
     import mitsuba as mi
 
+    if variant.startswith("llvm") and not survives(variant):
+        return False
     try:
         mi.set_variant(variant)
-        _try_out(mi)
+        render_pixel(mi)
     except (ImportError, RuntimeError, AttributeError):
         return False
     _register(mi)
     return True
-
-
-def _try_out(mi: Any) -> None:
-    """Render a pixel."""
-    film = {"type": "hdrfilm", "width": 1, "height": 1}
-    scene = {"type": "scene", "sky": {"type": "constant"}, "sensor": {"type": "perspective", "film": film}}
-    picture = mi.render(mi.load_dict({**scene, "integrator": {"type": "direct"}}), spp=1)
-    if not np.isfinite(np.asarray(picture)).all():
-        raise RuntimeError("a pixel of the sky is not finite")
 
 
 @dataclass(frozen=True, slots=True)

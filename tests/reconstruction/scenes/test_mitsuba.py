@@ -32,6 +32,7 @@ from reconstruction.scenes.lens_effects import grey_levels
 from reconstruction.scenes.look import Look
 from reconstruction.scenes.mitsuba_plugins import SheetRole, mitsuba, sheet_shares
 from reconstruction.scenes.mitsuba_renderer import SAMPLES, MitsubaRenderer, renderer_of
+from reconstruction.scenes.mitsuba_trial import survives
 from reconstruction.scenes.optics import fresnel, pane_light
 from reconstruction.scenes.record import Body, Glass, Layer, Rgb, Scene, Sky, Texture
 from reconstruction.scenes.renderer import Renderer, RenderSettings
@@ -234,6 +235,11 @@ def test_without_mitsuba_it_is_said_how_to_get_it(monkeypatch: pytest.MonkeyPatc
     monkeypatch.undo()
     with pytest.raises(InputError, match="no_such_variant"):
         mitsuba("no_such_variant")
+
+
+def test_a_variant_that_ends_its_process_is_told_from_one_that_works() -> None:
+    assert survives("scalar_rgb")
+    assert not survives("no_such_variant")
 
 
 def test_settings_choose_the_renderer() -> None:
