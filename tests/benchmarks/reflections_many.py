@@ -28,7 +28,7 @@ MLP_DB, LONGEST_S = 3.0, 600.0
 
 LONGER = "environment-map, as many steps as the mlp"
 
-FULL = ReflectionConfig(mlp=MlpShape(256, 6, 8, 4), steps=4500, passes=60.0)
+FULL = ReflectionConfig(mlp=MlpShape(256, 6, 8, 4), steps=3500, passes=60.0)
 """Larger and longer than by default, as so many photos allow."""
 
 
@@ -74,7 +74,7 @@ def _course(folder: Path, seed: int, config: ReflectionConfig, short: Reflection
 BENCHMARK = Benchmark(
     "reflections-many",
     "Models of mirrored light with many photos",
-    f"As above with {N_VIEWS} photos, of which 340 are learned from. `mlp` is the Reflection MLP of 6 x 256 with 4500 "
+    f"As above with {N_VIEWS} photos, of which 340 are learned from. `mlp` is the Reflection MLP of 6 x 256 with 3500 "
     "steps; `environment-map` and `harmonics` are as by default.",
     measure,
 )
