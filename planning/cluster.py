@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -22,9 +23,15 @@ def cluster_client(address: str) -> Iterator[Any]:
         from distributed import Client
     except ImportError as error:
         raise InputError(f"a cluster ({address}) needs Dask: pip install 'reflight[cluster]'") from error
+    client = None
     try:
         client = Client(address, timeout="10s")
     except (OSError, ValueError, TimeoutError) as error:
-        raise InputError(f"no Dask scheduler answers at {address} ({error})") from error
+        reason = str(error)
+    if client is None:
+        # What is left of the client closes itself when it is collected, for which it takes a lock of Dask's: now, and
+        # not at any time, when another client may hold that lock and both would wait forever.
+        gc.collect()
+        raise InputError(f"no Dask scheduler answers at {address} ({reason})")
     with client:
         yield client

@@ -1,5 +1,6 @@
 """Sweeps give the same results here, on several processes and on a cluster."""
 
+import gc
 import math
 
 import pytest
@@ -47,3 +48,15 @@ def test_address_where_no_scheduler_answers_is_a_clear_error():
     pytest.importorskip("distributed")
     with pytest.raises(InputError, match="no Dask scheduler answers"):
         sweep(math.sqrt, ARGUMENTS, address="tcp://127.0.0.1:1")
+
+
+def test_nothing_of_a_client_that_found_no_scheduler_is_left_to_be_collected_later():
+    distributed = pytest.importorskip("distributed")
+    gc.disable()
+    try:
+        with pytest.raises(InputError, match="no Dask scheduler answers at nowhere"):
+            sweep(math.sqrt, ARGUMENTS, address="nowhere")
+        left = [each for each in gc.get_objects() if isinstance(each, distributed.Client)]
+    finally:
+        gc.enable()
+    assert all(each.status in ("closed", "newly-created") for each in left)
