@@ -61,7 +61,7 @@ def measure(context: Context) -> Iterator[Row]:
             found = [each.result() for each in short]
             beside = [each.result() for each in reversed(long)]
     for each in (*found, *beside):
-        yield from _rows(each, found[0])
+        yield _row(each, found[0], is_quick)
     panels = [*trial_panels([found[0], *beside]), *trial_panels(found)]
     draw("planar: facades of unseen views", panels, ERROR_AXIS, context.folder / "presets.png")
 
@@ -71,12 +71,16 @@ def trial(folder: Path, setting: Setting) -> Trial:
     return run_settings(folder, [setting], QUIET, time.process_time)[0]
 
 
+def _preset(is_quick: bool) -> str:
+    return "smoke" if is_quick else "10min"
+
+
 def _budget(config: TrainConfig, seconds: float) -> TrainConfig:
     return replace(config, time_limit_s=seconds, score_every_s=seconds / POINTS)
 
 
 def _settings(budget_s: float, is_quick: bool) -> list[Setting]:
-    base = _budget(preset("smoke" if is_quick else "10min"), budget_s)
+    base = _budget(preset(_preset(is_quick)), budget_s)
     if is_quick:
         return [*settings_of(base, {"reduce": (2,)})]
     # Both precisions are of the MLP: all other lights are float32.
@@ -85,7 +89,7 @@ def _settings(budget_s: float, is_quick: bool) -> list[Setting]:
 
 
 def _times(budget_s: float, is_quick: bool) -> list[Setting]:
-    name = "smoke" if is_quick else "10min"
+    name = _preset(is_quick)
     found = [
         Setting(f"preset {name}", f"{times * budget_s:g} s", _budget(preset(name), times * budget_s))
         for times in MORE_AND_LESS
@@ -96,14 +100,14 @@ def _times(budget_s: float, is_quick: bool) -> list[Setting]:
     return [*found, Setting(f"preset {HIGHER}", f"{longest:g} s", _budget(preset(HIGHER), longest))]
 
 
-def _rows(each: Trial, base: Trial) -> Iterator[Row]:
-    name = each.setting.name if each.setting.name != BASE else f"preset 10min = {base.seconds:.0f} s"
+def _row(each: Trial, base: Trial, is_quick: bool) -> Row:
+    name = each.setting.name if each.setting.name != BASE else f"preset {_preset(is_quick)} = {base.seconds:.0f} s"
     gained = each.facade_db - base.facade_db
     beside = (
         f"{gained:+.2f} dB; whole pictures {each.whole_db:.1f} dB, SSIM of facades {each.ssim or 0.0:.3f}; "
         f"{each.n_steps} steps, {each.n_splats} splats"
     )
-    yield Row("planar", f"{name}, facades of unseen views", round(each.facade_db, 2), "dB", None, beside)
+    return Row("planar", f"{name}, facades of unseen views", round(each.facade_db, 2), "dB", None, beside)
 
 
 BENCHMARK = Benchmark(

@@ -14,7 +14,7 @@ from planning.findings import Severity
 from tests.gui.driving import Answers, turn_until, turn_until_idle
 from tests.services.live_cases import Reopening, planned
 
-FEW = 100
+ONE_IN = 100
 """One turn of so many may be longer."""
 
 GAP_S = 0.05
@@ -131,7 +131,7 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
         application.processEvents()
         turns.append((time.perf_counter() - started, time.thread_time() - own))
         time.sleep(0.001)
-    longest = sorted(turns, reverse=True)[: len(turns) // FEW + 1]
+    longest = sorted(turns, reverse=True)[: len(turns) // ONE_IN + 1]
     assert longest[-1][0] < GAP_S, longest
     assert max(own for _, own in turns) < 2.0 * GAP_S, longest
     assert [state for _, state in page.strip.states()] == [ViewState.TAKEN] * 6
