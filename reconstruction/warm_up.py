@@ -70,8 +70,9 @@ def _draw_splats() -> None:
         splats.means, splats.quats, splats.scales, splats.opacities, splats.features(view.position_m, 3), view,
         labels=panels,
     )  # fmt: skip
+    solid = rasterise(splats.means, splats.quats, torch.full((2, 3), 0.3), splats.opacities, means, view)
     light = Sky(rows=4).behind(view.directions(), raster.alphas)
-    (raster.features.sum() + raster.depths.sum() + light.sum()).backward()  # type: ignore[no-untyped-call]
+    (raster.features.sum() + raster.depths.sum() + solid.depths.sum() + light.sum()).backward()  # type: ignore[no-untyped-call]
     directions = view.directions().reshape(-1, 3)
     EnvironmentMap(4, 0.5)(directions, directions).sum().backward()
 

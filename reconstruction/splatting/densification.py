@@ -15,8 +15,9 @@ import torch
 from torch import Tensor, nn
 from torch.optim import Optimizer
 
+from reconstruction.splatting.projection import rotations
 from reconstruction.splatting.raster import Raster
-from reconstruction.splatting.splats import SHAPES, Splats
+from reconstruction.splatting.splats import Splats
 from reconstruction.splatting.views import View
 
 CUT = 1.0 / 255.0
@@ -132,11 +133,19 @@ class FixedNumber:
 
 
 def keep_within(splats: Splats, limits: Limits) -> None:
-    """Bring sizes back within the limits, in place: the shorter side of a needle grows."""
+    """Bring sizes back within the limits, in place: the shorter side of a needle grows.
+
+    Of ellipsoids that is the middle one: flat ones are what surfaces are made of.
+    """
     sizes = splats.log_scales.data
     sizes.clamp_(math.log(limits.smallest_m), math.log(limits.largest_m))
     longest = sizes.max(dim=1, keepdim=True).values
-    torch.maximum(sizes, longest - math.log(limits.stretched), out=sizes)
+    least = longest - math.log(limits.stretched)
+    if splats.is_flat:
+        torch.maximum(sizes, least, out=sizes)
+        return
+    is_shortest = torch.zeros_like(sizes, dtype=torch.bool).scatter_(1, sizes.argmin(dim=1, keepdim=True), True)
+    sizes.copy_(torch.where(is_shortest, sizes, torch.maximum(sizes, least)))
 
 
 def n_dead(splats: Splats) -> int:
@@ -157,7 +166,7 @@ def rearrange(splats: Splats, optimiser: Optimizer, source: Tensor, is_new: Tens
         Shape (k,): those start without moments.
     """
     n = len(splats)
-    for name in SHAPES:
+    for name in splats.names:
         old = getattr(splats, name)
         # A new one: graphs that are still held know the old one by its shape.
         new = nn.Parameter(old.detach()[source])
@@ -183,19 +192,11 @@ def forget(splats: Splats, optimiser: Optimizer, names: tuple[str, ...], rows: T
                 value[rows] = 0.0
 
 
-def tangents(quats: Tensor) -> tuple[Tensor, Tensor]:
-    """Unit tangents t_u and t_v, each shape (n, 3), of quaternions w, x, y, z of any length but zero."""
-    w, x, y, z = (quats / quats.norm(dim=-1, keepdim=True).clamp(min=1e-6)).unbind(dim=-1)
-    first = torch.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], dim=-1)
-    second = torch.stack([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], dim=-1)
-    return first, second
+def within(splats: Splats, rows: Tensor, steps: Tensor) -> Tensor:
+    """Displacements, shape (k, 3), of steps along the axes of splats `rows`, in standard deviations, shape (k, 2 or 3).
 
-
-def in_plane(splats: Splats, rows: Tensor, steps: Tensor) -> Tensor:
-    """Displacements, shape (k, 3), within the planes of splats `rows`, of steps in standard deviations, shape (k, 2).
-
-    So what is put beside a splat of a pane is on the pane.
+    So what is put beside a disc of a pane is on the pane.
     """
-    first, second = tangents(splats.quats.data[rows])
     lengths = steps * torch.exp(splats.log_scales.data[rows])
-    return lengths[:, :1] * first + lengths[:, 1:] * second
+    axes = rotations(splats.quats.data[rows])[..., : lengths.shape[1]]
+    return (axes * lengths[:, None, :]).sum(dim=-1)

@@ -21,14 +21,14 @@ from reconstruction.splatting.densification import (
     Change,
     Limits,
     forget,
-    in_plane,
     keep_within,
     n_dead,
     rearrange,
+    within,
 )
 from reconstruction.splatting.raster import Raster
 from reconstruction.splatting.seen_splats import SeenSplats
-from reconstruction.splatting.splats import SHAPES, Splats, logit
+from reconstruction.splatting.splats import Splats, logit
 from reconstruction.splatting.views import View
 
 APART, CHILD, SHARE = 0.6, 0.77, 0.7
@@ -170,32 +170,32 @@ class AdaptiveControl:
 
 
 def _split(splats: Splats, optimiser: Optimizer, first: Tensor, second: Tensor) -> None:
-    """Let two equal splats be the halves of what they were, along its longer axis, in its plane."""
+    """Let two equal splats be the halves of what they were, along its longest axis."""
     if not len(first):
         return
-    is_u = splats.log_scales.data[first, 0] >= splats.log_scales.data[first, 1]
-    steps = APART * torch.stack([is_u, ~is_u], dim=1).to(splats.means)
-    displacement = in_plane(splats, first, steps)
+    sizes = splats.log_scales.data[first]
+    longest = sizes.argmax(dim=1)
+    steps = APART * torch.nn.functional.one_hot(longest, sizes.shape[1]).to(splats.means)
+    displacement = within(splats, first, steps)
     splats.means.data[first] += displacement
     splats.means.data[second] -= displacement
-    longer = torch.where(is_u, 0, 1)
     opacity = logit(SHARE * splats.opacities.detach()[first])
     for rows in (first, second):
-        splats.log_scales.data[rows, longer] += math.log(CHILD)
+        splats.log_scales.data[rows, longest] += math.log(CHILD)
         splats.opacity_logits.data[rows] = opacity
-    forget(splats, optimiser, tuple(SHAPES), first)
+    forget(splats, optimiser, splats.names, first)
 
 
 def _clone(splats: Splats, optimiser: Optimizer, first: Tensor, second: Tensor, generator: torch.Generator) -> None:
-    """Put two equal splats beside each other, in their plane; both together cover what one did.
+    """Put two equal splats beside each other, along their axes; both together cover what one did.
 
     The integral of 1 - (1 - a G)^2 over the plane of a disc G is that of alpha G for 2 a - a^2 / 2 = alpha. (With
     1 - (1 - a)^2 = alpha only the middle keeps its opacity, and the disc becomes wider.)
     """
     if not len(first):
         return
-    steps = CLONE_APART * torch.randn(len(first), 2, generator=generator).to(splats.means)
-    displacement = in_plane(splats, first, steps)
+    steps = CLONE_APART * torch.randn(len(first), splats.log_scales.shape[1], generator=generator).to(splats.means)
+    displacement = within(splats, first, steps)
     splats.means.data[first] += displacement
     splats.means.data[second] -= displacement
     shared = logit(2.0 - torch.sqrt(4.0 - 2.0 * splats.opacities.detach()[first]))

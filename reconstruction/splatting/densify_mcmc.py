@@ -21,14 +21,14 @@ from reconstruction.splatting.densification import (
     Change,
     Limits,
     forget,
-    in_plane,
     keep_within,
     n_dead,
     rearrange,
+    within,
 )
 from reconstruction.splatting.raster import Raster
 from reconstruction.splatting.seen_splats import SeenSplats
-from reconstruction.splatting.splats import SHAPES, Splats, logit
+from reconstruction.splatting.splats import Splats, logit
 from reconstruction.splatting.views import View
 
 MOST_COPIES = 50
@@ -102,7 +102,7 @@ class MarkovChain:
         opacities, sizes = splats.opacities.detach(), splats.scales.detach()
         slopes = opacities * (1.0 - opacities)
         _add_gradient(splats.opacity_logits, chosen.opacity_weight / n * slopes)
-        _add_gradient(splats.log_scales, chosen.size_weight / (2 * n) * sizes / sizes.median())
+        _add_gradient(splats.log_scales, chosen.size_weight / sizes.numel() * sizes / sizes.median())
 
     def seen(self, raster: Raster, screen_gradients: Tensor | None, view: View) -> None:
         """Add up whether splats show."""
@@ -149,15 +149,15 @@ class MarkovChain:
         for rows, which in ((shared, lookup[shared]), (vacant, lookup[hosts])):
             splats.opacity_logits.data[rows] = logit(opacity)[which]
             splats.log_scales.data[rows] = torch.log(size)[which]
-        forget(splats, optimiser, tuple(SHAPES), shared)
+        forget(splats, optimiser, splats.names, shared)
         keep_within(splats, self.limits)
         return Change(n_relocated=int(dead.sum()), n_added=n_added, n_dead=n_dead(splats))
 
     def _jitter(self, splats: Splats, generator: torch.Generator) -> None:
         gates = torch.sigmoid(GATE_SLOPE * (GATE_AT - splats.opacities.detach()))
         rows = torch.nonzero(gates > LEAST_GATE)[:, 0]
-        steps = torch.randn(len(rows), 2, generator=generator).to(splats.means)
-        splats.means.data[rows] += in_plane(splats, rows, self.parameters.noise * gates[rows, None] * steps)
+        steps = torch.randn(len(rows), splats.log_scales.shape[1], generator=generator).to(splats.means)
+        splats.means.data[rows] += within(splats, rows, self.parameters.noise * gates[rows, None] * steps)
 
     def state_dict(self) -> dict[str, Tensor]:
         """Sums since the last change."""
@@ -173,12 +173,13 @@ def shared_out(opacities: Tensor, sizes: Tensor, copies: Tensor) -> tuple[Tensor
 
     Opacity: 1 - (1 - a)^N = alpha (Kheradmand et al., 2024, Eq. 8). Size: what a disc covers, the integral of its
     opacity over its plane, stays. That of N discs one behind the other is 2 pi s_u s_v sum_{i=1}^N (1 - (1 - a)^i) / i:
-    the paper's Eq. 9 with areas in place of lengths, its inner sum in closed form.
+    the paper's Eq. 9 with areas in place of lengths, its inner sum in closed form. Of an ellipsoid a camera sees a
+    disc, too, whose area goes with the square of all its sizes.
 
     Parameters
     ----------
     opacities, sizes, copies
-        alpha, shape (n,); s_u and s_v, shape (n, 2); N, shape (n,), at least 1.
+        alpha, shape (n,); sizes along the axes, shape (n, 2 or 3); N, shape (n,), at least 1.
     """
     copies = copies.clamp(1, MOST_COPIES)
     shared = 1.0 - (1.0 - opacities.clamp(max=1.0 - 1e-6)) ** (1.0 / copies)

@@ -1,27 +1,29 @@
-"""The rasteriser for CUDA: gsplat's 2DGS kernels (Apache-2.0, extra `cuda`), with what they lack made from channels.
+"""The rasteriser for CUDA: gsplat's kernels (Apache-2.0, extra `cuda`), with what they lack made from channels.
 
 gsplat's own depth is that of splats' middles, centimetres off on a plane seen at an angle. Here each splat's normal and
 the distance of its plane are blended as four more channels, and the depth is where the pixel's ray meets the blended
 plane. It is exact on planes; across an edge it is that of a plane between the two.
 
+Ellipsoids are drawn by its 3DGS kernels, with the depth of the middle as one more channel.
+
 Differences from the other rasterisers that its compiled kernels fix: alpha up to 0.999, the splat that would close a
-pixel is left out, the low-pass filter lies in the middle of the splat's box, splats end at three standard deviations,
-and gradients are added up in any order. Settings other than `low_pass_px`, `min_alpha` and `near_m` have no effect; the
-first two cannot be changed.
+pixel is left out, the low-pass filter lies in the middle of the disc's box, discs end at three standard deviations, and
+gradients are added up in any order. Settings other than `low_pass_px`, `blur_px`, `min_alpha` and `near_m` have no
+effect; the first and the third cannot be changed.
 """
 
 from __future__ import annotations
 
 import importlib.util
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
 
 from planning.errors import InputError
-from reconstruction.splatting.projection import rotations
-from reconstruction.splatting.raster import Raster, RasterSettings
+from reconstruction.splatting.projection import depths_of, rotations
+from reconstruction.splatting.raster import SOLID, Raster, RasterSettings
 from reconstruction.splatting.views import View
 
 Blend = Callable[[Tensor], Tensor]
@@ -33,6 +35,32 @@ LABELS_AT_ONCE = 32
 
 LEAST_COSINE = 1e-3
 """Between a ray and the blended plane: seen flatter, the plane's depth says nothing."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Seen:
+    """Splats as gsplat projects them, each with one camera in front.
+
+    Parameters
+    ----------
+    radii_px, centres_px, depths_m
+        Shapes (1, n, 2), (1, n, 2) and (1, n).
+    shapes
+        Ray transforms of discs, shape (1, n, 3, 3), or conics of ellipsoids, shape (1, n, 3).
+    normals
+        Of discs, shape (1, n, 3).
+    """
+
+    radii_px: Tensor
+    centres_px: Tensor
+    depths_m: Tensor
+    shapes: Tensor
+    normals: Tensor | None
+
+    def detached(self) -> _Seen:
+        """Without gradients."""
+        normals = None if self.normals is None else self.normals.detach()
+        return _Seen(self.radii_px, self.centres_px.detach(), self.depths_m.detach(), self.shapes.detach(), normals)
 
 
 def why_not_gsplat() -> str:
@@ -72,50 +100,91 @@ def rasterise_gsplat(
     usual = RasterSettings()
     if (settings.low_pass_px, settings.min_alpha) != (usual.low_pass_px, usual.min_alpha):
         raise ValueError(f"low_pass_px, min_alpha: gsplat has {usual.low_pass_px} and {usual.min_alpha} compiled in")
-    from gsplat import fully_fused_projection_2dgs
-
-    camera = view.cam_from_world.to(means)
     lens = means.new_tensor([[view.fx_px, 0.0, view.cx_px], [0.0, view.fy_px, view.cy_px], [0.0, 0.0, 1.0]])
-    thickness = torch.ones_like(scales[:, :1])
-    radii, centres, depths, transforms, normals = fully_fused_projection_2dgs(
-        means, quats_wxyz, torch.cat([scales, thickness], dim=1), camera[None], lens[None],
-        view.width_px, view.height_px, near_plane=settings.near_m,
-    )  # fmt: skip
+    if scales.shape[1] == SOLID:
+        projected = _projected_ellipsoids(means, quats_wxyz, scales, view, lens, settings)
+        depths = depths_of(means, view)[:, None]
+    else:
+        projected = _projected_discs(means, quats_wxyz, scales, view, lens, settings)
+        depths = plane_channels(means, quats_wxyz, view)
     if screen_offsets is not None:
-        # Rows of the transform are x w, y w and w: a shift by o adds o w, as the definition has it.
-        centres = centres + screen_offsets
-        transforms = torch.cat([transforms[..., :2, :] + screen_offsets[..., None] * transforms[..., 2:, :],
-                                transforms[..., 2:, :]], dim=-2)  # fmt: skip
-    projected = (radii, centres, depths, transforms, normals)
-    channels = torch.cat([features, plane_channels(means, quats_wxyz, view)], dim=1)
-    picture, alphas = _blend(channels, opacities, projected, view)
-    fixed = tuple(t.detach() for t in projected)
+        projected = _moved(projected, screen_offsets)
+    picture, alphas = _blend(torch.cat([features, depths], dim=1), opacities, projected, view)
+    fixed = projected.detached()
 
     def again(values: Tensor) -> Tensor:
         return _blend(values, opacities.detach(), fixed, view)[0]
 
+    blended = picture[..., features.shape[1] :]
     return Raster(
         picture[..., : features.shape[1]],
         alphas,
-        plane_depths(picture[..., features.shape[1] :], alphas, view, settings.near_m),
+        blended[..., 0] if scales.shape[1] == SOLID else plane_depths(blended, alphas, view, settings.near_m),
         None if labels is None else heaviest_labels(again, labels),
         accumulated_weights(again, means),
-        radii[0].amax(dim=-1).to(means),
+        projected.radii_px[0].amax(dim=-1).to(means),
     )
 
 
-def _blend(channels: Tensor, opacities: Tensor, projected: tuple[Any, ...], view: View) -> tuple[Tensor, Tensor]:
-    """Channels, shape (n, c), and alphas of all splats as pictures, shapes (h, w, c) and (h, w)."""
-    from gsplat import isect_offset_encode, isect_tiles, rasterize_to_pixels_2dgs
+def _projected_discs(
+    means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View, lens: Tensor, settings: RasterSettings
+) -> _Seen:
+    """Of standard deviations along two tangents."""
+    from gsplat import fully_fused_projection_2dgs
 
-    radii, centres, depths, transforms, normals = projected
-    n_columns, n_rows = -(-view.width_px // TILE_PX), -(-view.height_px // TILE_PX)
-    _, tile_ids, splat_ids = isect_tiles(centres.detach(), radii, depths.detach(), TILE_PX, n_columns, n_rows)
-    starts = isect_offset_encode(tile_ids, 1, n_columns, n_rows).reshape(1, n_rows, n_columns)
-    picture, alphas, *_ = rasterize_to_pixels_2dgs(
-        centres, transforms, channels[None], opacities[None], normals, torch.zeros_like(centres),
-        view.width_px, view.height_px, TILE_PX, starts, splat_ids,
+    thickness = torch.ones_like(scales[:, :1])
+    return _Seen(
+        *fully_fused_projection_2dgs(
+            means, quats_wxyz, torch.cat([scales, thickness], dim=1), view.cam_from_world.to(means)[None], lens[None],
+            view.width_px, view.height_px, near_plane=settings.near_m,
+        )
     )  # fmt: skip
+
+
+def _projected_ellipsoids(
+    means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View, lens: Tensor, settings: RasterSettings
+) -> _Seen:
+    """Of standard deviations along three axes, by the whole picture, whose field of view limits their shape."""
+    from gsplat import fully_fused_projection
+
+    left, right, top, bottom = view.of_picture_px
+    corner = means.new_tensor([left, top])
+    of_picture = torch.cat([torch.cat([lens[:2, :2], (lens[:2, 2] - corner)[:, None]], dim=1), lens[2:]])
+    radii, centres, depths, conics, _ = fully_fused_projection(
+        means, None, quats_wxyz, scales, view.cam_from_world.to(means)[None], of_picture[None],
+        right - left, bottom - top, eps2d=settings.blur_px**2, near_plane=settings.near_m,
+    )  # fmt: skip
+    return _Seen(radii, centres + corner, depths, conics, None)
+
+
+def _moved(seen: _Seen, offsets: Tensor) -> _Seen:
+    """Moved in the picture by offsets, shape (n, 2), px."""
+    shapes = seen.shapes
+    if seen.normals is not None:
+        # Rows of a disc's transform are x w, y w and w: a shift by o adds o w, as the definition has it.
+        rows = shapes[..., :2, :] + offsets[..., None] * shapes[..., 2:, :]
+        shapes = torch.cat([rows, shapes[..., 2:, :]], dim=-2)
+    return replace(seen, centres_px=seen.centres_px + offsets, shapes=shapes)
+
+
+def _blend(channels: Tensor, opacities: Tensor, seen: _Seen, view: View) -> tuple[Tensor, Tensor]:
+    """Channels, shape (n, c), and alphas of all splats as pictures, shapes (h, w, c) and (h, w)."""
+    from gsplat import isect_offset_encode, isect_tiles, rasterize_to_pixels, rasterize_to_pixels_2dgs
+
+    n_columns, n_rows = -(-view.width_px // TILE_PX), -(-view.height_px // TILE_PX)
+    _, tile_ids, splat_ids = isect_tiles(
+        seen.centres_px.detach(), seen.radii_px, seen.depths_m.detach(), TILE_PX, n_columns, n_rows
+    )
+    starts = isect_offset_encode(tile_ids, 1, n_columns, n_rows).reshape(1, n_rows, n_columns)
+    of_tiles = view.width_px, view.height_px, TILE_PX, starts, splat_ids
+    colours = channels[None], opacities[None]
+    if seen.normals is None:
+        picture, alphas = rasterize_to_pixels(seen.centres_px, seen.shapes, *colours, *of_tiles)
+    else:
+        densify = torch.zeros_like(seen.centres_px)
+        picture, alphas, *_ = rasterize_to_pixels_2dgs(
+            seen.centres_px, seen.shapes, *colours, seen.normals, densify, *of_tiles
+        )
     return picture[0], alphas[0, ..., 0]
 
 

@@ -12,14 +12,16 @@ from torch import Tensor
 from torch.autograd.function import once_differentiable
 
 from planning.jit import chunks
+from reconstruction.splatting.ellipsoid_projection import slope_limits
 from reconstruction.splatting.numba_blend import blend_tiles
-from reconstruction.splatting.numba_blocks import bytes_a_splat, limits_of
+from reconstruction.splatting.numba_blocks import LOW_PASS2, bytes_a_splat, limits_of
+from reconstruction.splatting.numba_ellipsoids import NO_DOT, gradients_of_ellipsoids, project_ellipsoids
 from reconstruction.splatting.numba_gradients import gradients_of_tiles
 from reconstruction.splatting.numba_lanes import N_LANES
-from reconstruction.splatting.numba_projection import N_GEOMETRY, project_splats
+from reconstruction.splatting.numba_projection import N_GEOMETRY, Array, Floats, project_splats
 from reconstruction.splatting.numba_splat_gradients import N_OTHERS, gradients_of_splats
-from reconstruction.splatting.numba_tiles import run_on_threads, sort_into_tiles
-from reconstruction.splatting.raster import Raster, RasterSettings
+from reconstruction.splatting.numba_tiles import Tiles, run_on_threads, sort_into_tiles
+from reconstruction.splatting.raster import SOLID, Raster, RasterSettings
 from reconstruction.splatting.views import View
 
 SPLATS_AT_ONCE, TILES_AT_ONCE = 4096, 8
@@ -35,22 +37,9 @@ class _Rasterise(torch.autograd.Function):
         means, quats, scales, opacities, features, offsets = (np.ascontiguousarray(t.detach().numpy()) for t in inputs)
         n_channels, features = features.shape[1], _padded(features)
         n, limits, size = len(means), limits_of(settings), settings.tile_px
-        camera = np.ascontiguousarray(view.cam_from_world.numpy())
-        lens = np.array([view.fx_px, view.fy_px, view.cx_px, view.cy_px])
-        geometry, depth = np.empty((n, N_GEOMETRY), np.float32), np.empty(n)
-        boxes, radii = np.empty((n, 4), np.int32), np.empty(n, np.float32)
-        least_change = settings.least_depth_change(min(view.fx_px, view.fy_px))
-        of_projection = np.array(
-            [settings.near_m, settings.min_alpha, settings.low_pass_px, settings.reach, least_change]
-        )
-
-        def project(start: int, stop: int) -> None:
-            project_splats(
-                means, quats, scales, opacities, offsets, camera, lens, (view.width_px, view.height_px), of_projection,
-                start, stop, geometry, depth, boxes, radii,
-            )  # fmt: skip
-
-        run_on_threads(project, chunks(n, SPLATS_AT_ONCE), settings.threads)
+        if scales.shape[1] == SOLID:
+            limits[LOW_PASS2] = NO_DOT
+        geometry, depth, boxes, radii = _projected(view, settings, means, quats, scales, opacities, offsets)
         tiles = sort_into_tiles(boxes, depth, view.width_px, view.height_px, size)
         picture = np.empty((view.height_px, view.width_px, n_channels), np.float32)
         alphas, depths = np.empty(picture.shape[:2], np.float32), np.empty(picture.shape[:2], np.float32)
@@ -69,7 +58,7 @@ class _Rasterise(torch.autograd.Function):
 
         run_on_threads(blend, chunks(len(tiles.starts) - 1, TILES_AT_ONCE), settings.threads)
         weights = np.bincount(tiles.splats, slot_weights, n).astype(np.float32)
-        ctx.kept = (view, settings, tiles, geometry, reached, limits, camera, lens)
+        ctx.kept = (view, settings, tiles, geometry, reached, limits)
         ctx.save_for_backward(*inputs)
         out = [torch.from_numpy(a) for a in (picture, alphas, depths, heaviest, weights, radii)]
         ctx.mark_non_differentiable(*out[3:])
@@ -78,9 +67,8 @@ class _Rasterise(torch.autograd.Function):
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, *wanted: Any) -> Any:
-        view, settings, tiles, geometry, reached, limits, camera, lens = ctx.kept
+        view, settings, tiles, geometry, reached, limits = ctx.kept
         arrays = [np.ascontiguousarray(t.detach().numpy()) for t in ctx.saved_tensors]
-        means, quats, scales = arrays[:3]
         features = _padded(arrays[4])
         shape = (view.height_px, view.width_px)
         of_features = _gradient(wanted[0], (*shape, arrays[4].shape[1]))
@@ -94,17 +82,68 @@ class _Rasterise(torch.autograd.Function):
             )  # fmt: skip
 
         run_on_threads(of_tiles, chunks(len(tiles.starts) - 1, TILES_AT_ONCE), settings.threads)
-        found = [np.zeros(a.shape, np.float32) for a in arrays[:5]] + [np.zeros((len(means), 2), np.float32)]
-
-        def of_splats(start: int, stop: int) -> None:
-            gradients_of_splats(
-                means, quats, scales, geometry, camera, lens, tiles.slots, tiles.places, slots, start, stop, *found
-            )
-
-        run_on_threads(of_splats, chunks(len(means), SPLATS_AT_ONCE), settings.threads)
+        found = [np.zeros(a.shape, np.float32) for a in arrays[:5]] + [np.zeros((len(arrays[0]), 2), np.float32)]
+        _take_back(view, settings, arrays, geometry, tiles, slots, found)
         if len(arrays[5]) == 0:
             found[5] = np.zeros((0, 2), np.float32)
         return (None, None, None, *(torch.from_numpy(a) for a in found))
+
+
+def _projected(
+    view: View,
+    settings: RasterSettings,
+    means: Floats,
+    quats: Floats,
+    scales: Floats,
+    opacities: Floats,
+    offsets: Floats,
+) -> tuple[Floats, Array, NDArray[np.int32], Floats]:
+    """Geometry, depths, boxes and radii of discs or ellipsoids."""
+    n, (camera, lens), size = len(means), _camera_of(view), (view.width_px, view.height_px)
+    found = np.empty((n, N_GEOMETRY), np.float32), np.empty(n), np.empty((n, 4), np.int32), np.empty(n, np.float32)
+    shared = means, quats, scales, opacities, offsets, camera, lens, size
+    least_change = settings.least_depth_change(min(view.fx_px, view.fy_px))
+    of_discs = np.array([settings.near_m, settings.min_alpha, settings.low_pass_px, settings.reach, least_change])
+    of_ellipsoids = np.array([settings.near_m, settings.min_alpha, settings.blur_px])
+    slopes = np.array(slope_limits(view))
+
+    def project(start: int, stop: int) -> None:
+        if scales.shape[1] == SOLID:
+            project_ellipsoids(*shared, of_ellipsoids, slopes, start, stop, *found)
+        else:
+            project_splats(*shared, of_discs, start, stop, *found)
+
+    run_on_threads(project, chunks(n, SPLATS_AT_ONCE), settings.threads)
+    return found
+
+
+def _take_back(
+    view: View,
+    settings: RasterSettings,
+    inputs: list[Floats],
+    geometry: Floats,
+    tiles: Tiles,
+    slots: Floats,
+    found: list[Floats],
+) -> None:
+    """From the slots to gradients of the inputs, which begin as 0."""
+    means, quats, scales = inputs[:3]
+    (camera, lens), slopes = _camera_of(view), np.array(slope_limits(view))
+
+    def of_splats(start: int, stop: int) -> None:
+        places = tiles.slots, tiles.places, slots, start, stop
+        if scales.shape[1] == SOLID:
+            gradients_of_ellipsoids(means, quats, scales, camera, lens, settings.blur_px, slopes, *places, *found)
+        else:
+            gradients_of_splats(means, quats, scales, geometry, camera, lens, *places, *found)
+
+    run_on_threads(of_splats, chunks(len(means), SPLATS_AT_ONCE), settings.threads)
+
+
+def _camera_of(view: View) -> tuple[Array, Array]:
+    """Model's frame to camera axes, shape (4, 4), and fx, fy, cx, cy."""
+    lens = np.array([view.fx_px, view.fy_px, view.cx_px, view.cy_px])
+    return np.ascontiguousarray(view.cam_from_world.numpy()), lens
 
 
 def _gradient(wanted: Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float32]:

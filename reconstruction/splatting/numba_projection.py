@@ -21,6 +21,8 @@ Triple = tuple[float, float, float]
 Four = tuple[float, float, float, float]
 Quat = tuple[float, float, float, float, float]
 """Length, and w, x, y, z at length 1."""
+Outline = tuple[float, float, float, float, float]
+"""Of a disc, in the order of its columns below."""
 
 J_XU, J_XV, J_YU, J_YV, E, F, DEPTH, OPACITY, LOWEST, HIGHEST = range(10)
 """Columns of a splat's geometry. J, and e, f with t = x e + y f, are divided by the area a, det J: then D = 1 + t, and
@@ -53,7 +55,7 @@ N_CORNERS = 12
 
 
 @inline
-def _rotation_columns(w: float, x: float, y: float, z: float) -> tuple[Triple, Triple, Quat]:
+def rotation_columns(w: float, x: float, y: float, z: float) -> tuple[Triple, Triple, Quat]:
     """First two columns of the rotation of a quaternion, and its length (0 where it says nothing)."""
     norm = math.sqrt(w * w + x * x + y * y + z * z)
     if norm > LEAST_NORM:
@@ -67,7 +69,7 @@ def _rotation_columns(w: float, x: float, y: float, z: float) -> tuple[Triple, T
 
 
 @inline
-def _in_camera(camera: Array, x: float, y: float, z: float) -> Triple:
+def in_camera(camera: Array, x: float, y: float, z: float) -> Triple:
     """A direction of the model's frame in camera axes."""
     return (
         camera[0, 0] * x + camera[0, 1] * y + camera[0, 2] * z,
@@ -81,14 +83,14 @@ def see(
     means: Floats, quats_wxyz: Floats, scales: Floats, camera: Array, lens: Array, i: int
 ) -> tuple[Triple, Quat, Triple, Triple, Pair, Four]:
     """Splat `i` in camera axes: middle, rotation, two tangents, slopes, Jacobian (xu, xv, yu, yv); see `projection`."""
-    x, y, z = _in_camera(camera, np.float64(means[i, 0]), np.float64(means[i, 1]), np.float64(means[i, 2]))
+    x, y, z = in_camera(camera, np.float64(means[i, 0]), np.float64(means[i, 1]), np.float64(means[i, 2]))
     x, y, z = x + camera[0, 3], y + camera[1, 3], z + camera[2, 3]
-    first, second, quat = _rotation_columns(
+    first, second, quat = rotation_columns(
         np.float64(quats_wxyz[i, 0]), np.float64(quats_wxyz[i, 1]),
         np.float64(quats_wxyz[i, 2]), np.float64(quats_wxyz[i, 3]),
     )  # fmt: skip
-    first = _in_camera(camera, first[0], first[1], first[2])
-    second = _in_camera(camera, second[0], second[1], second[2])
+    first = in_camera(camera, first[0], first[1], first[2])
+    second = in_camera(camera, second[0], second[1], second[2])
     over_z = 1.0 / z
     s_u, s_v, across, down = scales[i, 0] * over_z, scales[i, 1] * over_z, x * over_z, y * over_z
     q_u, q_v = s_u * first[2], s_v * second[2]
@@ -127,7 +129,7 @@ def _clipped_box(jacobian: Four, slopes: Pair, depth: float, reach: float, near_
 
 
 @inline
-def _outline(jacobian: Four, slopes: Pair, reach: float) -> tuple[Four, tuple[float, float, float, float, float]]:
+def outline_of(jacobian: Four, slopes: Pair, reach: float) -> tuple[Four, Outline]:
     """Box (left, right, top, bottom, from the middle) and outline of a disc that is in front of the camera altogether.
 
     The extremes of a circle's projection are the roots of a quadratic in its dual conic.
@@ -155,6 +157,50 @@ def _first_pixel(low: float, size: int) -> int:
 def _behind_last(high: float, size: int) -> int:
     """Of the pixels, of `size`, whose middles are not behind a place the last, and one more."""
     return min(math.floor(min(max(high - 0.5 + SLACK_PX, -2.0), size + 1.0)) + 1, size)
+
+
+@inline
+def place_disc(
+    centre: Triple,
+    box: Four,
+    outline: Outline,
+    dot: float,
+    opacity: float,
+    size: tuple[int, int],
+    i: int,
+    geometry: Floats,
+    depths: Array,
+    boxes: NDArray[np.int32],
+    radii: Floats,
+) -> bool:
+    """Fill in all of splat `i` but J, e, f and the limits of t; whether it reaches into the picture comes back.
+
+    Parameters
+    ----------
+    centre
+        Pixel and depth of its middle.
+    box, outline
+        From there; the box holds the low-pass filter's circle, too.
+    dot
+        Radius of that circle.
+    """
+    cx, cy, z = centre
+    left, right = _first_pixel(cx + box[0], size[0]), _behind_last(cx + box[1], size[0])
+    top, bottom = _first_pixel(cy + box[2], size[1]), _behind_last(cy + box[3], size[1])
+    is_in = left < right and top < bottom
+    if is_in:
+        boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = left, right, top, bottom
+        radii[i] = 0.5 * max(box[1] - box[0], box[3] - box[2])
+        depths[i] = z
+        whole_x, whole_y = np.float32(math.floor(cx)), np.float32(math.floor(cy))
+        geometry[i, WHOLE_X], geometry[i, REST_X] = whole_x, cx - np.float64(whole_x)
+        geometry[i, WHOLE_Y], geometry[i, REST_Y] = whole_y, cy - np.float64(whole_y)
+        geometry[i, LEFT], geometry[i, RIGHT], geometry[i, TOP], geometry[i, BOTTOM] = left, right, top, bottom
+        geometry[i, DISC_X], geometry[i, DISC_Y], geometry[i, OVER_HALF_HEIGHT] = outline[0], outline[1], outline[2]
+        geometry[i, HALF_WIDTH], geometry[i, SHEAR] = outline[3], outline[4]
+        geometry[i, DOT_RADIUS2] = (dot + SLACK_PX) * (dot + SLACK_PX)
+        geometry[i, DEPTH], geometry[i, OPACITY] = z, opacity
+    return is_in
 
 
 @kernel
@@ -216,26 +262,13 @@ def project_splats(
             if z * (1.0 - reach * steepness) < near_m:
                 box = _clipped_box(jacobian, slopes, z, reach, near_m)
             else:
-                box, exact = _outline(jacobian, slopes, reach)
+                box, exact = outline_of(jacobian, slopes, reach)
                 if max(box[1] - box[0], box[3] - box[2]) < LARGEST_OUTLINE_PX:
                     outline = exact
         dot = low_pass * reach
         box = (min(box[0], -dot), max(box[1], dot), min(box[2], -dot), max(box[3], dot))
-        left, right = _first_pixel(cx + box[0], size[0]), _behind_last(cx + box[1], size[0])
-        top, bottom = _first_pixel(cy + box[2], size[1]), _behind_last(cy + box[3], size[1])
-        if left >= right or top >= bottom:
+        if not place_disc((cx, cy, z), box, outline, dot, opacity, size, i, geometry, depths, boxes, radii):
             continue
-        boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = left, right, top, bottom
-        radii[i] = 0.5 * max(box[1] - box[0], box[3] - box[2])
-        depths[i] = z
-        whole_x, whole_y = np.float32(math.floor(cx)), np.float32(math.floor(cy))
-        geometry[i, WHOLE_X], geometry[i, REST_X] = whole_x, cx - np.float64(whole_x)
-        geometry[i, WHOLE_Y], geometry[i, REST_Y] = whole_y, cy - np.float64(whole_y)
-        geometry[i, LEFT], geometry[i, RIGHT], geometry[i, TOP], geometry[i, BOTTOM] = left, right, top, bottom
-        geometry[i, DISC_X], geometry[i, DISC_Y], geometry[i, OVER_HALF_HEIGHT] = outline[0], outline[1], outline[2]
-        geometry[i, HALF_WIDTH], geometry[i, SHEAR] = outline[3], outline[4]
-        geometry[i, DOT_RADIUS2] = (dot + SLACK_PX) * (dot + SLACK_PX)
-        geometry[i, DEPTH], geometry[i, OPACITY] = z, opacity
         change = min(max(far_reach * steepness, least_change) * LIMITS_WIDENED, MOST_CHANGE)
         nearest = z / near_m - 1.0
         geometry[i, LOWEST] = -change / (1.0 + change)

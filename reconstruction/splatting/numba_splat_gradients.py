@@ -38,7 +38,7 @@ AHEAD = 8
 
 
 @inline
-def _in_world(camera: Array, x: float, y: float, z: float) -> Triple:
+def in_world(camera: Array, x: float, y: float, z: float) -> Triple:
     """A direction of camera axes in the model's frame."""
     return (
         camera[0, 0] * x + camera[1, 0] * y + camera[2, 0] * z,
@@ -67,7 +67,7 @@ def _back_through_disc(jacobian: Four, slopes: Pair, g: Array) -> tuple[Four, Pa
 
 
 @inline
-def _back_to_quat(q: Quat, g_u: Triple, g_v: Triple, out: Floats, i: int) -> None:
+def back_to_quat(q: Quat, g_u: Triple, g_v: Triple, out: Floats, i: int) -> None:
     """From the gradients of a rotation's first two columns to the quaternion of any length."""
     norm, w, x, y, z = q
     g_w = 2.0 * (z * g_u[1] - y * g_u[2] - z * g_v[0] + x * g_v[2])
@@ -81,7 +81,7 @@ def _back_to_quat(q: Quat, g_u: Triple, g_v: Triple, out: Floats, i: int) -> Non
 
 
 @inline
-def _add_up(slots: Floats, places: NDArray[np.int32], first: int, last: int, sums: Floats) -> None:
+def add_up(slots: Floats, places: NDArray[np.int32], first: int, last: int, sums: Floats) -> None:
     """Add up the slots at the places `first` to `last`, and have those fetched that come next."""
     width, n_lanes = slots.shape[1], slots.shape[1] - 2
     sums[:] = np.float32(0.0)
@@ -122,7 +122,7 @@ def gradients_of_splats(
     for i in range(start, stop):
         if firsts[i] == firsts[i + 1]:
             continue
-        _add_up(slots, places, firsts[i], firsts[i + 1], sums)
+        add_up(slots, places, firsts[i], firsts[i + 1], sums)
         for k in range(N_LANES):
             g[k] = sums[k]
         for k in range(n_features):
@@ -145,8 +145,8 @@ def gradients_of_splats(
         g_scales[i, 0], g_scales[i, 1] = along_u * over_z, along_v * over_z
         g_over_z = s_u * along_u + s_v * along_v + g_xz * x + g_yz * y
         s_u, s_v = s_u * over_z, s_v * over_z
-        g_first = _in_world(camera, s_u * ux, s_u * uy, s_u * uz)
-        g_second = _in_world(camera, s_v * vx, s_v * vy, s_v * vz)
-        _back_to_quat(quat, g_first, g_second, g_quats, i)
-        place = _in_world(camera, g_xz * over_z, g_yz * over_z, g_depth - g_over_z * over_z * over_z)
+        g_first = in_world(camera, s_u * ux, s_u * uy, s_u * uz)
+        g_second = in_world(camera, s_v * vx, s_v * vy, s_v * vz)
+        back_to_quat(quat, g_first, g_second, g_quats, i)
+        place = in_world(camera, g_xz * over_z, g_yz * over_z, g_depth - g_over_z * over_z * over_z)
         g_means[i, 0], g_means[i, 1], g_means[i, 2] = place

@@ -1,8 +1,9 @@
 """Splats as PLY files: what other programs read and show, and what we read back bit by bit.
 
-`scene.2dgs.ply` has two sizes per splat, `scene.3dgs.ply` a third that is next to nothing, for programs that know
-ellipsoids only. Columns stand in the order that programs go by that do not look at names; ours come after them. Other
-programs show the diffuse colour alone: none of them can render mirrored light.
+Files of kind `2dgs` have two sizes per splat, those of kind `3dgs` three: of discs the third is next to nothing, for
+programs that know ellipsoids only. Columns stand in the order that programs go by that do not look at names; ours come
+after them. Other programs show the diffuse colour alone: none of them can render mirrored light. Attributes that only
+one method has are not in the files.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from planning.errors import InputError
 from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY
 from reconstruction.splatting.harmonic_colour import N_HARMONICS
 from reconstruction.splatting.ply_file import AT_ONCE, PlyHeader, read_blocks, read_header, write_blocks
+from reconstruction.splatting.raster import FLAT, SOLID
 from reconstruction.splatting.splats import NO_PANEL, SHAPES, Splats, normals_of
 
 Kind = Literal["2dgs", "3dgs"]
@@ -29,15 +31,22 @@ FORMAT = "reflight-splats/1"
 
 ORIGIN = "origin_enu_m"
 
+ELLIPSOIDS = "splats: ellipsoids"
+"""Comment of our files of ellipsoids."""
+
 THICKNESS_LOG_M = math.log(1e-6)
 """Third size of a disc where there must be one, as 2DGS recommends."""
+
+FLATTEST_LOG = math.log(0.01)
+"""Of ellipsoids, third size over the smaller of the others: where all of a file are flatter, they are discs."""
 
 ODD = np.array([1 if m % 2 == 0 else -1 for degree in range(4) for m in range(-degree, degree + 1)], np.float32)
 """Other programs' harmonics have the phase (-1)^m, ours have not."""
 
 PLACE = ("x", "y", "z")
 NORMAL = ("nx", "ny", "nz")
-FLAT = tuple(f"f_dc_{i}" for i in range(3))
+MEAN_COLOUR = tuple(f"f_dc_{i}" for i in range(3))
+SIZES = tuple(f"scale_{i}" for i in range(SOLID))
 ROTATION = tuple(f"rot_{i}" for i in range(4))
 GLASS = ("refgs_r", "refgs_f0_0", "refgs_f0_1", "refgs_f0_2")
 PANEL = "panel_id"
@@ -74,6 +83,8 @@ def write_splats(
 
     Parameters
     ----------
+    kind
+        Ellipsoids can only be `3dgs`.
     origin_enu_m
         Of the model's frame, in the site's, written as a comment.
     comments
@@ -84,9 +95,12 @@ def write_splats(
     InputError
         The file cannot be written.
     """
+    if kind == "2dgs" and not splats.is_flat:
+        raise ValueError("kind: expected '3dgs' for ellipsoids, got '2dgs'")
     origin = " ".join(repr(float(value)) for value in origin_enu_m)
     lines = [
         FORMAT,
+        *([] if splats.is_flat else [ELLIPSOIDS]),
         *([f"SplatRenderMode: {kind}"] if kind == "2dgs" else []),
         f"{ORIGIN}: {origin}",
         "axes: x east, y north, z up, metres, counted from the origin",
@@ -98,8 +112,8 @@ def write_splats(
 
 def _row_type(kind: Kind) -> np.dtype[Any]:
     rest = tuple(f"f_rest_{i}" for i in range(3 * (N_HARMONICS - 1)))
-    sizes = tuple(f"scale_{i}" for i in range(2 if kind == "2dgs" else 3))
-    names = (*PLACE, *NORMAL, *FLAT, *rest, "opacity", *sizes, *ROTATION, *GLASS)
+    sizes = SIZES[:FLAT] if kind == "2dgs" else SIZES
+    names = (*PLACE, *NORMAL, *MEAN_COLOUR, *rest, "opacity", *sizes, *ROTATION, *GLASS)
     return np.dtype([*((name, "<f4") for name in names), (PANEL, "<i4")])
 
 
@@ -109,15 +123,16 @@ def _blocks(splats: Splats, kind: Kind) -> Iterator[NDArray[Any]]:
         part = {name: getattr(splats, name).detach()[start : start + AT_ONCE].cpu().numpy() for name in SHAPES}
         table = np.zeros(len(part["means"]), row)
         _put(table, PLACE, part["means"])
-        _put(table, NORMAL, normals_of(torch.from_numpy(part["quats"])).numpy())
+        if splats.is_flat:
+            _put(table, NORMAL, normals_of(torch.from_numpy(part["quats"])).numpy())
         sh = part["sh"] * ODD[:, None]
-        _put(table, FLAT, sh[:, 0])
+        _put(table, MEAN_COLOUR, sh[:, 0])
         # All of red, then of green, then of blue.
         rest = sh[:, 1:].transpose(0, 2, 1).reshape(len(sh), -1)
         _put(table, [f"f_rest_{i}" for i in range(rest.shape[1])], rest)
         table["opacity"] = part["opacity_logits"]
-        _put(table, ("scale_0", "scale_1"), part["log_scales"])
-        if kind == "3dgs":
+        _put(table, SIZES[: part["log_scales"].shape[1]], part["log_scales"])
+        if kind == "3dgs" and splats.is_flat:
             table["scale_2"] = THICKNESS_LOG_M
         _put(table, ROTATION, part["quats"])
         table["refgs_r"] = part["reflectivity_logits"]
@@ -129,17 +144,19 @@ def _blocks(splats: Splats, kind: Kind) -> Iterator[NDArray[Any]]:
 def read_splats(path: Path) -> SplatsOfFile:
     """Read splats of ours or of another program.
 
-    Lower degrees of harmonics, and no columns of ours, are as good: then nothing is glass.
+    Lower degrees of harmonics, and no columns of ours, are as good: then nothing is glass. Splats of three sizes are
+    ellipsoids, unless all of them are as good as flat.
 
     Raises
     ------
     InputError
-        The file is missing or damaged, has no splats, has ellipsoids and not discs, or numbers that are not finite.
+        The file is missing or damaged, has no splats, or numbers that are not finite.
     """
     header = read_header(path)
     degree = _checked(header, path)
     n = header.n_rows
-    values = {name: np.zeros((n, *shape), np.float32) for name, shape in SHAPES.items()}
+    shapes = SHAPES | {"log_scales": (SOLID if "scale_2" in header.names else FLAT,)}
+    values = {name: np.zeros((n, *shape), np.float32) for name, shape in shapes.items()}
     values["reflectivity_logits"][:] = math.log(REFLECTIVITY / (1.0 - REFLECTIVITY))
     values["f0_logits"][:] = math.log(BASE_REFLECTANCE / (1.0 - BASE_REFLECTANCE))
     panels = np.full(n, NO_PANEL, np.int32)
@@ -148,13 +165,15 @@ def read_splats(path: Path) -> SplatsOfFile:
         rows = slice(first, first + len(block))
         _take(block, header, degree, values, panels, rows, path)
         first += len(block)
+    if ELLIPSOIDS not in header.comments and _are_discs(values["log_scales"]):
+        values["log_scales"] = np.ascontiguousarray(values["log_scales"][:, :FLAT])
     tensors = {name: torch.from_numpy(value) for name, value in values.items()}
     return SplatsOfFile(Splats(tensors, torch.from_numpy(panels)), _origin(header, path))
 
 
 def _checked(header: PlyHeader, path: Path) -> int:
     """Degree of the harmonics, after a look whether all columns are there."""
-    needed = (*PLACE, *FLAT, "opacity", "scale_0", "scale_1", *ROTATION)
+    needed = (*PLACE, *MEAN_COLOUR, "opacity", *SIZES[:FLAT], *ROTATION)
     missing = [name for name in needed if name not in header.names]
     if missing:
         raise InputError(f"{path}: has no '{missing[0]}', so these are points and not splats")
@@ -162,7 +181,8 @@ def _checked(header: PlyHeader, path: Path) -> int:
     if n_rest not in REST_OF_DEGREE or not header.names.issuperset(f"f_rest_{i}" for i in range(n_rest)):
         raise InputError(f"{path}: expected 0, 9, 24 or 45 columns f_rest_0 and so on, found {n_rest}")
     types = dict(header.columns)
-    wrong = [name for name in types if name in needed or name.startswith("f_rest_") if types[name] != "<f4"]
+    used = (*needed, *SIZES)
+    wrong = [name for name in types if name in used or name.startswith("f_rest_") if types[name] != "<f4"]
     if wrong:
         raise InputError(f"{path}: '{wrong[0]}': expected float, found another type")
     if not header.n_rows:
@@ -180,14 +200,17 @@ def _take(
     path: Path,
 ) -> None:
     values["means"][rows] = _columns(block, PLACE)
-    values["sh"][rows, 0] = _columns(block, FLAT)
+    values["sh"][rows, 0] = _columns(block, MEAN_COLOUR)
     n_rest = (degree + 1) ** 2 - 1
     if n_rest:
         rest = _columns(block, [f"f_rest_{i}" for i in range(3 * n_rest)])
         turned = rest.reshape(-1, 3, n_rest).transpose(0, 2, 1)
         values["sh"][rows, 1 : 1 + n_rest] = turned * ODD[1 : 1 + n_rest, None]
     values["opacity_logits"][rows] = block["opacity"]
-    values["log_scales"][rows] = _columns(block, ("scale_0", "scale_1"))
+    sizes = _columns(block, SIZES[: values["log_scales"].shape[1]])
+    # Programs write the logarithm of a thickness of 0, too.
+    sizes[:, FLAT:][np.isneginf(sizes[:, FLAT:])] = THICKNESS_LOG_M
+    values["log_scales"][rows] = sizes
     values["quats"][rows] = _columns(block, ROTATION)
     if header.names.issuperset((*GLASS, PANEL)):
         values["reflectivity_logits"][rows] = block[GLASS[0]]
@@ -198,8 +221,14 @@ def _take(
             raise InputError(f"{path}: holds numbers that are not finite, among them {name} of splats")
     if (values["log_scales"][rows] > LARGEST_LOG).any() or (panels[rows] < NO_PANEL).any():
         raise InputError(f"{path}: holds sizes or panels that cannot be; the file is damaged")
-    if "scale_2" in header.names and (block["scale_2"] > values["log_scales"][rows].min(axis=1)).any():
-        raise InputError(f"{path}: holds ellipsoids; discs are expected, whose scale_2 is the smallest")
+
+
+def _are_discs(log_scales: NDArray[np.float32]) -> bool:
+    """Whether the third size, if there is one, says nothing."""
+    if log_scales.shape[1] == FLAT:
+        return True
+    thickness, smaller = log_scales[:, FLAT], log_scales[:, :FLAT].min(axis=1)
+    return bool((thickness <= np.maximum(smaller + FLATTEST_LOG, THICKNESS_LOG_M)).all())
 
 
 def _origin(header: PlyHeader, path: Path) -> tuple[float, float, float]:

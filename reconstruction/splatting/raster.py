@@ -10,6 +10,9 @@ from torch import Tensor
 FLAT_ENOUGH_RAD = math.radians(80.0)
 """Between line of sight and normal: so far even splats smaller than a pixel have the depth of their plane."""
 
+FLAT, SOLID = 2, 3
+"""Sizes of a disc and of an ellipsoid."""
+
 LEAST_ALPHA = 1e-4
 """Of `min_alpha`: as far as the compiled exponential reaches."""
 
@@ -23,6 +26,8 @@ class RasterSettings:
     low_pass_px
         Standard deviation of the smallest disc a splat is drawn as, so that none falls between pixels; 2DGS (Huang et
         al., 2024, Eq. 11) has sqrt(1/2).
+    blur_px
+        Standard deviation of what ellipsoids are blurred by in the picture; 3DGS (Kerbl et al., 2023) has sqrt(0.3).
     near_m
         Splats whose middle is nearer than this, along the optical axis, are not drawn, and what is nearer of the others
         is cut off.
@@ -41,6 +46,7 @@ class RasterSettings:
     """
 
     low_pass_px: float = math.sqrt(0.5)
+    blur_px: float = math.sqrt(0.3)
     near_m: float = 0.1
     min_alpha: float = 1.0 / 255.0
     max_alpha: float = 0.99
@@ -49,7 +55,7 @@ class RasterSettings:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        for name in ("low_pass_px", "near_m"):
+        for name in ("low_pass_px", "blur_px", "near_m"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ValueError(f"{name}: expected a positive number, got {value}")
@@ -87,8 +93,8 @@ class Raster:
     alphas
         Sum of w_i, shape (h, w), 0 to 1.
     depths
-        Sum of w_i z_i, shape (h, w), metres: z_i along the optical axis, of where the ray meets the splat. Divide by
-        `alphas` for a depth.
+        Sum of w_i z_i, shape (h, w), metres: z_i along the optical axis, of where the ray meets the splat; of an
+        ellipsoid, of its middle. Divide by `alphas` for a depth.
     labels
         Of each pixel the label of the heaviest accumulated weight, shape (h, w), int32: the lowest of several equal
         ones, and -1 where there is no splat. None where no labels were given.

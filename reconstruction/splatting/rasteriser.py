@@ -10,7 +10,7 @@ from torch import Tensor
 
 from reconstruction.splatting.gsplat_backend import rasterise_gsplat
 from reconstruction.splatting.numba_backend import rasterise_numba
-from reconstruction.splatting.raster import Raster, RasterSettings
+from reconstruction.splatting.raster import FLAT, SOLID, Raster, RasterSettings
 from reconstruction.splatting.torch_twin import rasterise_torch
 from reconstruction.splatting.views import View
 
@@ -41,7 +41,8 @@ def rasterise(
     quats_wxyz
         Rotations, shape (n, 4), of any length: the first two columns are the tangents, the third is the normal.
     scales
-        Standard deviations along the two tangents, shape (n, 2), metres, above 0.
+        Standard deviations along the two tangents, shape (n, 2), metres, above 0; or along all columns, shape (n, 3),
+        and the splats are ellipsoids: 3-D Gaussians.
     opacities
         Shape (n,), 0 to 1.
     features
@@ -95,20 +96,21 @@ def _check(
     labels: Tensor | None,
 ) -> None:
     n = len(means)
-    shapes = {
-        "means": (means, (n, 3)),
-        "quats_wxyz": (quats_wxyz, (n, 4)),
-        "scales": (scales, (n, 2)),
-        "opacities": (opacities, (n,)),
-        "features": (features, (n, max(features.shape[-1], 1) if features.dim() == 2 else 1)),
-        "screen_offsets": (screen_offsets, (n, 2)),
-        "labels": (labels, (n,)),
+    n_channels = max(features.shape[-1], 1) if features.dim() == 2 else 1
+    shapes: dict[str, tuple[Tensor | None, list[tuple[int, ...]]]] = {
+        "means": (means, [(n, 3)]),
+        "quats_wxyz": (quats_wxyz, [(n, 4)]),
+        "scales": (scales, [(n, FLAT), (n, SOLID)]),
+        "opacities": (opacities, [(n,)]),
+        "features": (features, [(n, n_channels)]),
+        "screen_offsets": (screen_offsets, [(n, 2)]),
+        "labels": (labels, [(n,)]),
     }
     for name, (values, expected) in shapes.items():
         if values is None:
             continue
-        if tuple(values.shape) != expected:
-            raise ValueError(f"{name}: expected shape {expected}, got {tuple(values.shape)}")
+        if tuple(values.shape) not in expected:
+            raise ValueError(f"{name}: expected shape {' or '.join(map(str, expected))}, got {tuple(values.shape)}")
         if values.device != means.device or (name != "labels" and values.dtype != means.dtype):
             raise ValueError(
                 f"{name}: expected {means.dtype} on {means.device} as the means are, got {values.dtype} on "

@@ -1,4 +1,7 @@
-"""Splats: flat Gaussian discs with what the paper adds to them, as the parameters of a model (paper 3.3.2)."""
+"""Splats: Gaussian discs with what the paper adds to them, as the parameters of a model (paper 3.3.2).
+
+Methods that the paper is compared with have ellipsoids in their place, which have a third size, or further attributes.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +13,14 @@ from torch import Tensor, nn
 
 from planning.errors import InputError
 from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY
+from reconstruction.splatting.ellipsoid_axes import shortest_axes
 from reconstruction.splatting.harmonic_colour import (
     N_HARMONICS,
     display_colours,
     flat_harmonics,
     light_of_display,
 )
+from reconstruction.splatting.raster import FLAT, SOLID
 
 SHAPES: dict[str, tuple[int, ...]] = {
     "means": (3,),
@@ -26,7 +31,7 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "reflectivity_logits": (),
     "f0_logits": (3,),
 }
-"""What is learned, and its shape for one splat."""
+"""What is learned, and its shape for one splat. Ellipsoids have three `log_scales`; other names may join."""
 
 FEATURES = {"colour": slice(0, 3), "reflectivity": slice(3, 4), "f0": slice(4, 7), "normal": slice(7, 10)} | {
     "offset": slice(10, 11)
@@ -44,7 +49,7 @@ LEAST_SHARE, MOST_SHARE = 1e-4, 1.0 - 1e-4
 
 
 class Splats(nn.Module):
-    """n surfels.
+    """n surfels, or ellipsoids.
 
     Parameters
     ----------
@@ -53,9 +58,11 @@ class Splats(nn.Module):
 
         - `means`: middles, metres, in the model's frame (ENU less the model's origin).
         - `quats`: w, x, y, z, of any length but zero: columns of the rotation are t_u, t_v and the normal (Eq. 12).
-        - `log_scales`: ln s_u, ln s_v, metres.
+        - `log_scales`: ln s_u, ln s_v, metres; of ellipsoids ln s_w, along the normal, too.
         - `opacity_logits`, `reflectivity_logits`, `f0_logits`: alpha, r and f_0 before the sigmoid.
         - `sh`: display colour by direction (`harmonic_colour`).
+
+        Others are attributes of a method's shading; they are kept, and densified, with the rest.
     panels
         Shape (n,): which panel, from 0, or `NO_PANEL`. Only glass reflects: r is 0 elsewhere.
     """
@@ -71,10 +78,11 @@ class Splats(nn.Module):
 
     def __init__(self, values: Mapping[str, Tensor], panels: Tensor) -> None:
         super().__init__()
-        for name, shape in SHAPES.items():
+        for name, shape in expected_shapes(values).items():
             if values[name].shape != (len(panels), *shape):
                 raise ValueError(f"{name}: expected shape {(len(panels), *shape)}, got {tuple(values[name].shape)}")
             self.register_parameter(name, nn.Parameter(values[name].detach().clone().contiguous()))
+        self.names = (*SHAPES, *(name for name in values if name not in SHAPES))
         self.register_buffer("panels", panels.detach().to(torch.int32).clone())
 
     @classmethod
@@ -114,8 +122,13 @@ class Splats(nn.Module):
         return len(self.means)
 
     @property
+    def is_flat(self) -> bool:
+        """Whether they are discs, and no ellipsoids."""
+        return self.log_scales.shape[1] == FLAT
+
+    @property
     def scales(self) -> Tensor:
-        """Standard deviations s_u and s_v, metres, shape (n, 2)."""
+        """Standard deviations along the columns of the rotations, metres, shape (n, 2), or (n, 3) of ellipsoids."""
         return torch.exp(self.log_scales)
 
     @property
@@ -133,6 +146,10 @@ class Splats(nn.Module):
         """Reflectance at normal incidence, shape (n, 3), 0 to 1."""
         return torch.sigmoid(self.f0_logits)
 
+    def attribute(self, name: str) -> Tensor:
+        """What a method's shading has beside `SHAPES`, as it is learned."""
+        return self.get_parameter(name)
+
     def normals(self, view_position: Tensor) -> Tensor:
         """Unit normals, shape (n, 3), turned to a camera at `view_position`, shape (3,)."""
         return self._facing(view_position)[0]
@@ -147,20 +164,30 @@ class Splats(nn.Module):
         """
         return light_of_display(display_colours(self.means, self.sh, view_position, degree))
 
-    def features(self, view_position: Tensor, degree: int = 3) -> Tensor:
+    def features(self, view_position: Tensor, degree: int = 3, colours: Tensor | None = None) -> Tensor:
         """What is blended into the pictures (Eqs. 15 to 18), shape (n, 11), columns as `FEATURES` says.
 
         The last one is the offset n . p of the splat's plane, p from the camera: rays of direction d meet a blended
         plane at offset / (n . d). Which panel a pixel shows is no feature: numbers of panels cannot be mixed.
+
+        Parameters
+        ----------
+        colours
+            Shape (n, 3), in the place of those by harmonics.
         """
         normals, offsets = self._facing(view_position)
-        parts = (self.colours(view_position, degree), self.reflectivity[:, None], self.f0, normals, offsets[:, None])
+        colours = self.colours(view_position, degree) if colours is None else colours
+        parts = (colours, self.reflectivity[:, None], self.f0, normals, offsets[:, None])
         return torch.cat(parts, dim=1)
 
     def _facing(self, view_position: Tensor) -> tuple[Tensor, Tensor]:
         """Normals turned to the camera, and their planes' offsets from it, which are 0 or less."""
+        from_camera = self.means - view_position.detach().to(self.means)
+        if not self.is_flat:
+            normals = shortest_axes(self.means, self.quats, self.log_scales, view_position)
+            return normals, (normals * from_camera).sum(dim=-1)
         normals = normals_of(self.quats)
-        offsets = (normals * (self.means - view_position.detach().to(self.means))).sum(dim=-1)
+        offsets = (normals * from_camera).sum(dim=-1)
         signs = torch.where(offsets.detach() > 0.0, -1.0, 1.0).to(normals)
         return normals * signs[:, None], offsets * signs
 
@@ -203,11 +230,12 @@ def splats_from_tensors(tensors: Mapping[str, Tensor], place: str) -> Splats:
     InputError
         One is missing, has another shape or type, or numbers that are not finite.
     """
-    expected = {**SHAPES, "panels": ()}
     n = len(tensors["means"]) if "means" in tensors and tensors["means"].ndim else 0
-    for name, shape in expected.items():
+    for name in (*SHAPES, "panels"):
         if name not in tensors:
             raise InputError(f"{place}: has no '{name}' of splats; it is damaged, or of another program")
+    parameters = {name: value for name, value in tensors.items() if name != "panels"}
+    for name, shape in (expected_shapes(parameters) | {"panels": ()}).items():
         found = tensors[name]
         if tuple(found.shape) != (n, *shape):
             raise InputError(f"{place}: {name}: expected shape {(n, *shape)}, found {tuple(found.shape)}")
@@ -217,4 +245,11 @@ def splats_from_tensors(tensors: Mapping[str, Tensor], place: str) -> Splats:
             raise InputError(f"{place}: {name}: holds numbers that are not finite; train again")
     if bool((tensors["panels"] < NO_PANEL).any()):
         raise InputError(f"{place}: panels: expected numbers from {NO_PANEL} on, found {int(tensors['panels'].min())}")
-    return Splats({name: tensors[name] for name in SHAPES}, tensors["panels"])
+    return Splats(parameters, tensors["panels"])
+
+
+def expected_shapes(values: Mapping[str, Tensor]) -> dict[str, tuple[int, ...]]:
+    """Shapes that parameters should have for one splat: of `SHAPES`, or three sizes; all others' are their own."""
+    shapes = {name: tuple(value.shape[1:]) for name, value in values.items()} | SHAPES
+    sizes = values["log_scales"].shape
+    return shapes | {"log_scales": (SOLID,)} if sizes[1:] == (SOLID,) else shapes

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from reconstruction.splatting.ellipsoid_projection import project_ellipsoids
 from reconstruction.splatting.projection import Projected, depths_of, project
-from reconstruction.splatting.raster import Raster, RasterSettings
+from reconstruction.splatting.raster import SOLID, Raster, RasterSettings
 from reconstruction.splatting.views import View
 
 LEAST_AREA_PX2 = 1e-6
@@ -45,7 +46,9 @@ def rasterise_torch(
 ) -> Raster:
     """See `rasteriser.rasterise`; results have the precision of `means`."""
     drawn = _drawn_in_order(means, quats_wxyz, scales, opacities, view, settings)
-    projected = project(means[drawn], quats_wxyz[drawn], scales[drawn], view)
+    is_solid = scales.shape[1] == SOLID
+    shapes = means[drawn], quats_wxyz[drawn], scales[drawn]
+    projected = project_ellipsoids(*shapes, view, settings.blur_px) if is_solid else project(*shapes, view)
     if screen_offsets is not None:
         shifted = projected.centres_px + screen_offsets[drawn].to(means.dtype)
         projected = Projected(shifted, projected.depths_m, projected.jacobians_px, projected.slopes)
@@ -55,7 +58,10 @@ def rasterise_torch(
     weights, radii = torch.zeros_like(means[:, 0]), torch.zeros_like(means[:, 0])
     votes: dict[int, Tensor] = {}
     for place, index in enumerate(drawn.tolist()):
-        image = _splat_image(projected, place, opacities[index], x, y, min(view.fx_px, view.fy_px), settings)
+        if is_solid:
+            image = _ellipsoid_image(projected, place, opacities[index], x, y, settings)
+        else:
+            image = _splat_image(projected, place, opacities[index], x, y, min(view.fx_px, view.fy_px), settings)
         is_open = through.detach() >= settings.min_transmittance
         alpha = torch.where(is_open, image.alpha, torch.zeros_like(x))
         weight = through * alpha
@@ -119,8 +125,23 @@ def _splat_image(
         depth = middle / d
     else:
         exponent, depth = low_pass, middle.expand_as(x)
+    return SplatImage(_covered(opacity, exponent, settings), depth)
+
+
+def _ellipsoid_image(
+    splats: Projected, place: int, opacity: Tensor, x_px: Tensor, y_px: Tensor, settings: RasterSettings
+) -> SplatImage:
+    """The same of a disc that faces the camera, whose Jacobian is lower triangular."""
+    (j_xu, _), (j_yu, j_yv) = (row.unbind() for row in splats.jacobians_px[place])
+    u = (x_px - splats.centres_px[place, 0]) / j_xu
+    v = (y_px - splats.centres_px[place, 1] - j_yu * u) / j_yv
+    return SplatImage(_covered(opacity, u * u + v * v, settings), splats.depths_m[place].expand_as(u))
+
+
+def _covered(opacity: Tensor, exponent: Tensor, settings: RasterSettings) -> Tensor:
+    """Opacity * exp(-exponent / 2), limited, and 0 below the cut."""
     alpha = (opacity * torch.exp(-0.5 * exponent)).clamp(max=settings.max_alpha)
-    return SplatImage(torch.where(alpha >= settings.min_alpha, alpha, torch.zeros_like(alpha)), depth)
+    return torch.where(alpha >= settings.min_alpha, alpha, torch.zeros_like(alpha))
 
 
 def _depth_limits(middle: Tensor, slopes: Tensor, focal_px: float, settings: RasterSettings) -> tuple[float, float]:

@@ -30,6 +30,9 @@ class View:
         Focal lengths and principal point, which may lie outside the picture.
     cam_from_world
         Rigid motion from the model's frame to camera axes, shape (4, 4), float64, in main memory.
+    whole_px
+        Of the picture that this is a window of, counted from the window's first pixel: left, right, top, bottom. None
+        where it is all there is.
     """
 
     width_px: int
@@ -39,6 +42,7 @@ class View:
     cx_px: float
     cy_px: float
     cam_from_world: Tensor
+    whole_px: tuple[int, int, int, int] | None = None
 
     def __post_init__(self) -> None:
         if self.width_px < 1 or self.height_px < 1:
@@ -85,7 +89,20 @@ class View:
 
     def cropped(self, x_px: int, y_px: int, width_px: int, height_px: int) -> View:
         """The window of the picture whose first pixel is column `x_px`, row `y_px`; it may reach beyond the picture."""
-        return replace(self, width_px=width_px, height_px=height_px, cx_px=self.cx_px - x_px, cy_px=self.cy_px - y_px)
+        left, right, top, bottom = self.of_picture_px
+        return replace(
+            self,
+            width_px=width_px,
+            height_px=height_px,
+            cx_px=self.cx_px - x_px,
+            cy_px=self.cy_px - y_px,
+            whole_px=(left - x_px, right - x_px, top - y_px, bottom - y_px),
+        )
+
+    @property
+    def of_picture_px(self) -> tuple[int, int, int, int]:
+        """Left, right, top and bottom of the whole picture, counted from the window's first pixel."""
+        return self.whole_px or (0, self.width_px, 0, self.height_px)
 
     def directions(self, dtype: torch.dtype = torch.float32) -> Tensor:
         """Unit rays through the pixels' middles in the model's frame, shape (h, w, 3)."""

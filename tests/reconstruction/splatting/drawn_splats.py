@@ -78,6 +78,13 @@ def random_splats(n: int, view: View, seed: int = 0, channels: int = 5) -> MadeS
     )
 
 
+def random_ellipsoids(n: int, view: View, seed: int = 0, channels: int = 5) -> MadeSplats:
+    """The same places with a third size."""
+    splats = random_splats(n, view, seed, channels)
+    third = torch.exp(-2.6 + 0.9 * torch.randn(n, 1, generator=seeded(seed + 1000), dtype=torch.float64))
+    return rounded(splats.changed(scales=torch.cat([splats.scales, third], dim=1)))
+
+
 def rounded(splats: MadeSplats) -> MadeSplats:
     """To what float32 can hold, so that both precisions draw the same splats."""
     return MadeSplats(*(t.to(torch.float32).to(torch.float64) for t in splats.tensors))
@@ -109,6 +116,21 @@ def draw(
     return Drawn(_without_gradients(raster), gradients)
 
 
+def both(splats: MadeSplats, settings: RasterSettings = USUAL) -> Drawn:
+    """Draw with both rasterisers, which must agree and give numbers; the compiled one's comes back."""
+    view = level_view()
+    truth = draw(rounded(splats), view, "torch", settings=settings)
+    found = draw(rounded(splats), view, "numba", settings=settings)
+    for name in ("features", "alphas", "depths", "weights"):
+        values = getattr(found.raster, name)
+        assert values.isfinite().all(), name
+        torch.testing.assert_close(values.double(), getattr(truth.raster, name), atol=2e-5, rtol=1e-4)
+    for gradient, true_gradient in zip(found.gradients, truth.gradients, strict=True):
+        assert gradient.isfinite().all()
+        assert relative_error(gradient, true_gradient) < 2e-3
+    return found
+
+
 def _without_gradients(raster: Raster) -> Raster:
     values = {field.name: getattr(raster, field.name) for field in fields(raster)}
     return Raster(**{name: None if value is None else value.detach() for name, value in values.items()})
@@ -132,12 +154,12 @@ def one_splat(
     *,
     depth_m: float = 4.0,
     tilt_deg: float = 0.0,
-    scale_m: tuple[float, float] = (0.3, 0.3),
+    scale_m: tuple[float, ...] = (0.3, 0.3),
     opacity: float = 0.8,
     x_m: float = 0.0,
     y_m: float = 0.0,
 ) -> MadeSplats:
-    """A splat before `level_view`, turned about the vertical."""
+    """A splat before `level_view`, turned about the vertical; an ellipsoid, where it has three sizes."""
     half = torch.deg2rad(torch.tensor(tilt_deg, dtype=torch.float64)) / 2.0
     zero = torch.zeros((), dtype=torch.float64)
     return MadeSplats(

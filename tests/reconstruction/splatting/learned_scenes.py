@@ -11,7 +11,7 @@ from torch import Tensor
 from reconstruction.splatting.densification import Change, Densification
 from reconstruction.splatting.raster import Raster, RasterSettings
 from reconstruction.splatting.rasteriser import rasterise
-from reconstruction.splatting.splats import Splats
+from reconstruction.splatting.splats import SHAPES, Splats
 from reconstruction.splatting.views import View
 
 ONE_THREAD = RasterSettings(threads=1)
@@ -67,6 +67,13 @@ def wall(columns: int, rows: int, colours: Tensor, opacity: float = 0.9, panels:
     means = torch.stack([across.flatten(), torch.zeros(n), up.flatten()], dim=1)
     scales = 0.6 * torch.tensor([2.4 / columns, 1.8 / rows]).repeat(n, 1)
     return Splats.of(means, facing(n), scales, torch.full((n,), opacity), colours, panels)
+
+
+def solid(discs: Splats, share: float = 0.5) -> Splats:
+    """Ellipsoids in the place of discs, so many times as thick as narrow."""
+    values = {name: getattr(discs, name).detach() for name in SHAPES}
+    thickness = values["log_scales"].min(dim=1, keepdim=True).values + math.log(share)
+    return Splats(values | {"log_scales": torch.cat([values["log_scales"], thickness], dim=1)}, discs.panels)
 
 
 def picture_of(splats: Splats, view: View, degree: int = 0, offsets: Tensor | None = None) -> Raster:

@@ -8,15 +8,14 @@ from reconstruction.splatting.densification import (
     FixedNumber,
     Limits,
     forget,
-    in_plane,
     keep_within,
     n_dead,
     rearrange,
-    tangents,
+    within,
 )
 from reconstruction.splatting.raster import Raster
 from reconstruction.splatting.seen_splats import HIDDEN_VIEWS, SeenSplats
-from reconstruction.splatting.splats import SHAPES, normals_of
+from reconstruction.splatting.splats import SHAPES, Splats, normals_of
 from tests.reconstruction.splatting.learned_scenes import (
     adam,
     picture_of,
@@ -103,18 +102,21 @@ def test_splats_at_the_cut_are_dead():
     assert n_dead(splats) == 2
 
 
-def test_tangents_and_normal_make_a_right_handed_frame():
-    quats = torch.randn(40, 4, generator=torch.Generator().manual_seed(0))
-    first, second = tangents(quats)
-    assert torch.allclose(torch.linalg.cross(first, second), normals_of(quats), atol=1e-5)
-    assert (first * second).sum(dim=1).abs().max() < 1e-6
-
-
-def test_displacements_lie_in_the_plane_and_are_as_long_as_told():
+def test_displacements_of_discs_lie_in_their_planes_and_are_as_long_as_told():
     splats = random_splats(6)
-    found = in_plane(splats, torch.arange(6), torch.tensor([[1.0, 0.0]]).repeat(6, 1))
-    assert torch.allclose(found.norm(dim=1), splats.scales[:, 0], rtol=1e-5)
-    assert (found * normals_of(splats.quats)).sum(dim=1).abs().max() < 1e-6
+    along_u, along_v = (within(splats, torch.arange(6), torch.eye(2)[axis].repeat(6, 1)) for axis in (0, 1))
+    assert torch.allclose(along_u.norm(dim=1), splats.scales[:, 0], rtol=1e-5)
+    assert torch.allclose(along_v.norm(dim=1), splats.scales[:, 1], rtol=1e-5)
+    assert (along_u * along_v).sum(dim=1).abs().max() < 1e-6
+    assert (along_u * normals_of(splats.quats)).sum(dim=1).abs().max() < 1e-6
+
+
+def test_ellipsoids_are_moved_along_their_normals_too():
+    discs = random_splats(6)
+    values = {name: getattr(discs, name).detach() for name in SHAPES}
+    values["log_scales"] = torch.cat([values["log_scales"], torch.full((6, 1), math.log(0.02))], dim=1)
+    found = within(Splats(values, discs.panels), torch.arange(6), torch.tensor([[0.0, 0.0, 3.0]]).repeat(6, 1))
+    assert torch.allclose(found, 0.06 * normals_of(discs.quats), atol=1e-6)
 
 
 def test_pulls_are_those_of_the_whole_picture_when_a_window_is_seen():

@@ -24,6 +24,8 @@ from tests.reconstruction.splatting.drawn_splats import (
     MadeSplats,
     draw,
     level_view,
+    one_splat,
+    random_ellipsoids,
     random_splats,
     relative_error,
     seeded,
@@ -92,9 +94,10 @@ def test_without_cuda_or_gsplat_the_message_says_so() -> None:
 
 
 @on_cuda
-def test_gsplat_s_raster_is_the_defined_one() -> None:
+@pytest.mark.parametrize("made", [random_splats, random_ellipsoids])
+def test_gsplat_s_raster_is_the_defined_one(made: Callable[..., MadeSplats]) -> None:
     view = turned_view(64, 48, 50.0)
-    splats = random_splats(200, view, 3, channels=7)
+    splats = made(200, view, 3, channels=7)
     splats = splats.changed(opacities=splats.opacities.clamp(max=0.9))
     labels = torch.arange(200, dtype=torch.int32) % 40
     inputs = [t.float().cuda().requires_grad_() for t in splats.tensors]
@@ -124,3 +127,12 @@ def test_gsplat_s_depth_is_exact_on_a_plane() -> None:
     splats, depths = tilted_plane(view, 45.0, 0.2)
     raster = rasterise(*(t.float().cuda() for t in splats.tensors), view)
     assert float((raster.depths / raster.alphas - depths.cuda()).abs().max()) < 1e-3
+
+
+@on_cuda
+def test_gsplat_s_depth_of_an_ellipsoid_is_that_of_its_middle() -> None:
+    tensors = [t.float().cuda() for t in one_splat(depth_m=4.0, tilt_deg=40.0, scale_m=(0.3, 0.4, 0.1)).tensors]
+    raster = rasterise(*tensors, level_view())
+    is_seen = raster.alphas > 0.01
+    assert is_seen.any()
+    assert float(((raster.depths / raster.alphas)[is_seen] - 4.0).abs().max()) < 1e-4

@@ -9,7 +9,7 @@ from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY
 from reconstruction.splatting.harmonic_colour import display_colours
 from reconstruction.splatting.ply import read_splats, write_splats
 from reconstruction.splatting.ply_file import read_blocks, read_header, write_blocks
-from reconstruction.splatting.splats import SHAPES
+from reconstruction.splatting.splats import SHAPES, Splats
 from tests.reconstruction.splatting.learned_scenes import random_splats
 
 
@@ -100,6 +100,7 @@ def test_splats_of_another_program_with_lower_harmonics_are_no_glass(tmp_path, s
         ({"rot_2": np.nan}, "not finite, among them quats"),
         ({"refgs_r": np.inf}, "not finite, among them reflectivity_logits"),
         ({"panel_id": -7}, "sizes or panels that cannot be"),
+        ({"scale_0": -np.inf}, "not finite, among them log_scales"),
         ({"scale_0": 80.0}, "sizes or panels that cannot be"),
     ],
 )
@@ -109,9 +110,60 @@ def test_files_that_are_no_splats_are_refused(tmp_path, splats, change, message)
         read_splats(tmp_path / "a.ply")
 
 
-def test_ellipsoids_are_refused(tmp_path, splats):
-    rewritten(tmp_path / "a.ply", splats, {"scale_2": 0.0}, "3dgs")
-    with pytest.raises(InputError, match="holds ellipsoids"):
+@pytest.fixture
+def ellipsoids(splats):
+    values = {name: getattr(splats, name).detach() for name in SHAPES}
+    third = torch.randn(30, 1, generator=torch.Generator().manual_seed(4)) - 3.0
+    return Splats(values | {"log_scales": torch.cat([values["log_scales"], third], dim=1)}, splats.panels)
+
+
+def test_ellipsoids_come_back_bit_by_bit_with_three_true_sizes(tmp_path, ellipsoids):
+    write_splats(tmp_path / "a.ply", ellipsoids, "3dgs", (1.5, 0.0, 2.0))
+    header, table = table_of(tmp_path / "a.ply")
+    assert [name for name, _ in header.columns][54:62] == [
+        *("opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3")
+    ]
+    assert np.array_equal(table["scale_2"], ellipsoids.log_scales[:, 2].detach().numpy())
+    assert not any(table[name].any() for name in ("nx", "ny", "nz"))
+    found = read_splats(tmp_path / "a.ply")
+    assert not found.splats.is_flat
+    for name in (*SHAPES, "panels"):
+        assert torch.equal(getattr(found.splats, name), getattr(ellipsoids, name))
+
+
+def test_ellipsoids_that_are_all_flat_stay_ellipsoids_in_files_of_ours(tmp_path, ellipsoids):
+    with torch.no_grad():
+        ellipsoids.log_scales[:, 2] = -20.0
+    write_splats(tmp_path / "a.ply", ellipsoids, "3dgs")
+    assert torch.equal(read_splats(tmp_path / "a.ply").splats.log_scales, ellipsoids.log_scales)
+
+
+def test_ellipsoids_are_not_written_as_discs(tmp_path, ellipsoids):
+    with pytest.raises(ValueError, match="expected '3dgs' for ellipsoids"):
+        write_splats(tmp_path / "a.ply", ellipsoids, "2dgs")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("thickness", "is_flat"), [(-13.8, True), (-30.0, True), (-np.inf, True), (-3.0, False)])
+def test_other_programs_files_hold_discs_where_the_third_size_says_nothing(tmp_path, splats, thickness, is_flat):
+    ours = ["refgs_r", "refgs_f0_0", "refgs_f0_1", "refgs_f0_2", "panel_id"]
+    rewritten(tmp_path / "a.ply", splats, {**dict.fromkeys(ours), "scale_2": thickness}, "3dgs")
+    found = read_splats(tmp_path / "a.ply").splats
+    assert found.is_flat == is_flat
+    assert torch.equal(found.log_scales[:, :2], splats.log_scales)
+
+
+def test_one_ellipsoid_among_discs_makes_a_file_of_ellipsoids(tmp_path, splats):
+    thickness = np.full(30, -14.0, np.float32)
+    thickness[17] = -2.5
+    rewritten(tmp_path / "a.ply", splats, {"scale_2": thickness}, "3dgs")
+    found = read_splats(tmp_path / "a.ply").splats
+    assert np.array_equal(found.log_scales[:, 2].detach().numpy(), thickness)
+
+
+def test_a_third_size_that_is_none_is_refused(tmp_path, splats):
+    rewritten(tmp_path / "a.ply", splats, {"scale_2": np.nan}, "3dgs")
+    with pytest.raises(InputError, match="not finite, among them log_scales"):
         read_splats(tmp_path / "a.ply")
 
 

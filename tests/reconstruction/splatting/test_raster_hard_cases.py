@@ -10,8 +10,7 @@ import torch
 from reconstruction.splatting.raster import RasterSettings
 from reconstruction.splatting.rasteriser import USUAL, Backend, rasterise
 from tests.reconstruction.splatting.drawn_splats import (
-    Drawn,
-    MadeSplats,
+    both,
     draw,
     level_view,
     one_splat,
@@ -23,21 +22,6 @@ from tests.reconstruction.splatting.drawn_splats import (
 )
 
 BACKENDS: tuple[Backend, ...] = ("numba", "torch")
-
-
-def both(splats: MadeSplats, settings: RasterSettings = USUAL) -> Drawn:
-    """Draw with both rasterisers, which must agree and give numbers; the compiled one's comes back."""
-    view = level_view()
-    truth = draw(rounded(splats), view, "torch", settings=settings)
-    found = draw(rounded(splats), view, "numba", settings=settings)
-    for name in ("features", "alphas", "depths", "weights"):
-        values = getattr(found.raster, name)
-        assert values.isfinite().all(), name
-        torch.testing.assert_close(values.double(), getattr(truth.raster, name), atol=2e-5, rtol=1e-4)
-    for gradient, true_gradient in zip(found.gradients, truth.gradients, strict=True):
-        assert gradient.isfinite().all()
-        assert relative_error(gradient, true_gradient) < 2e-3
-    return found
 
 
 @pytest.mark.parametrize("tilt_deg", [0.0, 30.0, 60.0, 80.0, 89.0, 89.9, 89.99, 89.9999, 90.0, 90.01, 120.0, 180.0])

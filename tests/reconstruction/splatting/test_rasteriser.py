@@ -163,8 +163,8 @@ def test_nothing_to_draw_is_an_empty_picture() -> None:
 def test_wrong_shapes_and_precisions_are_refused() -> None:
     view = turned_view()
     means, quats, scales, opacities, features = random_splats(4, view).tensors
-    with pytest.raises(ValueError, match=r"scales: expected shape \(4, 2\), got \(4, 3\)"):
-        rasterise(means, quats, torch.ones(4, 3), opacities, features, view)
+    with pytest.raises(ValueError, match=r"scales: expected shape \(4, 2\) or \(4, 3\), got \(4, 4\)"):
+        rasterise(means, quats, torch.ones(4, 4), opacities, features, view)
     with pytest.raises(ValueError, match=r"features: expected torch\.float64 on cpu as the means are"):
         rasterise(means, quats, scales, opacities, features.float(), view)
     with pytest.raises(ValueError, match="numba: expected float32"):

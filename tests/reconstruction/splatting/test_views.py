@@ -44,6 +44,13 @@ def test_a_window_has_the_directions_of_its_part_of_the_picture() -> None:
     torch.testing.assert_close(window.directions(torch.float64), view.directions(torch.float64)[3:23, 7:19])
 
 
+def test_a_window_of_a_window_knows_the_whole_picture() -> None:
+    view = View.of(PHOTO, ORIGIN)
+    assert view.of_picture_px == (0, 40, 0, 30)
+    assert view.cropped(7, 3, 12, 20).of_picture_px == (-7, 33, -3, 27)
+    assert view.cropped(7, 3, 12, 20).cropped(-2, 1, 5, 5).of_picture_px == (-5, 35, -4, 26)
+
+
 def test_distorted_photos_are_refused_with_what_to_do() -> None:
     bent = replace(PHOTO, intrinsics=replace(LENS, distortion=(0.1, 0.0, 0.0, 0.0, 0.0)))
     with pytest.raises(InputError, match=r"a\.jpg: the picture is distorted.*prepare"):
