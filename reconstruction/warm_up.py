@@ -8,6 +8,8 @@ import numpy as np
 import torch
 
 from planning.effects import Wish
+from reconstruction.baselines.cube_map import CubeMap
+from reconstruction.baselines.ref_gs import SphMip
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels
 from reconstruction.modelling.dssim_kernel import dissimilarity
@@ -51,6 +53,7 @@ def compile_kernels() -> None:
     _draw_splats()
     _march_grid()
     _shade_panes()
+    _shade_by_cubes()
     court = bundled_scene("court")
     eastwards = court.panes.corners_enu_m[0].mean(axis=0) + np.array([12.0, 0.0, 0.0])
     facing = PosedPhoto("", Path(), lens, Pose.looking(eastwards, -90.0, 0.0))
@@ -96,6 +99,14 @@ def _shade_panes() -> None:
     texture = HarmonicTexture(torch.from_numpy(planes.rescaled(corners)), 2, torch.full((1, 3), 0.5), 1)
     grid = RadianceGrid(GridBox(0.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (4, 4, 4), 0.5, 1.0), 0.5, 0, 4)
     ReflectivePanels(texture, GlassLight(grid, planes, GlassLearned(tilts=True)))(rays).sum().backward()
+
+
+def _shade_by_cubes() -> None:
+    """Lookups in an environment cube and in a grid of features, there and back."""
+    directions = torch.tensor([[0.0, 0.6, 0.8], [1.0, 0.0, 0.0]], requires_grad=True)
+    roughness = torch.tensor([0.2, 0.7], requires_grad=True)
+    light = CubeMap(8)(directions, roughness).sum() + SphMip(8, 2, 16)(directions, roughness).sum()
+    light.backward()
 
 
 if __name__ == "__main__":

@@ -9,7 +9,8 @@ from typing import Any
 
 from groundstation.cli.lists import above_zero, count
 from planning.errors import InputError
-from reconstruction.modelling.preset_names import METHODS, PRESETS
+from reconstruction.modelling.methods import DEFAULT_METHOD, METHODS
+from reconstruction.modelling.preset_names import PRESETS
 
 DEFAULT_SECONDS = 60.0
 
@@ -40,7 +41,7 @@ def add_arguments(parser: Any) -> None:
     add = parser.add_argument
     add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
     add("--preset", choices=tuple(PRESETS), default="10min", help="settings to start from (default 10min)")
-    add("--method", choices=METHODS, help="method to start from (default refglass-gs)")
+    add("--method", choices=tuple(METHODS), help=f"method to start from (default {DEFAULT_METHOD})")
     add("--seconds", type=above_zero, metavar="S", help=f"of each training (default {DEFAULT_SECONDS:g})")
     add("--iterations", type=count, metavar="N", help="of each training, whatever time they take, instead of --seconds")
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")

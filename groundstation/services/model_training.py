@@ -4,45 +4,37 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.services.model_wish import DEFAULT_PRESET, TrainWish
 from planning.errors import InputError
 from planning.folders import make_folder
 from planning.json_file import check_output, write_atomically
 from planning.progress import QUIET, Monitor, Stop, Trace, never
 
 if TYPE_CHECKING:
+    from planning.effects import Decision
     from reconstruction.modelling.config import TrainConfig
     from reconstruction.modelling.ranks import Ranks
     from reconstruction.modelling.saved import TrainedModel
     from reconstruction.modelling.stopwatch import Stopwatch
-    from reconstruction.modelling.watching import Preview, Watching
+    from reconstruction.modelling.watching import Preview, Visit, Watching
 
-DEFAULT_PRESET = "10min"
+__all__ = [
+    "DEFAULT_PRESET",
+    "TrainWish",
+    "TrainedFiles",
+    "config_of_wish",
+    "light_of_scene",
+    "preview_to",
+    "train_files",
+    "train_summary",
+]
 
-
-@dataclass(frozen=True, slots=True)
-class TrainWish:
-    """What is asked of a training; None: as the preset has it.
-
-    Parameters
-    ----------
-    settings
-        TOML file with settings that differ from the preset's.
-    start
-        PLY file of splats to start from.
-    """
-
-    preset: str = DEFAULT_PRESET
-    method: str | None = None
-    light: str | None = None
-    iterations: int | None = None
-    time_limit_s: float | None = None
-    seed: int | None = None
-    settings: Path | None = None
-    start: Path | None = None
+PAUSE_S = 0.05
+"""Between looks at whether a pause is over."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +47,7 @@ class TrainedFiles:
 
 
 def config_of_wish(wish: TrainWish) -> TrainConfig:
-    """Settings of a wish: the preset's, then the file's, then what was asked for by itself.
+    """Settings of a wish: the preset's, then the method's, then the file's, then what was asked for by itself.
 
     Raises
     ------
@@ -68,6 +60,8 @@ def config_of_wish(wish: TrainWish) -> TrainConfig:
     from reconstruction.modelling.presets import preset, with_wishes
 
     config = preset(wish.preset)
+    if wish.method is not None:
+        config = config_of({"method": wish.method}, config, Path("--method"))
     if wish.settings is not None:
         try:
             content = tomllib.loads(wish.settings.read_text("utf-8"))
@@ -76,14 +70,15 @@ def config_of_wish(wish: TrainWish) -> TrainConfig:
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
             raise InputError(f"{wish.settings}: not valid TOML ({error})") from error
         config = config_of(content, config, wish.settings)
-    return with_wishes(
+    found = with_wishes(
         config,
-        method=wish.method,
         light=wish.light,
         iterations=wish.iterations,
         time_limit_s=wish.time_limit_s,
         seed=wish.seed,
     )
+    wishes = {"device": wish.device, "memory_bytes": wish.memory_bytes}
+    return replace(found, **{name: value for name, value in wishes.items() if value is not None})  # type: ignore[arg-type]
 
 
 def train_files(
@@ -98,16 +93,19 @@ def train_files(
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
     begun_s: float | None = None,
+    visit: Callable[[Visit], None] | None = None,
 ) -> TrainedFiles:
     """Train a model of a data set folder into a folder; or go on with the training that was interrupted there.
 
     A finished model that is there stays until the new one is whole. Cancelled, the training's state is kept, and
-    `resume` goes on with it; stopped, the model is what it is then.
+    `resume` goes on with it; stopped, its rates fall to their last, and the model is what it is then.
 
     Parameters
     ----------
     begun_s
         What `time.perf_counter` said when the time limit began to count; None for now.
+    visit
+        See `Watching`.
 
     Raises
     ------
@@ -127,12 +125,61 @@ def train_files(
 
     watch = Stopwatch(begun_s=begun_s)
     with ranks_of_environment() as ranks:
-        watching = Watching(monitor, stop, pause, trace, preview if ranks.is_first else None)
+        waiting = _Waiting(monitor, pause, watch)
+        watching = Watching(waiting, stop, pause, trace, preview if ranks.is_first else None, visit)
         trained = _trained(dataset, out, wish, resume, watching, ranks, watch)
         if ranks.is_first:
             save_model(trained, out)
             (out / CHECKPOINT).unlink(missing_ok=True)
     return TrainedFiles(out, trained, ranks.is_first)
+
+
+class _Waiting:
+    """Monitor of what comes before the joint training: it waits while there is a pause. The joint one waits itself."""
+
+    def __init__(self, monitor: Monitor, pause: Stop, watch: Stopwatch) -> None:
+        self._monitor, self._pause, self._watch = monitor, pause, watch
+
+    def report(self, stage: str, done: float, total: float) -> None:
+        """Pass progress on, and return when there is no pause."""
+        self._monitor.report(stage, done, total)
+        if stage in JOINT_STAGES or not self._pause():
+            return
+        with self._watch.paused():
+            while self._pause():
+                self._monitor.report("paused", done, total)
+                time.sleep(PAUSE_S)
+
+
+JOINT_STAGES = frozenset({"training", "paused", "settling"})
+
+
+def light_of_scene(dataset: Path, wish: TrainWish, monitor: Monitor = QUIET) -> tuple[str, tuple[Decision, ...]]:
+    """The model of mirrored light that the photos of a data set call for, and the decisions that lead to it.
+
+    Raises
+    ------
+    InputError
+        The data set cannot be used, or shows no glass.
+    OperationCancelled
+        From `monitor`.
+    """
+    from reconstruction.reflections.choose_light import choose_light
+    from reconstruction.reflections.glass_rays import glass_rays
+    from reconstruction.reflections.photo_set import held_out_names, read_photo_set
+
+    config = config_of_wish(wish)
+    source = read_photo_set(dataset)
+    held_out = held_out_names([photo.name for photo in source.photos], config.held_out, config.seed)
+    learned = [photo for photo in source.photos if photo.name not in held_out]
+    rays = glass_rays(source, learned, config.memory_bytes, config.seed, monitor)
+    if not len(rays):
+        raise InputError(
+            f"{dataset}: none of {len(learned)} photos has a pixel that lies whole on a panel; take larger photos or "
+            "come closer"
+        )
+    tried = replace(config.reflections, seed=config.seed, threads=config.threads, memory_bytes=config.memory_bytes)
+    return choose_light(rays, source.panels, tried, monitor, device=config.device)
 
 
 def _trained(

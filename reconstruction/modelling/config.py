@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 import types
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args, get_type_hints
 
 from planning.errors import InputError
 from planning.json_file import check_settings, to_record
+from reconstruction.modelling.methods import DEFAULT_METHOD, Method, method_named
 from reconstruction.reflections.config import PAPER_STAGES, HighFrequencyStage, ReflectionConfig
 from reconstruction.splatting.raster import RasterSettings
-
-Method = Literal["refglass-gs", "2dgs"]
-"""The paper's model of splats and mirrored light, or splats alone (Huang et al., 2024), to compare with."""
 
 LightWish = Literal["auto", "harmonics", "environment-map", "mlp", "radiance-grid"]
 """What mirrored light is learned with; `auto` leaves it to the scene."""
@@ -41,6 +40,8 @@ class LossWeights:
         lambda_np; 1 in the paper, where mirrored directions follow the splats' normals: use it with `geometry`
         `splats`. With exact planes nothing mirrored depends on them, and 1 holds splats back: against 0 it cost 0.34 dB
         on facades of unseen views, and 0.1 cost 0.11 dB. It still closes panes, behind which nothing is to be seen.
+    normal_smoothness
+        Of changes of normals where the photo does not change (Yao et al., 2025): 0 but for the method it is from.
     consistent_from
         Share of the training after which normals have to agree with the depth map (Eq. 26). Before, depths are those
         of the start and of splats that still move; 2DGS, too, waits for about a quarter.
@@ -54,6 +55,7 @@ class LossWeights:
     dssim: float = 0.2
     normal_consistency: float = 0.05
     normal_prior: float = 0.1
+    normal_smoothness: float = 0.0
     consistent_from: float = 0.25
     high_frequency: tuple[HighFrequencyStage, ...] = PAPER_STAGES
     high_frequency_from: float = 0.25
@@ -62,7 +64,7 @@ class LossWeights:
         _require_share("dssim", self.dssim)
         _require_share("consistent_from", self.consistent_from)
         _require_share("high_frequency_from", self.high_frequency_from)
-        for name in ("normal_consistency", "normal_prior"):
+        for name in ("normal_consistency", "normal_prior", "normal_smoothness"):
             _require(name, getattr(self, name), "0 or more", getattr(self, name) >= 0.0)
 
     def stage(self, progress: float) -> HighFrequencyStage | None:
@@ -143,8 +145,8 @@ class TrainConfig:
     Parameters
     ----------
     method, light, geometry
-        What is trained. With `panels`, place and normal of glass are exact; with `splats` they are the rendered ones,
-        as in the paper, and errors of both show in what is mirrored.
+        What is trained, and one of `METHODS` as how. With `panels`, place and normal of glass are exact; with `splats`
+        they are the rendered ones, as in the paper, and errors of both show in what is mirrored.
     iterations
         Steps of Adam, one photo or window each.
     time_limit_s
@@ -181,7 +183,7 @@ class TrainConfig:
         Between looks at views that are held out, for the curve of quality against time.
     """
 
-    method: Method = "refglass-gs"
+    method: str = DEFAULT_METHOD
     light: LightWish = "auto"
     geometry: GeometrySource = "panels"
     iterations: int = 6000
@@ -209,6 +211,7 @@ class TrainConfig:
     score_every_s: float = 20.0
 
     def __post_init__(self) -> None:
+        method_named(self.method)
         for name in ("iterations", "n_splats", "max_splats", "window_px", "reduce", "memory_bytes", "threads"):
             _require(name, getattr(self, name), "1 or more", getattr(self, name) >= 1)
         _require("max_splats", self.max_splats, f"n_splats ({self.n_splats}) or more", self.max_splats >= self.n_splats)
@@ -221,6 +224,11 @@ class TrainConfig:
         if self.time_limit_s is not None:
             _require("time_limit_s", self.time_limit_s, "more than 0", self.time_limit_s > 0.0)
 
+    @property
+    def trained_by(self) -> Method:
+        """What its method is."""
+        return method_named(self.method)
+
     def degree_at(self, progress: float) -> int:
         """Of spherical harmonics, by progress, 0 to 1."""
         return self.degree if self.degree_every == 0.0 else min(self.degree, int(progress / self.degree_every))
@@ -229,6 +237,8 @@ class TrainConfig:
 def config_of(content: dict[str, Any], base: TrainConfig, path: Path) -> TrainConfig:
     """Settings that are those of `base` where `content`, as read from TOML or JSON, does not say otherwise.
 
+    A method that it names brings its own settings.
+
     Raises
     ------
     InputError
@@ -236,7 +246,8 @@ def config_of(content: dict[str, Any], base: TrainConfig, path: Path) -> TrainCo
     """
     _check_keys(content, TrainConfig, path, "")
     try:
-        return to_record(_merged(asdict(base), content), TrainConfig, path)
+        of_method = method_named(content["method"]).settings if isinstance(content.get("method"), str) else {}
+        return to_record(_merged(_merged(asdict(base), of_method), content), TrainConfig, path)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
 
@@ -256,7 +267,7 @@ def _record_in(hint: Any) -> type[Any] | None:
     return next((option for option in options if is_dataclass(option) and isinstance(option, type)), None)
 
 
-def _merged(base: dict[str, Any], content: dict[str, Any]) -> dict[str, Any]:
+def _merged(base: dict[str, Any], content: Mapping[str, Any]) -> dict[str, Any]:
     merged = dict(base)
     for key, value in content.items():
         both = isinstance(value, dict) and isinstance(base.get(key), dict)

@@ -7,6 +7,7 @@ PICTURE = "picture"
 LAYERS = {
     "diffuse": "(1 - R) c and the sky: what is seen without mirroring",
     "reflection": "R F L: what mirroring adds",
+    "fresnel": "F: share of the light that glass reflects at this angle",
     "mirrored": "L: the light that glass mirrors, before it does",
     "reflectivity": "R, 0 to 1",
     "alpha": "what splats cover, 0 to 1",

@@ -20,6 +20,7 @@ from torch import Tensor, nn
 from reconstruction.modelling.config import GeometrySource
 from reconstruction.modelling.losses import unit
 from reconstruction.modelling.panels_in_view import panels_in_view, photo_of
+from reconstruction.modelling.shader import Shaded, Shader
 from reconstruction.reflections.config import Precision, ReflectionConfig
 from reconstruction.reflections.glass_light import GlassLight
 from reconstruction.reflections.glass_rays import rays_of_pixels
@@ -36,7 +37,7 @@ from reconstruction.reflections.shading import (
 from reconstruction.splatting.raster import Raster, RasterSettings
 from reconstruction.splatting.rasteriser import rasterise
 from reconstruction.splatting.sky import Sky
-from reconstruction.splatting.splats import FEATURES, SHAPES, Splats
+from reconstruction.splatting.splats import FEATURES, Splats
 from reconstruction.splatting.views import View
 
 Array = NDArray[np.float64]
@@ -49,6 +50,9 @@ LEAST_COSINE = 1e-3
 
 SHORTEST_NORMAL = 1e-6
 """Of blended normals: less than `LEAST_REFLECTIVITY`, so that it is never needed but for rounding."""
+
+OF_SPLATS = "splats."
+"""Before the names of what splats have, in a model's state."""
 
 N_FEATURES = FEATURES["offset"].stop
 """Of `Splats.features`."""
@@ -81,6 +85,8 @@ class Picture:
         Whose plane mirrors, from 0, shape (h, w); -1 for none.
     raster
         Of the splats, with all their features.
+    penalty
+        That the method's shading adds to the loss.
     """
 
     display: Tensor
@@ -92,6 +98,7 @@ class Picture:
     normals: Tensor
     panels: Tensor
     raster: Raster
+    penalty: Tensor | None = None
 
 
 class SceneModel(nn.Module):
@@ -100,7 +107,7 @@ class SceneModel(nn.Module):
     Parameters
     ----------
     light
-        None: all light is the splats' own, as in 2DGS.
+        Mirrored by panels; None where panels are not known, and `shader` makes all light.
     planes
         Of the panels, ENU.
     origin_enu_m
@@ -111,6 +118,8 @@ class SceneModel(nn.Module):
         Where X and n of mirroring pixels come from.
     precision
         Of the matrix products in the model of mirrored light.
+    shader
+        None for spherical harmonics.
     """
 
     def __init__(
@@ -123,6 +132,7 @@ class SceneModel(nn.Module):
         corner_square: float,
         geometry: GeometrySource = "panels",
         precision: Precision = "float32",
+        shader: Shader | None = None,
     ) -> None:
         super().__init__()
         self.splats = splats
@@ -133,6 +143,7 @@ class SceneModel(nn.Module):
         self.corner_square = corner_square
         self.geometry = geometry
         self.precision = precision
+        self.shader = shader or Shader()
         self.corner_loss = nn.Parameter(torch.zeros(()))
         self.corners_m = planes.corners_enu_m - self.origin_enu_m
 
@@ -172,18 +183,28 @@ class SceneModel(nn.Module):
             settings=settings,
         )
         directions = view.directions().to(device)
-        own = raster.features[..., FEATURES["colour"]]
-        reflectivity = torch.zeros_like(raster.alphas)
-        reflection = mirrored = torch.zeros_like(own)
-        panels = torch.full(raster.alphas.shape, -1, dtype=torch.int32, device=device)
         if self.light is not None:
             panels = self._panels(view, raster)
-            own, reflectivity, reflection, mirrored = self._shaded(view, raster, directions, panels, generator)
-        diffuse = own + self.sky.behind(directions, raster.alphas)
-        light = diffuse + reflection
+            shaded = self._shaded(view, raster, directions, panels, generator)
+        else:
+            panels = torch.full(raster.alphas.shape, -1, dtype=torch.int32, device=device)
+            shaded = self.shader(view, raster, directions, raster.features[..., N_FEATURES:], splats)
+        diffuse = shaded.own + self.sky.behind(directions, raster.alphas)
+        light = diffuse + shaded.reflection
         display = display_from_linear(self._kept(view)[..., None] * gain * light)
         normals = raster.features[..., FEATURES["normal"]]
-        return Picture(display, light, diffuse, reflection, mirrored, reflectivity, normals, panels, raster)
+        return Picture(
+            display,
+            light,
+            diffuse,
+            shaded.reflection,
+            shaded.mirrored,
+            shaded.reflectivity,
+            normals,
+            panels,
+            raster,
+            shaded.penalty,
+        )
 
     def train(self, mode: bool = True) -> SceneModel:
         """As of any module; corrections of poses, learned with light alone, are in the views already."""
@@ -220,8 +241,11 @@ class SceneModel(nn.Module):
             It is of another kind.
         """
         device = self.corner_loss.device
-        splats = Splats({name: state[f"splats.{name}"] for name in SHAPES}, state["splats.panels"])
-        self.splats = splats.to(device)
+        values = {name.removeprefix(OF_SPLATS): value for name, value in state.items() if name.startswith(OF_SPLATS)}
+        panels = values.pop("panels")
+        if set(values) != set(self.splats.names):
+            raise KeyError("splats of another method")
+        self.splats = Splats(values, panels).to(device)
         self.load_state_dict(dict(state))
         if self.light is not None and isinstance(self.light.light, RadianceGrid):
             self.light.light.refresh()
@@ -237,7 +261,12 @@ class SceneModel(nn.Module):
     def _features(self, view: View, degree: int) -> Tensor:
         """Of the splats, shape (n, c); where they are asked for X and n, those of glass have both once more."""
         splats = self.splats
-        features = splats.features(view.position_m.to(splats.means.device), degree)
+        position = view.position_m.to(splats.means.device)
+        if self.light is None:
+            features = splats.features(position, degree, self.shader.colours(splats, position, degree))
+            channels = self.shader.channels(splats, position)
+            return features if channels is None else torch.cat([features, channels], dim=1)
+        features = splats.features(position, degree)
         if not self._asks_splats:
             return features
         planes = torch.cat([features[:, FEATURES["normal"]], features[:, FEATURES["offset"]]], dim=1)
@@ -251,8 +280,8 @@ class SceneModel(nn.Module):
 
     def _shaded(
         self, view: View, raster: Raster, directions: Tensor, panels: Tensor, generator: torch.Generator | None
-    ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """(1 - R) c, R, R F L and L as pictures."""
+    ) -> Shaded:
+        """(1 - R) c, R F L, L and R as pictures."""
         blended = raster.features[..., FEATURES["reflectivity"]].squeeze(-1)
         rows, columns = torch.nonzero((panels >= 0) & (blended > LEAST_REFLECTIVITY), as_tuple=True)
         features = raster.features[rows, columns]
@@ -269,11 +298,11 @@ class SceneModel(nn.Module):
         added = reflectivity * fresnel * light
         place = (rows, columns)
         black = torch.zeros_like(raster.features[..., FEATURES["colour"]])
-        return (
+        return Shaded(
             raster.features[..., FEATURES["colour"]].index_put(place, kept),
-            torch.zeros_like(blended).index_put(place, reflectivity.squeeze(-1)),
             black.index_put(place, added),
             black.index_put(place, light),
+            torch.zeros_like(blended).index_put(place, reflectivity.squeeze(-1)),
         )
 
     def _mirrored_by_planes(

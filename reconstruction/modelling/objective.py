@@ -7,6 +7,7 @@ from dataclasses import replace
 import torch
 from torch import Tensor
 
+from reconstruction.baselines.normals import normal_smoothness
 from reconstruction.modelling.config import LossWeights
 from reconstruction.modelling.losses import (
     colour_loss,
@@ -49,6 +50,10 @@ def objective(
     if stage is not None and stage.weight > 0.0:
         worst = worst_pixels(found, truth, facade, stage.threshold)
         terms["high frequency"] = stage.weight * worst
+    if weights.normal_smoothness > 0.0:
+        terms["normal smoothness"] = weights.normal_smoothness * normal_smoothness(picture.normals, truth)
+    if picture.penalty is not None:
+        terms["shading"] = picture.penalty
     total = torch.stack(list(terms.values())).sum()
     return total, {name: float(term.detach()) for name, term in terms.items()}
 

@@ -9,6 +9,4 @@ PRESETS = {
     "smoke": "a minute; shows that everything works, and nothing else",
 }
 
-METHODS = ("refglass-gs", "2dgs")
-
 LIGHTS = ("auto", "harmonics", "environment-map", "mlp", "radiance-grid")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from planning.errors import InputError
 from reconstruction.modelling.config import TrainConfig
@@ -71,12 +70,10 @@ def preset(name: str) -> TrainConfig:
 def with_wishes(
     base: TrainConfig,
     *,
-    method: str | None = None,
     light: str | None = None,
     iterations: int | None = None,
     time_limit_s: float | None = None,
     seed: int | None = None,
-    path: Path = Path("settings"),
 ) -> TrainConfig:
     """Settings with what the user asked for; iterations alone take the preset's time limit away, and the other way.
 
@@ -94,5 +91,5 @@ def with_wishes(
         )
     if time_limit_s is not None:
         base = replace(base, time_limit_s=time_limit_s)
-    wishes = {"method": method, "light": light, "seed": seed}
+    wishes = {"light": light, "seed": seed}
     return replace(base, **{name: value for name, value in wishes.items() if value is not None})  # type: ignore[arg-type]

@@ -11,7 +11,7 @@ from torch import Tensor, nn
 from reconstruction.modelling.config import Rates, TrainConfig
 from reconstruction.modelling.model import SceneModel
 from reconstruction.reflections.radiance_grid import RadianceGrid
-from reconstruction.splatting.splats import Splats
+from reconstruction.splatting.splats import SHAPES, Splats
 
 EPSILON = 1e-15
 """Of Adam: gradients of splats that few pixels see are tiny, and the usual 1e-8 would stop them."""
@@ -37,6 +37,15 @@ def adam_of(model: SceneModel, gains: nn.Module, config: TrainConfig, extent_m: 
     groups.append({"name": "sky", "params": list(model.sky.parameters()), "full": rates.sky})
     groups.append({"name": "corner loss", "params": [model.corner_loss], "full": rates.corner_loss})
     groups.append({"name": "exposures", "params": list(gains.parameters()), "full": rates.exposures})
+    of_attributes = model.shader.attribute_rates()
+    groups += [
+        {"name": name, "params": [getattr(model.splats, name)], "full": of_attributes[name]}
+        for name in model.splats.names[len(SHAPES) :]
+    ]
+    groups += [
+        {"name": f"shading {number}", "params": group["params"], "full": group["lr"]}
+        for number, group in enumerate(model.shader.parameter_groups())
+    ]
     if model.light is not None:
         learned = config.reflections.for_grid if isinstance(model.light.light, RadianceGrid) else config.reflections
         groups += [

@@ -16,8 +16,9 @@ from planning.json_file import expect_format, read_json, to_record
 from reconstruction.dataset.records import DATASET_FORMAT
 from reconstruction.modelling.config import TrainConfig
 from reconstruction.modelling.exposures import Exposures
-from reconstruction.modelling.model import SceneModel
+from reconstruction.modelling.model import OF_SPLATS, SceneModel
 from reconstruction.modelling.photo_moves import Move
+from reconstruction.modelling.shaders.made import empty_shader
 from reconstruction.reflections.config import Precision
 from reconstruction.reflections.environment_map import EnvironmentMap
 from reconstruction.reflections.glass_learned import GlassLearned
@@ -27,7 +28,7 @@ from reconstruction.reflections.photo_set import PanelPlanes
 from reconstruction.reflections.radiance_grid import RadianceGrid
 from reconstruction.reflections.reflection_mlp import ReflectionMlp
 from reconstruction.splatting.sky import Sky
-from reconstruction.splatting.splats import SHAPES, Splats
+from reconstruction.splatting.splats import Splats
 
 Vec3 = tuple[float, float, float]
 
@@ -193,9 +194,12 @@ def empty_model(record: ModelRecord, tensors: Mapping[str, Tensor]) -> tuple[Sce
     ValueError
         Record and weights do not belong together.
     """
-    n_splats = len(tensors.get("splats.means", ()))
-    values = {name: torch.zeros(n_splats, *shape) for name, shape in SHAPES.items()}
-    splats = Splats(values, torch.full((n_splats,), -1))
+    values = {
+        name.removeprefix(OF_SPLATS): torch.zeros_like(value)
+        for name, value in tensors.items()
+        if name.startswith(OF_SPLATS) and name != f"{OF_SPLATS}panels"
+    }
+    splats = Splats(values, torch.full((len(values["means"]),), -1))
     planes = record.site.planes
     light, precision = None, record.light.precision if record.light is not None else "float32"
     if record.light is not None:
@@ -203,7 +207,10 @@ def empty_model(record: ModelRecord, tensors: Mapping[str, Tensor]) -> tuple[Sce
             _light_model(record, tensors), planes, record.light.learned, len(tensors.get("light.moves", ()))
         )
     origin = np.array(record.origin_enu_m)
-    model = SceneModel(splats, Sky(), light, planes, origin, record.corner_square, record.config.geometry, precision)
+    shader = empty_shader(record.config, tensors) if light is None else None
+    model = SceneModel(
+        splats, Sky(), light, planes, origin, record.corner_square, record.config.geometry, precision, shader
+    )
     return model, Exposures([1.0] * len(record.learned))
 
 

@@ -28,6 +28,10 @@ AT_ONCE_PX = 1 << 19
 """Pixels of a strip: about 200 MB with all that is blended into them."""
 
 
+LEAST_LIGHT = 1e-6
+"""Linear, of which it can be told what share of it is reflected."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Rendered:
     """A view, rendered.
@@ -48,6 +52,13 @@ def _light(values: Callable[[Picture], Tensor]) -> Callable[[Picture], Tensor]:
     return lambda picture: display_from_linear(values(picture)).clamp(0.0, 1.0)
 
 
+def _fresnel(picture: Picture) -> Tensor:
+    """F, mean over the colours by how much light of each there is: what is mirrored, R F L, against R L."""
+    came = picture.reflectivity * picture.mirrored.sum(dim=-1)
+    went = picture.reflection.sum(dim=-1)
+    return torch.where(came > LEAST_LIGHT, went / came.clamp(min=LEAST_LIGHT), 0.0).clamp(0.0, 1.0)
+
+
 def _depth(picture: Picture) -> Tensor:
     raster = picture.raster
     return torch.where(raster.alphas > 0.5, raster.depths / raster.alphas.clamp(min=0.5), torch.inf)
@@ -61,6 +72,7 @@ def _normals(picture: Picture) -> Tensor:
 OF_PICTURE: dict[str, Callable[[Picture], Tensor]] = {
     "diffuse": _light(lambda picture: picture.diffuse),
     "reflection": _light(lambda picture: picture.reflection),
+    "fresnel": _fresnel,
     "mirrored": _light(lambda picture: picture.mirrored),
     "reflectivity": lambda picture: picture.reflectivity,
     "alpha": lambda picture: picture.raster.alphas,
@@ -75,7 +87,7 @@ def render_view(
     model: SceneModel,
     view: View,
     layers: Sequence[str] = (),
-    gain: float = 1.0,
+    gain: Tensor | float = 1.0,
     settings: RasterSettings | None = None,
 ) -> Rendered:
     """Render a view strip by strip, so that its size does not matter.
@@ -92,9 +104,9 @@ def render_view(
     for top in range(0, view.height_px, rows):
         strip = view.cropped(0, top, view.width_px, min(rows, view.height_px - top))
         picture = model(strip, gain, settings=settings or RasterSettings())
-        parts[PICTURE].append(picture.display.clamp(0.0, 1.0).numpy())
+        parts[PICTURE].append(picture.display.clamp(0.0, 1.0).cpu().numpy())
         for name in layers:
-            parts[name].append(OF_PICTURE[name](picture).numpy())
+            parts[name].append(OF_PICTURE[name](picture).cpu().numpy())
     whole = {name: np.concatenate(strips) for name, strips in parts.items()}
     return Rendered(whole.pop(PICTURE), whole)
 

@@ -25,7 +25,7 @@ from planning.progress import QualityPoint
 from reconstruction.modelling.exposures import Exposures
 from reconstruction.modelling.model import SceneModel
 from reconstruction.modelling.record import ModelRecord, empty_model
-from reconstruction.splatting.ply import write_splats
+from reconstruction.splatting.ply import Kind, write_splats
 from reconstruction.splatting.splats import splats_from_tensors
 
 FORMAT = "reflight-model/1"
@@ -108,7 +108,8 @@ def save_model(trained: TrainedModel, folder: Path) -> None:
     }
     write_atomically(folder / DESCRIPTION, json.dumps(description, indent=1, allow_nan=False).encode())
     # Last: it is for other programs, and nothing here reads it.
-    write_splats(folder / SPLATS, trained.model.splats, "2dgs", trained.record.origin_enu_m, _comments(trained.record))
+    kind: Kind = "2dgs" if trained.model.splats.is_flat else "3dgs"
+    write_splats(folder / SPLATS, trained.model.splats, kind, trained.record.origin_enu_m, _comments(trained.record))
     for old in folder.glob("weights-*.safetensors"):
         if old.name != name:
             old.unlink(missing_ok=True)

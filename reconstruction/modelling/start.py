@@ -22,6 +22,8 @@ from reconstruction.modelling.light_stage import BegunLight, LightStage, checksu
 from reconstruction.modelling.model import SceneModel
 from reconstruction.modelling.photo_moves import Move, learned_moves, moved
 from reconstruction.modelling.record import site_record
+from reconstruction.modelling.shader import Shader
+from reconstruction.modelling.shaders.made import Surroundings, as_method_has_them, shader_of, with_primitive
 from reconstruction.modelling.stopwatch import Stopwatch
 from reconstruction.reflections.choose_light import choose_light
 from reconstruction.reflections.glass_rays import glass_rays
@@ -30,7 +32,7 @@ from reconstruction.reflections.photo_set import PhotoSet, held_out_names
 from reconstruction.reflections.training import TrainedReflections, train_reflections
 from reconstruction.splatting.initialise import InitialParameters, initial_splats
 from reconstruction.splatting.sky import Sky
-from reconstruction.splatting.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
+from reconstruction.splatting.splats import Splats, splats_from_tensors, splats_to_tensors
 from reconstruction.splatting.start_data import known_scene, model_origin
 
 Array = NDArray[np.float64]
@@ -110,13 +112,17 @@ def start_model(
         splats = splats_from_tensors(begun.splats, str(checkpoint))
     elif given is not None:
         splats = given_splats(given, source, learned, origin, config.memory_bytes, monitor)
+        splats = with_primitive(splats, config.trained_by.primitive)
     else:
         parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)
         splats = initial_splats(scene, learned, origin, parameters, source.picture, monitor)
     light: TrainedReflections | None = None
+    shader: Shader | None = None
     decisions: tuple[Decision, ...] = ()
-    if config.method == "2dgs":
-        splats.panels.fill_(NO_PANEL)
+    if not config.trained_by.knows_panels:
+        triangles = (scene.mesh.corners_enu_m - origin).astype(np.float32).reshape(-1, 3, 3)
+        shader = shader_of(config, Surroundings(triangles))
+        splats = as_method_has_them(splats, config, shader)
     else:
         light, decisions = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, begun)
     moves = learned_moves(None if light is None else light.panels.light, len(learned))
@@ -125,7 +131,7 @@ def start_model(
         hand_over(light.panels, splats, source.panels, origin, cameras)
     known = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
     return Start(
-        _joined(source, learned, splats, light, origin, config),
+        _joined(source, learned, splats, light, shader, origin, config),
         Exposures(known),
         learned,
         held_out,
@@ -211,6 +217,7 @@ def _joined(
     learned: Sequence[PosedPhoto],
     splats: Splats,
     light: TrainedReflections | None,
+    shader: Shader | None,
     origin_enu_m: Array,
     config: TrainConfig,
 ) -> SceneModel:
@@ -223,6 +230,7 @@ def _joined(
         corner_square(learned),
         config.geometry,
         "float32" if light is None else light.precision,
+        shader,
     )
     if light is not None:
         if model.light is not None:

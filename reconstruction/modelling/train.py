@@ -228,7 +228,7 @@ def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[
     """The stream of photos to learn from, and held-out ones to show."""
     config, origin = record.config, np.array(record.origin_enu_m)
     source = _corrected(source, record)
-    with_normals = config.method == "refglass-gs" and config.losses.normal_prior > 0.0
+    with_normals = config.trained_by.knows_panels and config.losses.normal_prior > 0.0
     settings = StreamSettings(
         round((1.0 - SHOWN_SHARE) * config.memory_bytes), config.window_px, config.reduce, with_normals
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any, Literal
 
 import numpy as np
 import torch
@@ -12,9 +13,12 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from planning.progress import QUIET, Monitor, Stop, Trace, never
+from reconstruction.modelling.exposures import Exposures
+from reconstruction.modelling.model import SceneModel
 from reconstruction.modelling.objective import display_of, on_device
 from reconstruction.modelling.photo_stream import Sample
 from reconstruction.scores.image_metrics import psnr_db
+from reconstruction.splatting.raster import RasterSettings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,6 +37,43 @@ class HeldOut:
     gain: float
 
 
+VisitState = Literal["training", "paused", "settling"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Visit:
+    """A training between two steps, for somebody who looks at its model and must not change it.
+
+    Parameters
+    ----------
+    model
+        In evaluation mode until the visit ends.
+    exposures
+        Gains of the photos learned from, in the order of the record's `learned`.
+    record
+        Of the model, as `ModelRecord` has it.
+    step, seconds, progress
+        How far it is; progress 0 to 1.
+    terms
+        What each term of the loss was in the last step.
+    history
+        PSNR, dB, of held-out views, by seconds.
+    settings
+        Of the rasteriser.
+    """
+
+    model: SceneModel
+    exposures: Exposures
+    record: dict[str, Any]
+    state: VisitState
+    step: int
+    seconds: float
+    progress: float
+    terms: dict[str, float]
+    history: tuple[tuple[float, float], ...]
+    settings: RasterSettings
+
+
 @dataclass(slots=True, eq=False)
 class Watching:
     """Who looks on while a training runs.
@@ -42,13 +83,15 @@ class Watching:
     monitor
         Told about progress; cancels.
     stop
-        Asked between steps; True: the model is good enough.
+        Asked between steps; True: the model is good enough, and settles.
     pause
         Asked between steps; nothing goes on while it is True.
     trace
         Gets the quality, PSNR of held-out views over their facades, dB.
     preview
         Called with a picture of the first held-out view whenever the quality is measured.
+    visit
+        Called after each step, and again and again while it is paused; its time counts as the training's.
     """
 
     monitor: Monitor = QUIET
@@ -56,6 +99,7 @@ class Watching:
     pause: Stop = never
     trace: Trace | None = None
     preview: Callable[[Preview], None] | None = None
+    visit: Callable[[Visit], None] | None = None
 
 
 @torch.no_grad()

@@ -10,17 +10,22 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.lists import above_zero, count
 from planning.errors import InputError, OperationCancelled
-from reconstruction.modelling.preset_names import LIGHTS, METHODS, PRESETS
+from reconstruction.modelling.methods import DEFAULT_METHOD, METHODS
+from reconstruction.modelling.preset_names import LIGHTS, PRESETS
 
 if TYPE_CHECKING:
     from groundstation.services.model_training import TrainedFiles, TrainWish
 
+METHOD_LINES = "\n".join(f"  {name:<30} {method.title}" for name, method in METHODS.items())
 PRESET_LINES = "\n".join(f"  {name:<11} {text}" for name, text in PRESETS.items())
 
 EPILOG = f"""presets:
 {PRESET_LINES}
 
-light, for --method refglass-gs: what glass mirrors is learned by direction alone (environment-map), by place and
+methods:
+{METHOD_LINES}
+
+light, for methods that know panels: what glass mirrors is learned by direction alone (environment-map), by place and
 direction as in the paper (mlp), as a scene that mirrored rays march through (radiance-grid), or not apart from the
 splats at all (harmonics). auto looks at the photos and says why.
 
@@ -58,7 +63,7 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
     add("-o", "--out", type=Path, required=True, metavar="MODEL", help="folder for the model")
-    add("--method", choices=METHODS, help=f"splats with mirrored light, or splats alone (default {METHODS[0]})")
+    add("--method", choices=tuple(METHODS), metavar="METHOD", help=f"one of those below (default {DEFAULT_METHOD})")
     add("--preset", choices=tuple(PRESETS), help="how long one can wait (default 10min)")
     add("--iterations", type=count, metavar="N", help="steps, whatever time they take, instead of the preset's")
     add("--time-budget", type=above_zero, metavar="S", help="end after so many seconds, all in all")
@@ -134,7 +139,7 @@ def _print(made: TrainedFiles, options: argparse.Namespace) -> None:
     trained = made.trained
     record = trained.record
     print(f"{made.folder}: {counted(trained.n_splats, 'splat')} of {counted(len(record.learned), 'photo')}")
-    if record.config.method != "2dgs":
+    if record.config.trained_by.knows_panels:
         name = "harmonics" if record.light is None else record.light.name
         print(f"  mirrored light: {name}{'' if record.config.light == 'auto' else ', as you asked'}")
     for decision in record.decisions:

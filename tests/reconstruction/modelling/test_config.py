@@ -7,7 +7,8 @@ import pytest
 
 from planning.errors import InputError
 from reconstruction.modelling.config import LossWeights, Rates, TrainConfig, config_of
-from reconstruction.modelling.preset_names import LIGHTS, METHODS, PRESETS
+from reconstruction.modelling.methods import METHODS
+from reconstruction.modelling.preset_names import LIGHTS, PRESETS
 from reconstruction.modelling.presets import preset, with_wishes
 
 HERE = Path("settings.toml")
@@ -68,8 +69,6 @@ def test_names_for_the_command_line_are_those_of_the_settings():
     assert {preset(name).light for name in PRESETS} <= set(LIGHTS)
     for light in LIGHTS:
         assert config_of({"light": light}, TrainConfig(), HERE).light == light
-    for method in METHODS:
-        assert config_of({"method": method}, TrainConfig(), HERE).method == method
     with pytest.raises(InputError, match="--preset"):
         preset("soon")
 
@@ -80,8 +79,8 @@ def test_presets_take_longer_one_after_the_other():
 
 
 def test_asking_for_steps_takes_the_time_limit_away_and_shortens_what_goes_before():
-    config = with_wishes(preset("10min"), iterations=100, method="2dgs", seed=7)
-    assert (config.iterations, config.time_limit_s, config.method, config.seed) == (100, None, "2dgs", 7)
+    config = with_wishes(preset("10min"), iterations=100, seed=7)
+    assert (config.iterations, config.time_limit_s, config.seed) == (100, None, 7)
     assert config.reflections.steps < preset("10min").reflections.steps
     both = with_wishes(preset("10min"), iterations=100, time_limit_s=5.0)
     assert (both.iterations, both.time_limit_s) == (100, 5.0)

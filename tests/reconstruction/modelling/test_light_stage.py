@@ -77,7 +77,7 @@ def test_what_chose_the_light_is_not_asked_again(data_set, tmp_path, monkeypatch
 def test_another_data_set_method_or_a_damaged_file_is_refused(data_set, tmp_path):
     config, checkpoint = config_of("mlp"), tmp_path / "c"
     cancelled(data_set, checkpoint, config)
-    with pytest.raises(InputError, match="training of refglass-gs; resume with that method"):
+    with pytest.raises(InputError, match="training of reflight; resume with that method"):
         resume_model(data_set, checkpoint, method="2dgs")
     other = tmp_path / "other"
     shutil.copytree(data_set, other)

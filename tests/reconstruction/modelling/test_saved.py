@@ -77,7 +77,7 @@ def test_splats_for_viewers_lie_beside_it(saved, trained):
 def test_the_record_knows_the_site(saved, data_set):
     content = json.loads((saved / "model.json").read_text())
     assert content["format"] == FORMAT
-    assert content["method"] == "refglass-gs"
+    assert content["method"] == "reflight"
     assert read_model(saved).record.site == site_record(data_set)
     assert sorted({*content["learned"], *content["held_out"]}) == [f"p{k:02d}.png" for k in range(8)]
 

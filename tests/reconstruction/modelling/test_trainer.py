@@ -1,5 +1,6 @@
 """The joint training: it learns, goes on bit by bit, and survives what it says it survives."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -9,13 +10,15 @@ import torch
 from planning.errors import OperationCancelled, ReconstructionError
 from planning.progress import Trace
 from reconstruction.modelling import trainer as trainer_module
+from reconstruction.modelling import training_state
 from reconstruction.modelling.checkpoints import read_checkpoint
 from reconstruction.modelling.config import LossWeights, TrainConfig
 from reconstruction.modelling.photo_stream import PhotoStream, StreamSettings
 from reconstruction.modelling.start import start_model
 from reconstruction.modelling.stopwatch import Stopwatch
 from reconstruction.modelling.strategies import strategy_of
-from reconstruction.modelling.trainer import MOST_HALVINGS, Trainer
+from reconstruction.modelling.trainer import Trainer
+from reconstruction.modelling.training_state import MOST_HALVINGS
 from reconstruction.modelling.watching import HeldOut, Watching
 from reconstruction.reflections.config import GridSettings, ReflectionConfig
 from reconstruction.reflections.photo_set import read_photo_set
@@ -228,7 +231,7 @@ def test_when_memory_runs_out_windows_are_halved_and_nothing_is_lost(make, monke
             raise error
         return forward(self, view, *arguments, **more)
 
-    monkeypatch.setattr(trainer_module, "SMALLEST_WINDOW_PX", 100)
+    monkeypatch.setattr(training_state, "SMALLEST_WINDOW_PX", 100)
     monkeypatch.setattr(type(trainer.model), "forward", greedy)
     trainer._survived_step()
     assert trainer.photos.window_px == 40 * 30 // 2
@@ -299,14 +302,107 @@ def test_pauses_do_not_count(make, monkeypatch):
     assert trainer.at.spent_s == 8.0
 
 
-def test_stopped_it_is_what_it_is_then_and_paused_it_waits(make, monkeypatch):
-    waits = []
+def test_paused_it_waits_and_can_be_looked_at(make, monkeypatch):
+    waits, visits = [], []
     monkeypatch.setattr(trainer_module.time, "sleep", waits.append)
     trainer = make()
     answers = iter([True, True, False] + [False] * 99)
-    trainer.run(Watching(stop=lambda: trainer.at.step >= 4, pause=lambda: next(answers)))
-    assert trainer.at.step == 4
+    trainer.run(Watching(pause=lambda: next(answers), visit=visits.append))
+    assert trainer.at.step == 12
     assert len(waits) == 2
+    assert [visit.state for visit in visits] == ["training", "paused", "paused", *["training"] * 13]
+    assert [visit.step for visit in visits] == [0, 0, 0, *range(1, 13), 12]
+    assert visits[0].terms == {}
+    assert visits[-1].terms["colour"] > 0.0
+    assert visits[-1].history == tuple(trainer.at.history)
+
+
+def rates_of(trainer):
+    return {group["name"]: group["lr"] / group["full"] for group in trainer.optimiser.param_groups}
+
+
+def stopped(make, monkeypatch, after_s, stop_at, **more):
+    """A training of a step a second that is stopped at a step, and its rates at each step."""
+    trainer, _ = timed(make, monkeypatch, None, before_s=after_s)
+    rates, step = [], trainer.step
+
+    def noted():
+        step()
+        rates.append(rates_of(trainer))
+
+    monkeypatch.setattr(trainer, "step", noted)
+    trainer.run(Watching(stop=lambda: trainer.at.step >= stop_at, **more))
+    return trainer, rates
+
+
+def test_stopped_it_lets_its_rates_fall_to_their_last_within_a_twentieth_of_the_time(make, monkeypatch):
+    trainer, rates = stopped(make, monkeypatch, 796.0, 4)
+    # 5 % of 800 s are 40 steps of a second.
+    assert trainer.at.step == 4 + 40
+    last = trainer.config.rates.last
+    shares = [each["colours"] / min(1.0, (step + 1) / 31) for step, each in enumerate(rates)]
+    assert shares[3] > 0.99
+    assert all(before > after for before, after in itertools.pairwise(shares[4:]))
+    assert shares[-1] == pytest.approx(last, abs=0.01)
+    # Along half a cosine, as without a stop.
+    assert shares[4 + 20] == pytest.approx(last + 0.5 * (1.0 - last), abs=0.02)
+
+
+def test_settling_takes_a_minute_at_most(make, monkeypatch):
+    trainer, _ = stopped(make, monkeypatch, 7200.0, 2)
+    assert trainer.at.step == 2 + 60
+
+
+def test_a_training_that_is_nearly_over_settles_no_longer_than_it_would_have_lasted(make, monkeypatch):
+    trainer, _ = timed(make, monkeypatch, 1000.0, before_s=990.0)
+    trainer.run(Watching(stop=lambda: trainer.at.step >= 4))
+    assert trainer.at.step == 10
+
+
+def test_while_it_settles_no_splats_are_added_and_the_losses_stay_what_they_were(make, monkeypatch):
+    losses = LossWeights(consistent_from=0.5, high_frequency_from=0.5)
+    config = replace(CONFIG, iterations=400, densify_from=0.0, densify_until=1.0, densification="mcmc", losses=losses)
+    clock = FakeClock()
+    trainer = make(config, watch=Stopwatch(clock, -700.0))
+    monkeypatch.setattr(trainer, "step", clock.lasting(1.0, trainer.step))
+    visits = []
+    trainer.run(Watching(stop=lambda: trainer.at.step >= 90, visit=lambda v: visits.append((v, len(v.model.splats)))))
+    settling = [(visit, n_splats) for visit, n_splats in visits if visit.state == "settling"]
+    assert len(settling) > 30
+    assert len({n_splats for _, n_splats in settling}) == 1
+    assert {name for visit, _ in settling for name in visit.terms} == {"colour"}
+
+
+def test_what_is_held_out_chooses_nothing_when_it_is_stopped(make, monkeypatch):
+    ends = []
+    for spoiled in (False, True):
+        trainer, _ = timed(make, monkeypatch, None, before_s=200.0)
+        if spoiled:
+            shown = trainer.shown[0]
+            noise = torch.randint(0, 256, shown.sample.display.shape, dtype=torch.uint8)
+            trainer.shown = (replace(shown, sample=replace(shown.sample, display=noise)),)
+        trainer.run(Watching(stop=lambda trainer=trainer: trainer.at.step >= 3))
+        ends.append(trainer)
+    assert ends[0].at.step > 3
+    assert_same(*ends)
+
+
+def test_broken_off_while_it_settles_it_goes_on_as_if_nobody_had_stopped_it(make, tmp_path, monkeypatch):
+    class Cancel:
+        def report(self, stage, done, total):
+            if stage == "settling" and done > 0.0:
+                raise OperationCancelled("enough")
+
+    clock = FakeClock()
+    trainer = make(checkpoint="c", watch=Stopwatch(clock, -700.0))
+    monkeypatch.setattr(trainer, "step", clock.lasting(1.0, trainer.step))
+    with pytest.raises(OperationCancelled):
+        trainer.run(Watching(Cancel(), stop=lambda: trainer.at.step >= 4))
+    assert trainer.at.step == 5
+    again = make(checkpoint="c")
+    again.restore(read_checkpoint(tmp_path / "c")["training"])
+    again.run(Watching())
+    assert again.at.step == 12
 
 
 def test_every_term_of_the_objective_is_there_when_its_time_has_come(make):

@@ -1,0 +1,1 @@
+"""The shading of methods that know no panels, each in a module."""
