@@ -1,4 +1,4 @@
-# make setup | demo | test | test-all | check | benchmark | translations | pictures: each does all the set-up it needs.
+# make setup | demo | test | test-all | check | benchmark | tables | translations | pictures: each does all the set-up it needs.
 PYTHON ?= python3
 VENV := .venv
 ifeq ($(OS),Windows_NT)
@@ -16,7 +16,7 @@ TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test test-all check check-style check-types check-imports ready-to-test alone benchmark format
+.PHONY: setup demo test test-all check check-style check-types check-imports ready-to-test alone benchmark tables format
 .PHONY: translations pictures clean
 
 setup: $(VENV)/.ready $(WARM)
@@ -75,6 +75,10 @@ alone:
 benchmark: setup
 	$(PY) -m tests.benchmarks
 
+# Hours: docs/tables.md says how to run a part.
+tables: setup
+	$(PY) -m tests.tables
+
 # Every tab and state of the window, and from them those that the documents show.
 pictures: setup
 	$(PY) app.py --screenshots pictures
@@ -85,6 +89,7 @@ pictures: setup
 	cp pictures/1280x720/fly-paused.png docs/window-fly.png
 	cp pictures/1280x720/photos-grid.png docs/window-photos.png
 	cp pictures/1280x720/photos-coverage.png docs/window-photos-coverage.png
+	cp pictures/1280x720/reconstruct-compare.png docs/window-reconstruct.png
 
 format: setup
 	$(PY) -m ruff format .
@@ -96,4 +101,4 @@ translations: setup
 	$(VENV)/bin/pyside6-lrelease $(TEXTS)
 
 clean:
-	rm -rf $(VENV) demo-out benchmark-out pictures
+	rm -rf $(VENV) demo-out benchmark-out tables-out pictures

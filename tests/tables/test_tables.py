@@ -1,0 +1,106 @@
+from dataclasses import replace
+
+import pytest
+
+from tests.tables.__main__ import main
+from tests.tables.definitions import Above, tables
+from tests.tables.page import gap_db, write_page
+from tests.tables.results import Result, keep, of_case, read_results
+from tests.tables.scales import PAPER, SCALES, SMALL, SMOKE
+
+TABLE_5 = tables(SMALL)[3]
+
+
+def result(case, psnr_db, seed=0, scale=SMALL):
+    made_with = case.made_with("curved", scale)
+    return Result("curved", case.title, seed, scale.name, made_with, psnr_db, 20.0, 0.9, None, 60.0, 9, 9, "here")
+
+
+def page(tmp_path, results):
+    write_page(tmp_path / "tables.md", tables(SMALL), SMALL, results)
+    return (tmp_path / "tables.md").read_text("utf-8")
+
+
+@pytest.mark.parametrize("scale", SCALES.values(), ids=SCALES)
+def test_all_cases_can_be_trained_and_no_two_of_a_table_alike(scale):
+    for table in tables(scale):
+        made_with = [case.made_with(table.scenes[0], scale) for case in table.cases]
+        assert len(set(made_with)) == len(made_with)
+        titles = {case.title for case in table.cases}
+        assert all({wish.better, *wish.others} <= titles for wish in table.must_hold)
+
+
+def test_a_case_is_another_one_with_other_settings_or_photos_but_not_with_another_seed():
+    case = TABLE_5.cases[0]
+    made_with = case.made_with("curved", SMALL)
+    assert made_with == case.made_with("curved", SMALL)
+    assert case.config(SMALL, 1) == replace(case.config(SMALL, 0), seed=1)
+    assert case.made_with("planar", SMALL) != made_with != case.made_with("curved", SMOKE)
+    assert replace(case, settings={"rates": {"means": 1e-3}}).made_with("curved", SMALL) != made_with
+
+
+def test_paper_scale_has_the_paper_s_network_and_steps():
+    shape = PAPER.shape
+    assert (shape.width, shape.layers, shape.position_order, shape.direction_order) == (512, 8, 12, 12)
+    assert (PAPER.config.iterations, PAPER.n_views, PAPER.width_px) == (200_000, 600, 5280)
+
+
+def test_results_are_kept_and_replaced_one_by_one(tmp_path):
+    first, second = (result(case, 25.0) for case in TABLE_5.cases[:2])
+    keep(tmp_path / "a.csv", [first, second])
+    better = replace(first, psnr_db=26.0, lpips=0.25)
+    keep(tmp_path / "a.csv", [better])
+    assert read_results(tmp_path / "a.csv") == [better, second]
+    assert read_results(tmp_path / "none.csv") == []
+
+
+def test_results_of_other_settings_are_not_shown(tmp_path):
+    case = TABLE_5.cases[0]
+    old = replace(result(case, 25.0), made_with="0123456789")
+    assert of_case([old], "curved", case.made_with("curved", SMALL)) == []
+    assert f"| {case.title} | not run |" in page(tmp_path, [old])
+
+
+def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):
+    whole = TABLE_5.cases[3]
+    lines = [line for line in page(tmp_path, [result(whole, 27.0)]).splitlines() if "0: 27.00" in line]
+    assert [line.split(" | ")[0] for line in lines] == [
+        "| our plan, RefGlass-GS",
+        "| RefGlass-GS",
+        "| 4: Dim = 256, Layer = 6, L = 8, w/ skip, w/ staged",
+        "| RefGlass-GS",
+    ]
+
+
+def test_the_page_has_means_seeds_and_the_paper_s_numbers(tmp_path):
+    case = TABLE_5.cases[0]
+    text = page(tmp_path, [result(case, 25.0, 1), result(case, 26.0, 0)])
+    assert f"| {case.title} | 25.50 | 20.00 | 0.9000 |  | 60 | 0: 26.00, 1: 25.00 | 28.25 |" in text
+
+
+@pytest.mark.parametrize(("whole_db", "word"), [(25.5, "met"), (24.5, "**missed**")])
+def test_what_must_hold_is_said_to_be_met_or_missed(tmp_path, whole_db, word):
+    *others, whole = TABLE_5.cases
+    results = [result(whole, whole_db), *(result(case, 25.0) for case in others)]
+    wish = TABLE_5.must_hold[0]
+    assert gap_db(TABLE_5, wish, "curved", SMALL, results) == pytest.approx(whole_db - 25.0)
+    assert f"{whole_db - 25.0:+.2f} dB (at least 0: {word})" in page(tmp_path, results)
+
+
+def test_nothing_is_said_of_what_was_not_run():
+    wish = Above(TABLE_5.cases[3].title, (TABLE_5.cases[0].title,), 0.0)
+    assert gap_db(TABLE_5, wish, "curved", SMALL, [result(TABLE_5.cases[3], 30.0)]) is None
+
+
+@pytest.mark.slow
+def test_plans_are_flown_photographed_learned_from_and_scored(tmp_path):
+    arguments = ["--scale", "smoke", "--only", "2", "--scene", "planar", "--jobs", "1"]
+    arguments += ["--work", str(tmp_path / "work"), "--out", str(tmp_path)]
+    assert main(arguments) == 0
+    kept = read_results(tmp_path / "tables" / "results.csv")
+    assert {each.case for each in kept} == {case.title for case in tables(SMOKE)[0].cases}
+    assert all(5.0 < each.psnr_db < 40.0 and each.n_steps == 12 for each in kept)
+    assert (tmp_path / "tables" / "2-planar-smoke.png").is_file()
+    before = (tmp_path / "tables" / "results.csv").read_bytes()
+    assert main(arguments) == 0
+    assert (tmp_path / "tables" / "results.csv").read_bytes() == before

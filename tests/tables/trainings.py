@@ -1,0 +1,128 @@
+"""One training of a table: photos in, model out, scored on the glass of views that nobody planned."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import statistics
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from reconstruction.modelling.config import TrainConfig, config_of
+from reconstruction.modelling.render import png_of, render_view
+from reconstruction.modelling.saved import TrainedModel
+from reconstruction.modelling.score import ViewScores, score_views
+from reconstruction.modelling.stopwatch import Stopwatch
+from reconstruction.modelling.train import train_model
+from reconstruction.reflections.photo_set import PhotoSet, read_photo_set
+from reconstruction.scores.lpips_weights import read_lpips_weights
+from reconstruction.splatting.views import View
+from tests.benchmarks.harness import machine
+from tests.tables.photos import Photos, Planner, photos_in
+from tests.tables.results import Result
+from tests.tables.scales import SCALES, Scale
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A line of a table.
+
+    Parameters
+    ----------
+    title
+        As the table has it.
+    method
+        Of `METHODS`.
+    settings
+        Of `TrainConfig`, as in TOML, that differ from the scale's and the method's.
+    planner
+        Of the photos that are learned from.
+    paper
+        The paper's PSNR by its scene, ST (planar) and UST (curved), where it has one.
+    """
+
+    title: str
+    method: str
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    planner: Planner = "greedy"
+    paper: Mapping[str, float] = field(default_factory=dict)
+
+    def config(self, scale: Scale, seed: int) -> TrainConfig:
+        """Of its trainings."""
+        base = replace(scale.config, seed=seed)
+        named = config_of({"method": self.method}, base, Path(self.title))
+        return config_of(dict(self.settings), named, Path(self.title))
+
+    def photos(self, scene: str, scale: Scale) -> tuple[Photos, Photos]:
+        """To learn from, and to be scored on."""
+        learned = Photos(scene, self.planner, scale.n_views, scale.width_px)
+        return learned, Photos(scene, "unseen", scale.n_unseen, scale.width_px)
+
+    def made_with(self, scene: str, scale: Scale) -> str:
+        """Checksum of all that its numbers depend on, but for the program and the seed."""
+        what = [asdict(self.config(scale, 0)), [asdict(each) for each in self.photos(scene, scale)]]
+        return hashlib.sha256(json.dumps(what, sort_keys=True, default=str).encode()).hexdigest()[:10]
+
+
+def trained_and_scored(
+    case: Case,
+    scene: str,
+    scale_name: str,
+    seed: int,
+    work: Path,
+    weights: Sequence[Path],
+    picture: Path | None,
+) -> Result:
+    """Train a case once, by processor time, and score it.
+
+    Parameters
+    ----------
+    weights
+        Of LPIPS; none leave it out.
+    picture
+        Where the first unseen view goes, as a PNG file; None for nowhere.
+    """
+    scale = SCALES[scale_name]
+    learned, unseen = (photos_in(work, each) for each in case.photos(scene, scale))
+    config = case.config(scale, seed)
+    trained = train_model(learned, config, watch=Stopwatch(time.process_time))
+    source = read_photo_set(unseen)
+    lpips = read_lpips_weights(weights) if weights else None
+    scores = score_views(trained, source, [photo.name for photo in source.photos], lpips, threads=1)
+    known = [score for score in scores if score.facade.psnr_db is not None]
+    if picture is not None:
+        picture.write_bytes(first_view(trained, source))
+    return Result(
+        scene,
+        case.title,
+        seed,
+        scale.name,
+        case.made_with(scene, scale),
+        round(_mean(known, "psnr_db"), 3),
+        round(min(float(score.facade.psnr_db or 0.0) for score in known), 3),
+        round(_mean(known, "ssim"), 4),
+        None if lpips is None else round(statistics.fmean(score.facade_lpips or 0.0 for score in known), 4),
+        round(trained.seconds, 1),
+        trained.n_steps,
+        trained.n_splats,
+        machine(),
+    )
+
+
+def _mean(scores: list[ViewScores], name: str) -> float:
+    return statistics.fmean(float(getattr(score.facade, name)) for score in scores)
+
+
+@torch.no_grad()
+def first_view(trained: TrainedModel, source: PhotoSet) -> bytes:
+    """The first unseen view as the model shows it, PNG."""
+    photo = source.photos[0]
+    view = View.of(replace(photo, intrinsics=photo.intrinsics.straight()), trained.model.origin_enu_m)
+    gain = source.exposure / trained.record.exposure * source.own_exposures.get(photo.name, 1.0)
+    return png_of(np.round(255.0 * render_view(trained.model, view, (), gain).display).astype(np.uint8))
