@@ -35,7 +35,7 @@ SIZES_PX = ((1280, 720), (1920, 1080))
 SETTLE_MS = 400
 """For the 3-D view to come to rest and the charts to redraw."""
 
-TIMEOUT_S = 240.0
+TIMEOUT_S = 600.0
 
 FLY_SPEED_UP, FLY_PHOTOS = 30.0, 12
 """Of the simulated flight, and after how many photos it is broken off."""
@@ -131,6 +131,7 @@ class _Photographer(QObject):
         self._error()
         self._looks()
         self._photos()
+        self._reconstruct()
         desk.window.close()
         desk.close()
         return self._n_pictures
@@ -318,6 +319,11 @@ class _Photographer(QObject):
         photo_states(self._desk, self._scratch, self._take, self._wait_until_idle)
 
     # The camera
+
+    def _reconstruct(self) -> None:
+        from groundstation.gui.screenshots_reconstruct import reconstruct_states
+
+        reconstruct_states(self._desk, self._scratch, self._take, self._wait_for)
 
     def _take(self, name: str, widget: QWidget | None = None, rest_ms: int = SETTLE_MS) -> None:
         self._rest(rest_ms)

@@ -20,6 +20,7 @@ from groundstation.gui.sentences import (
     photos,
     plan,
     project,
+    reconstruct,
     refine,
     report,
     scenes,
@@ -40,15 +41,39 @@ from planning.scenes import write_scene
 from planning.site import Airspace
 from planning.site_file import read_site
 from planning.site_import.options import ImportOptions
+from reconstruction.modelling.methods import METHODS
 from tests.gui.source_sentences import collect, files_of_the_window
 from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
-FROM_SOURCES = (dji, fly, insight, mission, photos, plan, project, refine, report, scenes, site, site_import, stages)
+FROM_SOURCES = (
+    *(
+        dji,
+        fly,
+        insight,
+        mission,
+        photos,
+        plan,
+        project,
+        reconstruct,
+        refine,
+        report,
+        scenes,
+        site,
+        site_import,
+        stages,
+    ),
+)
 """Tables of whole sentences; `parts` holds words and what Python says."""
 
 NOT_SHOWN = {
+    **{
+        f"reconstruction/dataset/{name}.py": "data sets are prepared on the command line"
+        for name in ("effects", "prepare", "records", "refined_mesh")
+    },
+    "reconstruction/modelling/methods.py": "but for what each method is: sources and changes stand on the command line",
+    "reconstruction/modelling/layer_names.py": "the window has names of its own for layers",
     "planning/effects.py": "the decision as one line, for the command line; the window has a card",
     "planning/geodesy/enu.py": "descriptions of transformations for PROJ",
     "planning/optimise/pso.py": "names of parameter settings, for benchmarks",
@@ -91,12 +116,30 @@ NOT_SHOWN = {
 }
 """Files that the window imports, but whose sentences nobody reads there, and why."""
 
+FROM_MODEL_PROCESS = {
+    *(f"groundstation/services/{name}.py" for name in ("model_training", "reconstruct_looks")),
+    *(
+        f"reconstruction/modelling/{name}.py"
+        for name in ("checkpoints", "photo_stream", "saved", "start", "train", "trainer", "training_state")
+    ),
+    *(f"reconstruction/reflections/{name}.py" for name in ("choose_light", "glass_rays", "light_training")),
+    *(f"reconstruction/splatting/{name}.py" for name in ("gsplat_backend", "initialise", "start_data")),
+    "reconstruction/recovery.py",
+}
+"""Files that the process of models imports and the window does not, and whose sentences it tells the window."""
+
 NO_SENTENCE = {
     "labels of rows, which the comparison window has its own words for": (
         *("time in the air", "way flown", "views found after", "sections covered", "of all sections"),
         *("of what can be covered", "facade {0}, of what can be covered", "sections no other plan covers"),
         *("covered at least {0} times", "finest pixel", "coarsest pixel", "finest pixel on the worst panel"),
         *("smallest clearance", "findings: {0}"),
+    ),
+    "keys and comments of files of models": (
+        *("site: {0}", "site origin, WGS 84 lat lon ellipsoid height: {0}", "empty places"),
+    ),
+    "what errors of libraries are searched for": (
+        *("out of memory", "can't allocate memory", "cannot allocate memory", "not enough memory"),
     ),
     "stands in `parts` with the words of each constraint": ("{0} {1} instead of {2}",),
     "stands in `parts` without its colon": ("focal lengths are from: ",),
@@ -117,6 +160,9 @@ NO_SENTENCE = {
         "cut off",
     ),
     "said on the command line only": (
+        "a minute; shows that everything works, and nothing else",
+        *("expected a folder of pictures, found a file", "expected a folder of pictures, found nothing"),
+        *("{0} and {1} have one name; keep one of them", "expected pictures ({0}) in this folder, found none"),
         *("{0}; what was flown before is in {1}", "sortie {0}: ", ", asked for"),
         "{0}nothing was recorded: the vehicle sent no positions in flight",
         "effects are decided by the photos of a flight; expected at least one, got none",
@@ -151,8 +197,8 @@ CODE = re.compile(r"<\w+[ />]|\bSELECT\b|\bPRAGMA\b|tile_column|^# Settings")
 def sentences_of_sources():
     """What has to be known, by where it stands."""
     none = {text for texts in NO_SENTENCE.values() for text in texts}
-    shown = files_of_the_window() - set(NOT_SHOWN)
-    return {
+    shown = (files_of_the_window() | FROM_MODEL_PROCESS) - set(NOT_SHOWN)
+    return {method.what: f"what {name} is" for name, method in METHODS.items()} | {
         text: f"{path}, line {line}"
         for (path, line), texts in collect().items()
         for text in texts

@@ -1,30 +1,22 @@
-"""The Reconstruct tab: its place in the window; what it will do is not built yet, and it says so."""
+"""The Reconstruct tab: train a model of a data set, and look at it from anywhere while it learns."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication
-
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.prepared_tab import PreparedTab
+    from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
     from groundstation.gui.stage import Stage
     from groundstation.gui.workspace import Workspace
 
 
-def make(_workspace: Workspace, _stage: Stage) -> PreparedTab:
-    """Page that says what to do meanwhile."""
-    from groundstation.gui.prepared_tab import PreparedTab
+def make(workspace: Workspace, stage: Stage) -> ReconstructPage:
+    """What to train, the view of the model, and its curves."""
+    from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
 
-    return PreparedTab(
-        QCoreApplication.translate("Tabs", "Reconstruction in this window is not built yet."),
-        QCoreApplication.translate(
-            "Tabs",
-            "Any photogrammetry program takes the photos of the second flight; their positions are in the EXIF data.",
-        ),
-    )
+    return ReconstructPage(workspace, stage)
 
 
 TAB = TabSpec(
@@ -34,4 +26,5 @@ TAB = TabSpec(
     tip=QT_TRANSLATE_NOOP("Tabs", "Turn the photos into a model"),
     place=Place.WHOLE_PAGE,
     make=make,
+    implementation="groundstation.gui.reconstruct.reconstruct_page",
 )

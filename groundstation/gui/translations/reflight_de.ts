@@ -483,6 +483,124 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
+    <name>ChoiceForm</name>
+    <message>
+        <source> min</source>
+        <translation> min</translation>
+    </message>
+    <message>
+        <source>Method</source>
+        <translation>Verfahren</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>Zeit</translation>
+    </message>
+    <message>
+        <source>At most</source>
+        <translation>Höchstens</translation>
+    </message>
+    <message>
+        <source>Compute on</source>
+        <translation>Rechnen auf</translation>
+    </message>
+    <message>
+        <source>10 minutes</source>
+        <translation>10 Minuten</translation>
+    </message>
+    <message>
+        <source>1 hour</source>
+        <translation>1 Stunde</translation>
+    </message>
+    <message>
+        <source>overnight, 10 hours</source>
+        <translation>über Nacht, 10 Stunden</translation>
+    </message>
+    <message>
+        <source>own time</source>
+        <translation>eigene Zeit</translation>
+    </message>
+    <message>
+        <source>the processor</source>
+        <translation>dem Prozessor</translation>
+    </message>
+</context>
+<context>
+    <name>ChoiceSide</name>
+    <message>
+        <source>Choose ...</source>
+        <translation>Wählen ...</translation>
+    </message>
+    <message>
+        <source>Train</source>
+        <translation>Trainieren</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Anhalten</translation>
+    </message>
+    <message>
+        <source>Good enough, stop</source>
+        <translation>Gut genug, aufhören</translation>
+    </message>
+    <message>
+        <source>Break off</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Go on</source>
+        <translation>Fortsetzen</translation>
+    </message>
+    <message>
+        <source>Resume</source>
+        <translation>Weiter</translation>
+    </message>
+    <message>
+        <source>The data set is being read ...</source>
+        <translation>Der Datensatz wird gelesen ...</translation>
+    </message>
+    <message>
+        <source>None is chosen.</source>
+        <translation>Keiner ist gewählt.</translation>
+    </message>
+    <message>
+        <source>{0}: {1} photos, {2} panels</source>
+        <translation>{0}: {1} Fotos, {2} Scheiben</translation>
+    </message>
+    <message>
+        <source>A training was broken off there: it can be gone on with, as it was begun.</source>
+        <translation>Dort wurde ein Training abgebrochen: es kann fortgesetzt werden, wie es begonnen wurde.</translation>
+    </message>
+    <message>
+        <source>A finished model stands there. It stays until the new one is whole, and is replaced then.</source>
+        <translation>Dort steht ein fertiges Modell. Es bleibt, bis das neue vollständig ist, und wird dann ersetzt.</translation>
+    </message>
+    <message>
+        <source>There is something else in this folder; it is left alone.</source>
+        <translation>In diesem Ordner ist etwas anderes; es bleibt unberührt.</translation>
+    </message>
+    <message>
+        <source>Let the training wait; the model can be looked at meanwhile</source>
+        <translation>Das Training warten lassen; das Modell kann inzwischen angesehen werden</translation>
+    </message>
+    <message>
+        <source>Let the rates fall within a twentieth of the time so far, a minute at most, and write the model: it is better than it is now</source>
+        <translation>Die Lernraten innerhalb eines Zwanzigstels der bisherigen Zeit fallen lassen, höchstens eine Minute, und das Modell schreiben: es wird besser, als es jetzt ist</translation>
+    </message>
+    <message>
+        <source>End now and keep the state; the training can be gone on with later</source>
+        <translation>Jetzt beenden und den Stand behalten; das Training kann später fortgesetzt werden</translation>
+    </message>
+    <message>
+        <source>Data set</source>
+        <translation>Datensatz</translation>
+    </message>
+    <message>
+        <source>Model goes to</source>
+        <translation>Modell kommt nach</translation>
+    </message>
+</context>
+<context>
     <name>ClearanceChart</name>
     <message>
         <source>Sortie {0}</source>
@@ -941,6 +1059,21 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     <message>
         <source>The coarse picture has all effects of light; the scene is asked for the fine one.</source>
         <translation>Das grobe Bild hat alle Effekte des Lichts; für das feine wird die Szene befragt.</translation>
+    </message>
+</context>
+<context>
+    <name>ErrorStrip</name>
+    <message>
+        <source>Photos of the data set, and how well the model shows them</source>
+        <translation>Fotos des Datensatzes, und wie gut das Modell sie zeigt</translation>
+    </message>
+    <message>
+        <source>{0:.2f} dB on the facades, as the model is now</source>
+        <translation>{0:.2f} dB auf den Fassaden, wie das Modell jetzt ist</translation>
+    </message>
+    <message>
+        <source>{0} not learned from: kept for scoring</source>
+        <translation>{0} nicht gelernt: zum Bewerten aufgehoben</translation>
     </message>
 </context>
 <context>
@@ -1971,6 +2104,49 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>LayerNames</name>
+    <message>
+        <source>Picture</source>
+        <translation>Bild</translation>
+    </message>
+    <message>
+        <source>Diffuse</source>
+        <translation>Diffus</translation>
+    </message>
+    <message>
+        <source>Reflectivity</source>
+        <translation>Spiegelanteil</translation>
+    </message>
+    <message>
+        <source>Fresnel</source>
+        <translation>Fresnel</translation>
+    </message>
+    <message>
+        <source>Reflection</source>
+        <translation>Spiegelung</translation>
+    </message>
+    <message>
+        <source>Mirrored light</source>
+        <translation>Gespiegeltes Licht</translation>
+    </message>
+    <message>
+        <source>Normals</source>
+        <translation>Normalen</translation>
+    </message>
+    <message>
+        <source>Panels</source>
+        <translation>Scheiben</translation>
+    </message>
+    <message>
+        <source>Depth</source>
+        <translation>Tiefe</translation>
+    </message>
+    <message>
+        <source>Coverage by splats</source>
+        <translation>Deckung durch Splats</translation>
+    </message>
+</context>
+<context>
     <name>LightBox</name>
     <message>
         <source>Sun by direction</source>
@@ -2030,6 +2206,60 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>LightNames</name>
+    <message>
+        <source>as the scene calls for</source>
+        <translation>wie es die Szene verlangt</translation>
+    </message>
+    <message>
+        <source>none apart from the splats (harmonics)</source>
+        <translation>keines neben den Splats (Kugelfunktionen)</translation>
+    </message>
+    <message>
+        <source>far away (environment map)</source>
+        <translation>weit entfernt (Umgebungsbild)</translation>
+    </message>
+    <message>
+        <source>network by place and direction (paper)</source>
+        <translation>Netz nach Ort und Richtung (Veröffentlichung)</translation>
+    </message>
+    <message>
+        <source>near things (radiance grid)</source>
+        <translation>nahe Dinge (Strahlungsgitter)</translation>
+    </message>
+</context>
+<context>
+    <name>LightPage</name>
+    <message>
+        <source>Ask the scene</source>
+        <translation>Szene befragen</translation>
+    </message>
+    <message>
+        <source>Try the cheap models on the photos for some seconds, and say which one is worth it</source>
+        <translation>Die günstigen Modelle einige Sekunden an den Fotos versuchen und sagen, welches sich lohnt</translation>
+    </message>
+    <message>
+        <source>Mirrored light is learned as</source>
+        <translation>Gespiegeltes Licht wird gelernt als</translation>
+    </message>
+    <message>
+        <source>as the method has it: {0}</source>
+        <translation>wie es das Verfahren hat: {0}</translation>
+    </message>
+    <message>
+        <source>Nothing is known of this scene yet. It is asked when a training begins, or now, which takes seconds.</source>
+        <translation>Von dieser Szene ist noch nichts bekannt. Sie wird befragt, wenn ein Training beginnt, oder jetzt, was Sekunden dauert.</translation>
+    </message>
+    <message>
+        <source>It is learned as: {0}.</source>
+        <translation>Es wird gelernt als: {0}.</translation>
+    </message>
+    <message>
+        <source>The scene calls for: {0}.</source>
+        <translation>Die Szene verlangt: {0}.</translation>
+    </message>
+</context>
+<context>
     <name>LinkBand</name>
     <message>
         <source>LINK LOST. It is opened again; the aircraft goes on by itself.</source>
@@ -2045,6 +2275,88 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Flown of what is planned</source>
         <translation>Geflogen vom Geplanten</translation>
+    </message>
+</context>
+<context>
+    <name>LossTerms</name>
+    <message>
+        <source>colour</source>
+        <translation>Farbe</translation>
+    </message>
+    <message>
+        <source>normals and depth</source>
+        <translation>Normalen und Tiefe</translation>
+    </message>
+    <message>
+        <source>known normals</source>
+        <translation>bekannte Normalen</translation>
+    </message>
+    <message>
+        <source>worst pixels</source>
+        <translation>schlechteste Pixel</translation>
+    </message>
+</context>
+<context>
+    <name>MachineWords</name>
+    <message>
+        <source>Memory is short: up to {0} are needed, and {1} are free. The system may end the training; its last state is kept. Close other programs, or prepare the data set with smaller photos.</source>
+        <translation>Der Speicher ist knapp: bis zu {0} werden gebraucht, {1} sind frei. Das System kann das Training beenden; sein letzter Stand bleibt erhalten. Schließen Sie andere Programme, oder bereiten Sie den Datensatz mit kleineren Fotos auf.</translation>
+    </message>
+    <message>
+        <source>Only {0} are free on the disk. States and models are written beside the old ones; make room, or choose another folder.</source>
+        <translation>Auf dem Datenträger sind nur {0} frei. Stände und Modelle werden neben die alten geschrieben; schaffen Sie Platz, oder wählen Sie einen anderen Ordner.</translation>
+    </message>
+    <message>
+        <source>{0} cores</source>
+        <translation>{0} Kerne</translation>
+    </message>
+    <message>
+        <source>, {0} of memory</source>
+        <translation>, {0} Speicher</translation>
+    </message>
+    <message>
+        <source>, {0} of it free</source>
+        <translation>, {0} davon frei</translation>
+    </message>
+    <message>
+        <source>Looking for a CUDA device ...</source>
+        <translation>Ein CUDA-Gerät wird gesucht ...</translation>
+    </message>
+    <message>
+        <source>No CUDA device: models are learned by one core of the processor.</source>
+        <translation>Kein CUDA-Gerät: Modelle lernt ein Kern des Prozessors.</translation>
+    </message>
+    <message>
+        <source>The times to choose from are meant for that. A step of splats alone, 20 000 of them on 256 x 192 pixels, takes about 75 ms; with mirrored light or more pixels it takes longer.</source>
+        <translation>Die Zeiten zur Wahl sind dafür gemeint. Ein Schritt mit Splats allein, 20 000 davon auf 256 x 192 Pixeln, dauert etwa 75 ms; mit gespiegeltem Licht oder mehr Pixeln dauert er länger.</translation>
+    </message>
+    <message>
+        <source>CUDA device: {0}</source>
+        <translation>CUDA-Gerät: {0}</translation>
+    </message>
+    <message>
+        <source>It is not used: the processor is chosen.</source>
+        <translation>Es wird nicht benutzt: der Prozessor ist gewählt.</translation>
+    </message>
+    <message>
+        <source>{0} photos of {1} x {2} pixels take {3} of memory when they are decoded.</source>
+        <translation>{0} Fotos von {1} x {2} Pixeln brauchen dekodiert {3} Speicher.</translation>
+    </message>
+    <message>
+        <source>All of them fit, and each is read once.</source>
+        <translation>Alle haben Platz, und jedes wird einmal gelesen.</translation>
+    </message>
+    <message>
+        <source>They are streamed through at most {0}: each is looked at four times while it is at hand, then others take its place.</source>
+        <translation>Sie laufen durch höchstens {0}: jedes wird viermal angesehen, solange es da ist, dann nehmen andere seinen Platz ein.</translation>
+    </message>
+    <message>
+        <source>Less memory is taken than usual ({0}), for little is free.</source>
+        <translation>Es wird weniger Speicher genommen als üblich ({0}), denn wenig ist frei.</translation>
+    </message>
+    <message>
+        <source>All in all a training takes up to {0}; {1} of it are the program&apos;s.</source>
+        <translation>Alles in allem braucht ein Training bis zu {0}; {1} davon sind das Programm.</translation>
     </message>
 </context>
 <context>
@@ -2457,6 +2769,13 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>{0} is not shown in the view</source>
         <translation>{0} ist in der Ansicht nicht dargestellt</translation>
+    </message>
+</context>
+<context>
+    <name>ModelView</name>
+    <message>
+        <source>Picture of the model</source>
+        <translation>Bild des Modells</translation>
     </message>
 </context>
 <context>
@@ -3039,6 +3358,21 @@ Blickrichtung: {3}</translation>
     <message>
         <source>No grid was looked for in this photo; photos with one have the sign ▦.</source>
         <translation>In diesem Foto wurde kein Raster gesucht; Fotos mit einem haben das Zeichen ▦.</translation>
+    </message>
+</context>
+<context>
+    <name>PlaceDesk</name>
+    <message>
+        <source>Read the data set</source>
+        <translation>Datensatz lesen</translation>
+    </message>
+    <message>
+        <source>This data set shows other panels than the site that is open ({0} against {1}). It can be trained on all the same; is it the right one?</source>
+        <translation>Dieser Datensatz zeigt andere Scheiben als der geöffnete Standort ({0} gegen {1}). Trainiert werden kann trotzdem; ist es der richtige?</translation>
+    </message>
+    <message>
+        <source>Look for models</source>
+        <translation>Modelle suchen</translation>
     </message>
 </context>
 <context>
@@ -3703,6 +4037,45 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>ProgressPage</name>
+    <message>
+        <source>Appears here while a model learns.</source>
+        <translation>Erscheint hier, während ein Modell lernt.</translation>
+    </message>
+    <message>
+        <source>time in s</source>
+        <translation>Zeit in s</translation>
+    </message>
+    <message>
+        <source>PSNR in dB</source>
+        <translation>PSNR in dB</translation>
+    </message>
+    <message>
+        <source>loss</source>
+        <translation>Verlust</translation>
+    </message>
+    <message>
+        <source>Facades of unseen views</source>
+        <translation>Fassaden ungesehener Aufnahmen</translation>
+    </message>
+    <message>
+        <source>Terms of the loss</source>
+        <translation>Teile des Verlusts</translation>
+    </message>
+    <message>
+        <source>Nothing is being trained.</source>
+        <translation>Es wird nichts trainiert.</translation>
+    </message>
+    <message>
+        <source>time in min</source>
+        <translation>Zeit in min</translation>
+    </message>
+    <message>
+        <source>unseen views</source>
+        <translation>ungesehene Aufnahmen</translation>
+    </message>
+</context>
+<context>
     <name>QualityChart</name>
     <message>
         <source>Good enough, stop here</source>
@@ -3873,6 +4246,127 @@ Take it over?</source>
     <message>
         <source>coverage {0:.1f} % of planned ({1} of {2})</source>
         <translation>Abdeckung {0:.1f} % vom Geplanten ({1} von {2})</translation>
+    </message>
+</context>
+<context>
+    <name>ReconstructDesk</name>
+    <message>
+        <source>The training was broken off; go on with it whenever you like.</source>
+        <translation>Das Training wurde abgebrochen; setzen Sie es fort, wann Sie möchten.</translation>
+    </message>
+    <message>
+        <source>The training was broken off before there was anything to keep.</source>
+        <translation>Das Training wurde abgebrochen, bevor es etwas zu behalten gab.</translation>
+    </message>
+    <message>
+        <source>The model is written: {0}</source>
+        <translation>Das Modell ist geschrieben: {0}</translation>
+    </message>
+    <message>
+        <source>the system ended it, mostly because memory ran out</source>
+        <translation>das System hat ihn beendet, meist weil der Speicher ausging</translation>
+    </message>
+    <message>
+        <source>exit status {0}</source>
+        <translation>Endestatus {0}</translation>
+    </message>
+    <message>
+        <source>Close other programs, and go on from the last state.</source>
+        <translation>Schließen Sie andere Programme, und setzen Sie beim letzten Stand fort.</translation>
+    </message>
+    <message>
+        <source>Close other programs, or ask for less, and try again.</source>
+        <translation>Schließen Sie andere Programme, oder verlangen Sie weniger, und versuchen Sie es noch einmal.</translation>
+    </message>
+    <message>
+        <source>The process that trains has ended ({0}). {1}</source>
+        <translation>Der Prozess, der trainiert, ist zu Ende ({0}). {1}</translation>
+    </message>
+    <message>
+        <source>Training: Reflight failed where it should not ({0}: {1}); please report it</source>
+        <translation>Training: Reflight ist gescheitert, wo es nicht sollte ({0}: {1}); bitte melden Sie es</translation>
+    </message>
+</context>
+<context>
+    <name>ReconstructPage</name>
+    <message>
+        <source>Computer</source>
+        <translation>Rechner</translation>
+    </message>
+    <message>
+        <source>Progress</source>
+        <translation>Verlauf</translation>
+    </message>
+    <message>
+        <source>Effects</source>
+        <translation>Effekte</translation>
+    </message>
+    <message>
+        <source>What this computer has, and what follows</source>
+        <translation>Was dieser Rechner hat, und was daraus folgt</translation>
+    </message>
+    <message>
+        <source>Which model of mirrored light the scene calls for, and why</source>
+        <translation>Welches Modell des Spiegellichts die Szene verlangt, und warum</translation>
+    </message>
+    <message>
+        <source>Folder of a data set</source>
+        <translation>Ordner eines Datensatzes</translation>
+    </message>
+    <message>
+        <source>Folder for the model</source>
+        <translation>Ordner für das Modell</translation>
+    </message>
+    <message>
+        <source>starting</source>
+        <translation>Start</translation>
+    </message>
+    <message>
+        <source>{0}, {1} steps, {2} splats</source>
+        <translation>{0}, {1} Schritte, {2} Splats</translation>
+    </message>
+    <message>
+        <source>; {0:.2f} dB on facades of unseen views</source>
+        <translation>; {0:.2f} dB auf Fassaden ungesehener Aufnahmen</translation>
+    </message>
+    <message>
+        <source>Breaking off; the state is being kept ...</source>
+        <translation>Abbruch; der Stand wird gesichert ...</translation>
+    </message>
+    <message>
+        <source>Stops as soon as there is a model: {0}</source>
+        <translation>Hört auf, sobald es ein Modell gibt: {0}</translation>
+    </message>
+    <message>
+        <source>Stopped: the rates fall, then the model is written.</source>
+        <translation>Aufgehört: die Lernraten fallen, dann wird das Modell geschrieben.</translation>
+    </message>
+    <message>
+        <source>Paused. The model can be looked at.</source>
+        <translation>Angehalten. Das Modell kann angesehen werden.</translation>
+    </message>
+    <message>
+        <source>The model is finished.</source>
+        <translation>Das Modell ist fertig.</translation>
+    </message>
+    <message>
+        <source>Broken off; the state is kept.</source>
+        <translation>Abgebrochen; der Stand ist gesichert.</translation>
+    </message>
+    <message>
+        <source>The training has failed; the message says why.</source>
+        <translation>Das Training ist gescheitert; die Meldung sagt, warum.</translation>
+    </message>
+</context>
+<context>
+    <name>ReconstructQuestions</name>
+    <message>
+        <source>A model is being trained</source>
+        <translation>Ein Modell wird trainiert</translation>
+    </message>
+    <message>
+        <source>Closing the window breaks the training off. What it has reached is kept, and the Reconstruct tab goes on with it later. Close the window?</source>
+        <translation>Das Fenster zu schließen bricht das Training ab. Was es erreicht hat, bleibt erhalten, und der Reiter Rekonstruktion setzt es später fort. Fenster schließen?</translation>
     </message>
 </context>
 <context>
@@ -9043,6 +9537,422 @@ Take it over?</source>
         <source>expected at most {0} panels, got {1}; render it in parts</source>
         <translation>höchstens {0} Scheiben erwartet, gefunden {1}; in Teilen rendern</translation>
     </message>
+    <message>
+        <source>reading the data set</source>
+        <translation>Datensatz wird gelesen</translation>
+    </message>
+    <message>
+        <source>placing splats</source>
+        <translation>Splats werden verteilt</translation>
+    </message>
+    <message>
+        <source>colouring splats</source>
+        <translation>Splats werden eingefärbt</translation>
+    </message>
+    <message>
+        <source>counting glass</source>
+        <translation>Glas wird gezählt</translation>
+    </message>
+    <message>
+        <source>reading rays</source>
+        <translation>Strahlen werden gelesen</translation>
+    </message>
+    <message>
+        <source>choosing a model of mirrored light</source>
+        <translation>ein Modell des Spiegellichts wird gewählt</translation>
+    </message>
+    <message>
+        <source>learning reflections</source>
+        <translation>Spiegellicht wird gelernt</translation>
+    </message>
+    <message>
+        <source>training</source>
+        <translation>Training</translation>
+    </message>
+    <message>
+        <source>paused</source>
+        <translation>angehalten</translation>
+    </message>
+    <message>
+        <source>settling</source>
+        <translation>Ausklingen</translation>
+    </message>
+    <message>
+        <source>splats and the light that panels mirror, by the model that the scene calls for: near things are a scene that mirrored rays march through</source>
+        <translation>Splats und das Licht, das Scheiben spiegeln, mit dem Modell, das die Szene verlangt: Nahes ist eine Szene, durch die gespiegelte Strahlen laufen</translation>
+    </message>
+    <message>
+        <source>splats with reflectivity and base reflectance, and a network that gives mirrored light by place and direction</source>
+        <translation>Splats mit Spiegelanteil und Grundreflexion, und ein Netz, das Spiegellicht nach Ort und Richtung angibt</translation>
+    </message>
+    <message>
+        <source>one of its parts left out</source>
+        <translation>einer seiner Teile weggelassen</translation>
+    </message>
+    <message>
+        <source>flat discs whose colour depends on the direction by spherical harmonics</source>
+        <translation>flache Scheibchen, deren Farbe über Kugelfunktionen von der Richtung abhängt</translation>
+    </message>
+    <message>
+        <source>discs with albedo, metallic and roughness, shaded after blending by an environment cube (split sum), with light from other surfaces where the mirrored ray meets the known mesh</source>
+        <translation>Scheibchen mit Albedo, Metallanteil und Rauheit, nach dem Überblenden schattiert durch einen Umgebungswürfel (Split Sum), mit Licht von anderen Flächen, wo der gespiegelte Strahl das bekannte Netz trifft</translation>
+    </message>
+    <message>
+        <source>discs with diffuse colour, roughness and features, shaded after blending by a small network from features of the mirrored direction times those of the place</source>
+        <translation>Scheibchen mit diffuser Farbe, Rauheit und Merkmalen, nach dem Überblenden schattiert durch ein kleines Netz aus Merkmalen der gespiegelten Richtung mal denen des Ortes</translation>
+    </message>
+    <message>
+        <source>ellipsoids whose colour depends on the direction by spherical harmonics</source>
+        <translation>Ellipsoide, deren Farbe über Kugelfunktionen von der Richtung abhängt</translation>
+    </message>
+    <message>
+        <source>ellipsoids, each shaded for itself: diffuse colour, tint times an environment cube by its shortest axis and roughness, and harmonics for the rest</source>
+        <translation>Ellipsoide, jedes für sich schattiert: diffuse Farbe, Tönung mal einem Umgebungswürfel nach kürzester Achse und Rauheit, und Kugelfunktionen für den Rest</translation>
+    </message>
+    <message>
+        <source>small photos or a first look</source>
+        <translation>kleine Fotos oder ein erster Blick</translation>
+    </message>
+    <message>
+        <source>for photos of some hundred pixels&apos; width, or windows of larger ones</source>
+        <translation>für Fotos von einigen hundert Pixeln Breite oder Ausschnitte größerer</translation>
+    </message>
+    <message>
+        <source>the paper&apos;s network and number of steps, as far as they go</source>
+        <translation>Netz und Zahl der Schritte wie in der Veröffentlichung, so weit sie kommen</translation>
+    </message>
+    <message>
+        <source>cannot be made ({0}); name another folder</source>
+        <translation>kann nicht angelegt werden ({0}); nennen Sie einen anderen Ordner</translation>
+    </message>
+    <message>
+        <source>holds no finished model</source>
+        <translation>enthält kein fertiges Modell</translation>
+    </message>
+    <message>
+        <source>has no dataset.json; name a folder that `prepare` or `scene render` has finished</source>
+        <translation>hat keine dataset.json; nennen Sie einen Ordner, den `prepare` oder `scene render` fertiggestellt hat</translation>
+    </message>
+    <message>
+        <source>lists no panels, so there is no glass to learn from</source>
+        <translation>nennt keine Scheiben; es gibt kein Glas, aus dem gelernt werden könnte</translation>
+    </message>
+    <message>
+        <source>panels: expected indices 1, 2, 3 and so on; was the file edited?</source>
+        <translation>panels: erwartet werden die Nummern 1, 2, 3 und so weiter; wurde die Datei bearbeitet?</translation>
+    </message>
+    <message>
+        <source>panel {0} has next to no area; correct the site and prepare again</source>
+        <translation>Scheibe {0} hat fast keine Fläche; berichtigen Sie den Standort und bereiten Sie neu auf</translation>
+    </message>
+    <message>
+        <source>holds no images; name a folder with photos</source>
+        <translation>enthält keine Bilder; nennen Sie einen Ordner mit Fotos</translation>
+    </message>
+    <message>
+        <source>expected at least two photos, one to learn from and one to score, got {0}</source>
+        <translation>erwartet werden mindestens zwei Fotos, eines zum Lernen und eines zum Bewerten; vorhanden: {0}</translation>
+    </message>
+    <message>
+        <source>cannot be read ({0}); make the folder again</source>
+        <translation>kann nicht gelesen werden ({0}); erzeugen Sie den Ordner neu</translation>
+    </message>
+    <message>
+        <source>is no picture, or damaged; make the folder again</source>
+        <translation>ist kein Bild oder beschädigt; erzeugen Sie den Ordner neu</translation>
+    </message>
+    <message>
+        <source>expected {0} x {1} pixels as its camera has, got {2} x {3}</source>
+        <translation>erwartet werden {0} x {1} Pixel wie bei der Kamera, gefunden {2} x {3}</translation>
+    </message>
+    <message>
+        <source>expected one channel with panel numbers, found {0}</source>
+        <translation>erwartet wird ein Kanal mit Scheibennummern, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>has panel {0}, and dataset.json {1}; is it of another run?</source>
+        <translation>hat Scheibe {0}, und dataset.json {1}; stammt es aus einem anderen Lauf?</translation>
+    </message>
+    <message>
+        <source>photos of {0} x {1} pixels cannot be made {2} times smaller; choose less</source>
+        <translation>Fotos von {0} x {1} Pixeln können nicht {2}-mal kleiner gemacht werden; wählen Sie weniger</translation>
+    </message>
+    <message>
+        <source>expected {0} channel(s) of {1} bit; make the folder again</source>
+        <translation>erwartet werden {0} Kanäle mit {1} Bit; erzeugen Sie den Ordner neu</translation>
+    </message>
+    <message>
+        <source>expected {0} x {1} pixels by its camera, got {2} x {3}; make the folder again</source>
+        <translation>erwartet werden laut Kamera {0} x {1} Pixel, gefunden {2} x {3}; erzeugen Sie den Ordner neu</translation>
+    </message>
+    <message>
+        <source>has none of the photos to be used; name a folder that has them</source>
+        <translation>hat keines der Fotos, die gebraucht werden; nennen Sie einen Ordner, der sie hat</translation>
+    </message>
+    <message>
+        <source>its photos take {0} MiB each while they are read, more than the limit of {1} MiB; allow more memory, or take smaller photos</source>
+        <translation>seine Fotos brauchen je {0} MiB, während sie gelesen werden, mehr als die Grenze von {1} MiB; erlauben Sie mehr Speicher oder nehmen Sie kleinere Fotos</translation>
+    </message>
+    <message>
+        <source>expected an image of 8 or 16 bit, found {0}</source>
+        <translation>erwartet wird ein Bild mit 8 oder 16 Bit, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>cannot be decoded as a picture; it may be too large or damaged</source>
+        <translation>lässt sich nicht als Bild lesen; es ist vielleicht zu groß oder beschädigt</translation>
+    </message>
+    <message>
+        <source>cannot be decoded as a picture; expected JPEG, PNG, TIFF or BMP, whole</source>
+        <translation>lässt sich nicht als Bild lesen; erwartet wird JPEG, PNG, TIFF oder BMP, vollständig</translation>
+    </message>
+    <message>
+        <source>the file is empty; copy it again</source>
+        <translation>die Datei ist leer; kopieren Sie sie neu</translation>
+    </message>
+    <message>
+        <source>is no checkpoint, or damaged ({0}); train without --resume</source>
+        <translation>ist kein Zwischenstand oder beschädigt ({0}); beginnen Sie das Training neu</translation>
+    </message>
+    <message>
+        <source>is no checkpoint; train without --resume</source>
+        <translation>ist kein Zwischenstand; beginnen Sie das Training neu</translation>
+    </message>
+    <message>
+        <source>holds no state of a training; train without --resume</source>
+        <translation>enthält keinen Stand eines Trainings; beginnen Sie das Training neu</translation>
+    </message>
+    <message>
+        <source>go on with its training (train --resume)</source>
+        <translation>setzen Sie sein Training fort</translation>
+    </message>
+    <message>
+        <source>name one of `train`</source>
+        <translation>nennen Sie eines, das trainiert wurde</translation>
+    </message>
+    <message>
+        <source>holds no finished model; {0}</source>
+        <translation>enthält kein fertiges Modell; {0}</translation>
+    </message>
+    <message>
+        <source>weights.file: expected the name of a file beside it, got &apos;{0}&apos;</source>
+        <translation>weights.file: erwartet wird der Name einer Datei daneben, gefunden &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>is not the file that {0} was written with; was it changed or cut off?</source>
+        <translation>ist nicht die Datei, mit der {0} geschrieben wurde; wurde sie geändert oder abgeschnitten?</translation>
+    </message>
+    <message>
+        <source>is no safetensors file, or damaged: {0}</source>
+        <translation>ist keine safetensors-Datei oder beschädigt: {0}</translation>
+    </message>
+    <message>
+        <source>holds numbers that are not finite; train again</source>
+        <translation>enthält Zahlen, die nicht endlich sind; trainieren Sie neu</translation>
+    </message>
+    <message>
+        <source>has splats on panel {0} of {1}</source>
+        <translation>hat Splats auf Scheibe {0} von {1}</translation>
+    </message>
+    <message>
+        <source>holds the weights of another model than {0} describes ({1})</source>
+        <translation>enthält die Gewichte eines anderen Modells als {0} beschreibt ({1})</translation>
+    </message>
+    <message>
+        <source>none of {0} photos has a pixel that lies whole on a panel; take larger photos or come closer, or train splats alone (--method 2dgs)</source>
+        <translation>keines von {0} Fotos hat ein Pixel, das ganz auf einer Scheibe liegt; nehmen Sie größere Fotos, gehen Sie näher heran oder trainieren Sie Splats allein (2DGS)</translation>
+    </message>
+    <message>
+        <source>none of {0} photos has a pixel that lies whole on a panel; take larger photos or come closer</source>
+        <translation>keines von {0} Fotos hat ein Pixel, das ganz auf einer Scheibe liegt; nehmen Sie größere Fotos oder gehen Sie näher heran</translation>
+    </message>
+    <message>
+        <source>its photos, cameras or panels are not those that the training was begun with; name that data set</source>
+        <translation>seine Fotos, Kameras oder Scheiben sind nicht die, mit denen das Training begonnen wurde; nennen Sie jenen Datensatz</translation>
+    </message>
+    <message>
+        <source>is of another version, or damaged ({0}); train without --resume</source>
+        <translation>ist von einer anderen Version oder beschädigt ({0}); beginnen Sie das Training neu</translation>
+    </message>
+    <message>
+        <source>shows other panels; name the data set that the training was begun with</source>
+        <translation>zeigt andere Scheiben; nennen Sie den Datensatz, mit dem das Training begonnen wurde</translation>
+    </message>
+    <message>
+        <source>lacks the photo &apos;{0}&apos;</source>
+        <translation>das Foto &apos;{0}&apos; fehlt</translation>
+    </message>
+    <message>
+        <source>shows other panels</source>
+        <translation>zeigt andere Scheiben</translation>
+    </message>
+    <message>
+        <source>{0}; name the data set that the training was begun with</source>
+        <translation>{0}; nennen Sie den Datensatz, mit dem das Training begonnen wurde</translation>
+    </message>
+    <message>
+        <source>is damaged ({0}); train without --resume</source>
+        <translation>ist beschädigt ({0}); beginnen Sie das Training neu</translation>
+    </message>
+    <message>
+        <source>is of a training of {0}; resume with that method</source>
+        <translation>gehört zu einem Training von {0}; setzen Sie es mit jenem Verfahren fort</translation>
+    </message>
+    <message>
+        <source>device: &apos;cuda&apos; is asked for, and torch finds no CUDA device; leave it out</source>
+        <translation>device: &apos;cuda&apos; ist verlangt, und torch findet kein CUDA-Gerät; lassen Sie es weg</translation>
+    </message>
+    <message>
+        <source>holds no training that was interrupted; train without --resume</source>
+        <translation>enthält kein Training, das abgebrochen wurde; beginnen Sie das Training neu</translation>
+    </message>
+    <message>
+        <source>holds a training that was interrupted; go on with it (--resume), name another folder, or delete {0}</source>
+        <translation>enthält ein abgebrochenes Training; setzen Sie es fort, nennen Sie einen anderen Ordner, oder löschen Sie {0}</translation>
+    </message>
+    <message>
+        <source>training failed at step {0}: {1}, and lower rates do not help{2}; train again with lower rates or fewer splats</source>
+        <translation>das Training scheiterte bei Schritt {0}: {1}, und kleinere Lernraten helfen nicht{2}; trainieren Sie neu mit kleineren Lernraten oder weniger Splats</translation>
+    </message>
+    <message>
+        <source>step {0} was undone ({1}); all rates are halved from there on</source>
+        <translation>Schritt {0} wurde zurückgenommen ({1}); von da an sind alle Lernraten halbiert</translation>
+    </message>
+    <message>
+        <source>training failed at step {0}: there is no memory for {1} splats and windows of {2} pixels{3}; train with fewer splats</source>
+        <translation>das Training scheiterte bei Schritt {0}: für {1} Splats und Ausschnitte von {2} Pixeln fehlt der Speicher{3}; trainieren Sie mit weniger Splats</translation>
+    </message>
+    <message>
+        <source>memory ran out at step {0}: windows of photos have {1} pixels from there on</source>
+        <translation>der Speicher ging bei Schritt {0} aus: Ausschnitte der Fotos haben von da an {1} Pixel</translation>
+    </message>
+    <message>
+        <source>memory ran out while splats were added</source>
+        <translation>der Speicher ging aus, während Splats hinzukamen</translation>
+    </message>
+    <message>
+        <source>; the last checkpoint, {0}, is good</source>
+        <translation>; der letzte Zwischenstand, {0}, ist gut</translation>
+    </message>
+    <message>
+        <source>training failed at step {0}: {1}; train again</source>
+        <translation>das Training scheiterte bei Schritt {0}: {1}; trainieren Sie neu</translation>
+    </message>
+    <message>
+        <source>went back to step {0}</source>
+        <translation>zurück zu Schritt {0}</translation>
+    </message>
+    <message>
+        <source>is of another model or version ({0}); train without --resume</source>
+        <translation>gehört zu einem anderen Modell oder einer anderen Version ({0}); beginnen Sie das Training neu</translation>
+    </message>
+    <message>
+        <source>the loss is not a number</source>
+        <translation>der Verlust ist keine Zahl</translation>
+    </message>
+    <message>
+        <source>a gradient is not a number</source>
+        <translation>ein Gradient ist keine Zahl</translation>
+    </message>
+    <message>
+        <source>a weight is not a number</source>
+        <translation>ein Gewicht ist keine Zahl</translation>
+    </message>
+    <message>
+        <source>learning reflections failed: {0} at step {1} of {2}; lower the learning rates</source>
+        <translation>das Lernen des Spiegellichts scheiterte: {0} bei Schritt {1} von {2}; verkleinern Sie die Lernraten</translation>
+    </message>
+    <message>
+        <source>learning light: {0} at step {1}; all rates are halved from there on</source>
+        <translation>beim Lernen des Lichts: {0} bei Schritt {1}; von da an sind alle Lernraten halbiert</translation>
+    </message>
+    <message>
+        <source>learning reflections failed: there is no memory for batches of {0} rays at step {1} of {2}; choose a smaller model</source>
+        <translation>das Lernen des Spiegellichts scheiterte: für {0} Strahlen auf einmal fehlt der Speicher, bei Schritt {1} von {2}; wählen Sie ein kleineres Modell</translation>
+    </message>
+    <message>
+        <source>learning light: memory ran out at step {0}; batches have {1} rays from there</source>
+        <translation>beim Lernen des Lichts ging der Speicher bei Schritt {0} aus; von da an sind es {1} Strahlen auf einmal</translation>
+    </message>
+    <message>
+        <source>torch finds no CUDA device</source>
+        <translation>torch findet kein CUDA-Gerät</translation>
+    </message>
+    <message>
+        <source>gsplat is not installed (pip install &apos;reflight[cuda]&apos;)</source>
+        <translation>gsplat ist nicht installiert (pip install &apos;reflight[cuda]&apos;)</translation>
+    </message>
+    <message>
+        <source>gsplat&apos;s kernels are not compiled, which takes NVIDIA&apos;s CUDA toolkit</source>
+        <translation>die Kernel von gsplat sind nicht übersetzt, wozu das CUDA-Toolkit von NVIDIA nötig ist</translation>
+    </message>
+    <message>
+        <source>splats on CUDA are drawn by gsplat, and {0}; or compute on the processor</source>
+        <translation>Splats auf CUDA zeichnet gsplat, und {0}; oder rechnen Sie auf dem Prozessor</translation>
+    </message>
+    <message>
+        <source>there are no photos, so nobody knows how finely splats are seen; name a folder with photos</source>
+        <translation>es gibt keine Fotos, und niemand weiß, wie fein Splats gesehen werden; nennen Sie einen Ordner mit Fotos</translation>
+    </message>
+    <message>
+        <source>no panel, mesh or point within {0} m of the model&apos;s middle is seen by one of the {1} photos; are the poses and the points in one frame?</source>
+        <translation>keine Scheibe, kein Netz und kein Punkt im Umkreis von {0} m um die Mitte des Modells ist auf einem der {1} Fotos zu sehen; liegen Posen und Punkte in einem gemeinsamen System?</translation>
+    </message>
+    <message>
+        <source>there are no panels, no mesh and no points to start from; prepare the data set again</source>
+        <translation>es gibt keine Scheiben, kein Netz und keine Punkte für den Anfang; bereiten Sie den Datensatz neu auf</translation>
+    </message>
+    <message>
+        <source>its points have no &apos;{0}&apos;</source>
+        <translation>seine Punkte haben kein &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>has points whose coordinates are not finite numbers; make it again</source>
+        <translation>hat Punkte, deren Koordinaten keine endlichen Zahlen sind; erzeugen Sie es neu</translation>
+    </message>
+    <message>
+        <source>there is no model yet: it is being prepared</source>
+        <translation>es gibt noch kein Modell: es wird vorbereitet</translation>
+    </message>
+    <message>
+        <source>the picture could not be rendered ({0}); make the window smaller</source>
+        <translation>das Bild konnte nicht berechnet werden ({0}); machen Sie das Fenster kleiner</translation>
+    </message>
+    <message>
+        <source>has no photo &apos;{0}&apos;</source>
+        <translation>hat kein Foto &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>near-field light</source>
+        <translation>Licht aus der Nähe</translation>
+    </message>
+    <message>
+        <source>show parallax</source>
+        <translation>zeigen Parallaxe</translation>
+    </message>
+    <message>
+        <source>show no parallax to speak of</source>
+        <translation>zeigen keine nennenswerte Parallaxe</translation>
+    </message>
+    <message>
+        <source>mirror images in unseen photos {0}: radiance grid {1} dB, environment map {2} dB</source>
+        <translation>Spiegelbilder in ungesehenen Fotos {0}: Strahlungsgitter {1} dB, Umgebungsbild {2} dB</translation>
+    </message>
+    <message>
+        <source>mirrored surroundings</source>
+        <translation>gespiegelte Umgebung</translation>
+    </message>
+    <message>
+        <source>clear mirror images</source>
+        <translation>deutliche Spiegelbilder</translation>
+    </message>
+    <message>
+        <source>no clear mirror images</source>
+        <translation>keine deutlichen Spiegelbilder</translation>
+    </message>
+    <message>
+        <source>the panes show {0}: harmonics alone {1} dB</source>
+        <translation>die Scheiben zeigen {0}: Kugelfunktionen allein {1} dB</translation>
+    </message>
 </context>
 <context>
     <name>SettingsPage</name>
@@ -9647,14 +10557,6 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Aufnahmepunkte und Routen wählen</translation>
     </message>
     <message>
-        <source>Reconstruction in this window is not built yet.</source>
-        <translation>Rekonstruktion gibt es in diesem Fenster noch nicht.</translation>
-    </message>
-    <message>
-        <source>Any photogrammetry program takes the photos of the second flight; their positions are in the EXIF data.</source>
-        <translation>Jedes Photogrammetrieprogramm nimmt die Fotos des zweiten Flugs; ihre Positionen stehen in den EXIF-Daten.</translation>
-    </message>
-    <message>
         <source>Reconstruct</source>
         <translation>Rekonstruktion</translation>
     </message>
@@ -9888,6 +10790,92 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>time of the search in s</source>
         <translation>Zeit der Suche in s</translation>
+    </message>
+</context>
+<context>
+    <name>ViewBar</name>
+    <message>
+        <source>To the photo</source>
+        <translation>Zum Foto</translation>
+    </message>
+    <message>
+        <source>Show the view from where the photo was taken (0)</source>
+        <translation>Den Blick von dort zeigen, wo das Foto aufgenommen wurde (0)</translation>
+    </message>
+    <message>
+        <source>What the picture is made of</source>
+        <translation>Woraus das Bild besteht</translation>
+    </message>
+    <message>
+        <source>Model</source>
+        <translation>Modell</translation>
+    </message>
+    <message>
+        <source>Layer</source>
+        <translation>Ebene</translation>
+    </message>
+    <message>
+        <source>Beside it</source>
+        <translation>Daneben</translation>
+    </message>
+    <message>
+        <source>none yet</source>
+        <translation>noch keines</translation>
+    </message>
+    <message>
+        <source>nothing</source>
+        <translation>nichts</translation>
+    </message>
+    <message>
+        <source>the photo</source>
+        <translation>das Foto</translation>
+    </message>
+</context>
+<context>
+    <name>ViewPane</name>
+    <message>
+        <source>Worst first</source>
+        <translation>Schlechteste zuerst</translation>
+    </message>
+    <message>
+        <source>in training</source>
+        <translation>im Training</translation>
+    </message>
+    <message>
+        <source>trained last</source>
+        <translation>zuletzt trainiert</translation>
+    </message>
+    <message>
+        <source>Line between the two pictures</source>
+        <translation>Linie zwischen den beiden Bildern</translation>
+    </message>
+    <message>
+        <source>Sort the photos by how well the model shows them now</source>
+        <translation>Die Fotos danach ordnen, wie gut das Modell sie jetzt zeigt</translation>
+    </message>
+    <message>
+        <source>photo</source>
+        <translation>Foto</translation>
+    </message>
+    <message>
+        <source>step {0}</source>
+        <translation>Schritt {0}</translation>
+    </message>
+    <message>
+        <source>{0}: violet {1}, yellow {2}</source>
+        <translation>{0}: violett {1}, gelb {2}</translation>
+    </message>
+    <message>
+        <source>Choose a data set: a folder that &apos;prepare&apos; or &apos;scene render&apos; has made.</source>
+        <translation>Wählen Sie einen Datensatz: einen Ordner, den &apos;prepare&apos; oder &apos;scene render&apos; erzeugt hat.</translation>
+    </message>
+    <message>
+        <source>A photo of the data set. The model is shown here once it learns.</source>
+        <translation>Ein Foto des Datensatzes. Das Modell erscheint hier, sobald es lernt.</translation>
+    </message>
+    <message>
+        <source>The photo is seen from its own place only; 0 goes back there.</source>
+        <translation>Das Foto ist nur von seinem eigenen Ort aus zu sehen; 0 führt dorthin zurück.</translation>
     </message>
 </context>
 <context>

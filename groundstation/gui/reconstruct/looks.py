@@ -1,0 +1,207 @@
+"""Asks the process of models for the pictures of a view: coarse ones while it is led about, a fine one at rest.
+
+One look is on its way for each place; what is wished meanwhile is asked for when it has come back, so that the newest
+wish wins and nothing piles up. While a model learns, it is looked at again now and then.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtGui import QImage
+
+from groundstation.services.reconstruct_camera import sized
+from groundstation.services.reconstruct_messages import Look, Seen, Subject
+from reconstruction.cameras import PosedPhoto
+
+QUICK_S = 0.12
+"""What a picture may take while the camera is led about."""
+
+LEAST_PX, QUICK_PX = 96 * 72, 160 * 120
+"""Pixels of the smallest coarse picture, and of the first one, before anybody knows how long one takes."""
+
+MOST_PX = 1280 * 960
+"""Of a fine picture."""
+
+REST_MS = 250
+"""After which the camera has come to rest."""
+
+NUMBERS = itertools.count(1)
+"""Of looks, all of them: the process is asked by one window after another."""
+
+AGAIN_S, AGAIN_TIMES = 2.0, 25.0
+"""Least time between two looks at a model that learns, and how many times as long as the look took: 4 % of it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """What is to be seen.
+
+    Parameters
+    ----------
+    camera
+        Of any size.
+    left, right
+        Subjects; None for nothing.
+    layer
+        `picture`, or one of `LAYERS`.
+    exposed_as
+        Name of a photo.
+    """
+
+    camera: PosedPhoto
+    left: Subject | None
+    right: Subject | None
+    layer: str
+    exposed_as: str
+
+
+class Looks(QObject):
+    """Keeps the pictures in step with the view.
+
+    Parameters
+    ----------
+    send
+        Takes looks.
+    size_px
+        Width and height of the widget.
+
+    Signals
+    -------
+    pictureCame(str, QImage or None, Seen)
+        For `left` or `right`.
+    """
+
+    pictureCame = Signal(str, object, object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(
+        self, send: Callable[[Look], None], size_px: Callable[[], tuple[int, int]], parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._send, self._size_px = send, size_px
+        self._view: View | None = None
+        self._on_way: dict[str, int] = {}
+        self._version, self._shown = 0, {"left": (-1, False), "right": (-1, False)}
+        self._seconds_per_px: dict[str, float] = {}
+        self._is_learning = False
+        self._rest, self._again = QTimer(self), QTimer(self)
+        for timer, slot in ((self._rest, self._go_on), (self._again, self._look_again)):
+            timer.setSingleShot(True)
+            timer.timeout.connect(slot)
+
+    def show(self, view: View | None) -> None:
+        """Show another view."""
+        self._view = view
+        self._version += 1
+        self._rest.start(REST_MS)
+        self._go_on()
+
+    def set_learning(self, is_learning: bool) -> None:
+        """Whether the model in training changes by itself; when it does no more, it is looked at once more."""
+        was_learning, self._is_learning = self._is_learning, is_learning
+        if is_learning and not self._again.isActive():
+            self._again.start(int(1000.0 * AGAIN_S))
+        elif was_learning and not is_learning:
+            self._again.stop()
+            self._look_anew()
+
+    def forget(self) -> None:
+        """What is on its way will not come: the process has ended."""
+        self._on_way.clear()
+
+    def is_at_rest(self) -> bool:
+        """Whether nothing is on its way, and everything is as fine as it will be."""
+        return not self._on_way and not self._rest.isActive() and not self._missing()
+
+    def take(self, seen: Seen) -> None:
+        """An answer has come."""
+        place, number = seen.look.place, seen.look.number
+        waited_for = self._on_way.get(place)
+        if waited_for is None or number < waited_for:
+            return
+        del self._on_way[place]
+        if number > waited_for:
+            # Another window's, before it went: it has taken the place of ours.
+            self._shown[place] = (-1, False)
+            self._go_on()
+            return
+        lens = seen.look.camera.intrinsics
+        if seen.picture is not None and seen.look.subject.kind != "photo":
+            self._seconds_per_px[place] = seen.seconds / (lens.width_px * lens.height_px)
+        self.pictureCame.emit(place, None if seen.picture is None else image_of(seen.picture), seen)
+        self._go_on()
+
+    def _look_again(self) -> None:
+        if not self._is_learning:
+            return
+        self._look_anew()
+        pixels = self._fine_px()
+        took_s = max([0.0, *(pixels * each for each in self._seconds_per_px.values())])
+        self._again.start(int(1000.0 * max(AGAIN_S, AGAIN_TIMES * took_s)))
+
+    def _look_anew(self) -> None:
+        if self._view is None:
+            return
+        for place, subject in (("left", self._view.left), ("right", self._view.right)):
+            if subject is not None and subject.kind == "training":
+                self._shown[place] = (-1, False)
+        self._go_on()
+
+    def _missing(self) -> tuple[str, ...]:
+        """Places whose picture is of an older view, or coarse."""
+        view = self._view
+        if view is None:
+            return ()
+        wanted = [place for place, subject in (("left", view.left), ("right", view.right)) if subject is not None]
+        return tuple(place for place in wanted if self._shown[place] != (self._version, True))
+
+    def _go_on(self) -> None:
+        view = self._view
+        if view is None:
+            return
+        for place in self._missing():
+            if place in self._on_way:
+                continue
+            is_new = self._shown[place][0] != self._version
+            if not is_new and self._rest.isActive():
+                continue  # a coarse picture does until the camera has come to rest
+            self._ask(view, place, is_fine=not self._rest.isActive())
+
+    def _ask(self, view: View, place: str, is_fine: bool) -> None:
+        subject = view.left if place == "left" else view.right
+        assert subject is not None
+        pixels, fine = self._quick_px(place), self._fine_px()
+        is_fine = is_fine or pixels >= fine or subject.kind == "photo"
+        width, height = self._size_px()
+        scale = math.sqrt((fine if is_fine else pixels) / max(1.0, fine)) * self._fine_scale()
+        camera = sized(view.camera, max(16, round(scale * width)), max(12, round(scale * height)))
+        number = next(NUMBERS)
+        self._on_way[place] = number
+        self._shown[place] = (self._version, is_fine)
+        layer = "picture" if subject.kind == "photo" else view.layer
+        self._send(Look(place, number, subject, camera, layer, view.exposed_as))
+
+    def _fine_px(self) -> float:
+        width, height = self._size_px()
+        return float(min(width * height, MOST_PX))
+
+    def _fine_scale(self) -> float:
+        width, height = self._size_px()
+        return min(1.0, math.sqrt(MOST_PX / max(1.0, width * height)))
+
+    def _quick_px(self, place: str) -> float:
+        known = self._seconds_per_px.get(place)
+        return QUICK_PX if known is None else max(LEAST_PX, QUICK_S / max(known, 1e-9))
+
+
+def image_of(picture: np.typing.NDArray[np.uint8]) -> QImage:
+    """A picture, shape (h, w, 3), red, green, blue, in the format that is painted fastest."""
+    height, width = picture.shape[:2]
+    data = np.ascontiguousarray(picture)
+    shared = QImage(data.data, width, height, 3 * width, QImage.Format.Format_RGB888)
+    return shared.convertToFormat(QImage.Format.Format_RGB32)

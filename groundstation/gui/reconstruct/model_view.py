@@ -1,0 +1,253 @@
+"""The picture of a model, led through the air by mouse and keys, and another one beside it behind a line to drag."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QImage,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QResizeEvent,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from groundstation.gui.theme import colours
+
+TURN_RAD_PX = 0.004
+"""Of a drag: the width of the view is about half a turn."""
+
+TURN_RAD_KEY = 0.05
+STEP_KEY = 0.06
+"""Share of the distance to what is looked at, that a key goes."""
+
+STEP_WHEEL = 0.12
+GRAB_PX = 10.0
+"""On either side of the line, that it is taken hold of by; wider for fingers than it is drawn."""
+
+PAD_PX = 6.0
+
+
+class ModelView(QWidget):
+    """Shows one picture, or two that are divided by an upright line.
+
+    Signals
+    -------
+    orbited(float, float), turned(float, float)
+        Fly around what is looked at, or look elsewhere: radians to the right and up.
+    moved(float, float, float)
+        Go to the right, up and forward, in shares of the distance to what is looked at.
+    homeAsked()
+        Back to where the photo was taken.
+    valueChanged(float)
+        Where the line is, 0 at the left, 1 at the right.
+    resized()
+    """
+
+    orbited = Signal(float, float)
+    turned = Signal(float, float)
+    moved = Signal(float, float, float)
+    homeAsked = Signal()  # noqa: N815  (Qt's own way of naming)
+    valueChanged = Signal(float)  # noqa: N815
+    resized = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._left: QImage | None = None
+        self._right: QImage | None = None
+        self._words, self._note = ("", ""), ""
+        self._line, self._grabbed, self._holds_line = 0.5, QPointF(), False
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setMouseTracking(True)
+        self.setMinimumSize(QSize(240, 160))
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.setAccessibleName(self.tr("Picture of the model"))
+
+    def set_pictures(self, left: QImage | None, right: QImage | None) -> None:
+        """Show one picture, or two of the same view."""
+        self._left, self._right = left, right
+        self.update()
+
+    def pictures(self) -> tuple[QImage | None, QImage | None]:
+        """What is shown."""
+        return self._left, self._right
+
+    def set_words(self, left: str, right: str) -> None:
+        """Say what the pictures are."""
+        if (left, right) != self._words:
+            self._words = left, right
+            self.update()
+
+    def set_note(self, note: str) -> None:
+        """Say something below the pictures, or in their place."""
+        if note != self._note:
+            self._note = note
+            self.update()
+
+    def note(self) -> str:
+        """What is said."""
+        return self._note
+
+    def value(self) -> float:
+        """Where the line is."""
+        return self._line
+
+    def setValue(self, value: float) -> None:  # noqa: N802
+        """Put the line elsewhere."""
+        value = min(1.0, max(0.0, value))
+        if value != self._line:
+            self._line = value
+            self.update()
+            self.valueChanged.emit(value)
+
+    def room(self) -> QRectF:
+        """Where the pictures are."""
+        picture = self._left if self._left is not None else self._right
+        whole = QRectF(self.rect())
+        if picture is None:
+            return whole
+        scale = min(whole.width() / picture.width(), whole.height() / picture.height())
+        room = QRectF(0.0, 0.0, scale * picture.width(), scale * picture.height())
+        room.moveCenter(whole.center())
+        return room
+
+    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
+        """Pictures, line, words."""
+        painter, look = QPainter(self), colours()
+        painter.fillRect(self.rect(), QColor(look.scene))
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        room, left, right = self.room(), self._left, self._right
+        at = room.left() + self._line * room.width()
+        if left is not None:
+            painter.drawImage(room, left)
+        if right is not None:
+            painter.save()
+            if left is not None:
+                painter.setClipRect(QRectF(at, room.top(), room.right() - at, room.height()))
+            painter.drawImage(room, right)
+            painter.restore()
+        if left is not None and right is not None:
+            painter.setPen(QPen(QColor("#000000"), 5.0))
+            painter.drawLine(QPointF(at, room.top()), QPointF(at, room.bottom()))
+            painter.setPen(QPen(QColor("#ffffff"), 2.5))
+            painter.drawLine(QPointF(at, room.top()), QPointF(at, room.bottom()))
+        if left is not None:
+            self._paint_words(painter, room, self._words[0], Qt.AlignmentFlag.AlignLeft)
+        if right is not None:
+            self._paint_words(painter, room, self._words[1], Qt.AlignmentFlag.AlignRight)
+        self._paint_note(painter, left is None and right is None)
+        if self.hasFocus():
+            painter.setPen(QColor(look.accent))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
+        painter.end()
+
+    def _paint_words(self, painter: QPainter, room: QRectF, words: str, side: Qt.AlignmentFlag) -> None:
+        if not words:
+            return
+        metrics = painter.fontMetrics()
+        is_alone = self._left is None or self._right is None
+        words = metrics.elidedText(words, Qt.TextElideMode.ElideRight, int((0.9 if is_alone else 0.48) * room.width()))
+        size = metrics.boundingRect(words).size()
+        box = QRectF(0.0, 0.0, size.width() + 2.0 * PAD_PX, size.height() + PAD_PX)
+        box.moveTop(room.top() + PAD_PX)
+        if side is Qt.AlignmentFlag.AlignLeft:
+            box.moveLeft(room.left() + PAD_PX)
+        else:
+            box.moveRight(room.right() - PAD_PX)
+        painter.fillRect(box, QColor(0, 0, 0, 160))
+        painter.setPen(QColor("#ffffff"))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)
+
+    def _paint_note(self, painter: QPainter, is_alone: bool) -> None:
+        if not self._note:
+            return
+        whole = QRectF(self.rect()).adjusted(16.0, 16.0, -16.0, -16.0)
+        flags = Qt.TextFlag.TextWordWrap.value | Qt.AlignmentFlag.AlignHCenter.value
+        if is_alone:
+            painter.setPen(QColor(colours().muted))
+            painter.drawText(whole, flags | Qt.AlignmentFlag.AlignVCenter.value, self._note)
+            return
+        box = QRectF(painter.boundingRect(whole, flags | Qt.AlignmentFlag.AlignBottom.value, self._note))
+        painter.fillRect(box.adjusted(-PAD_PX, -3.0, PAD_PX, 3.0), QColor(0, 0, 0, 160))
+        painter.setPen(QColor("#ffffff"))
+        painter.drawText(box, flags, self._note)
+
+    # Mouse and keys
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Another size asks for another picture."""
+        super().resizeEvent(event)
+        self.resized.emit()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
+        """Take hold of the line, or of the scene."""
+        self._grabbed = event.position()
+        self._holds_line = self._is_at_line(event.position()) and event.button() is Qt.MouseButton.LeftButton
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
+        """Drag the line; or orbit, with the right button or Shift shift, with Ctrl turn."""
+        at, buttons = event.position(), event.buttons()
+        if buttons is Qt.MouseButton.NoButton or not buttons:
+            is_line = self._is_at_line(at)
+            self.setCursor(Qt.CursorShape.SplitHCursor if is_line else Qt.CursorShape.ArrowCursor)
+            return
+        step, self._grabbed = at - self._grabbed, at
+        if self._holds_line:
+            room = self.room()
+            self.setValue((at.x() - room.left()) / max(room.width(), 1.0))
+        elif buttons & Qt.MouseButton.RightButton or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            side = max(1.0, self.room().height())
+            self.moved.emit(-step.x() / side, step.y() / side, 0.0)
+        elif event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            self.turned.emit(-TURN_RAD_PX * step.x(), TURN_RAD_PX * step.y())
+        else:
+            self.orbited.emit(-TURN_RAD_PX * step.x(), TURN_RAD_PX * step.y())
+
+    def mouseReleaseEvent(self, _event: QMouseEvent) -> None:  # noqa: N802
+        """Let go."""
+        self._holds_line = False
+
+    def mouseDoubleClickEvent(self, _event: QMouseEvent) -> None:  # noqa: N802
+        """Back to the photo's own place."""
+        self.homeAsked.emit()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
+        """Come nearer, go away."""
+        self.moved.emit(0.0, 0.0, STEP_WHEEL * event.angleDelta().y() / 120.0)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Arrows orbit, with Shift they shift, with Ctrl they turn; plus and minus come nearer and go; 0 is home."""
+        key, mods = Qt.Key(event.key()), event.modifiers()
+        ways = {
+            Qt.Key.Key_Left: (-1.0, 0.0),
+            Qt.Key.Key_Right: (1.0, 0.0),
+            Qt.Key.Key_Up: (0.0, 1.0),
+            Qt.Key.Key_Down: (0.0, -1.0),
+        }
+        if key in ways:
+            x, y = ways[key]
+            if mods & Qt.KeyboardModifier.ShiftModifier:
+                self.moved.emit(STEP_KEY * x, STEP_KEY * y, 0.0)
+            elif mods & Qt.KeyboardModifier.ControlModifier:
+                self.turned.emit(TURN_RAD_KEY * x, TURN_RAD_KEY * y)
+            else:
+                self.orbited.emit(TURN_RAD_KEY * x, TURN_RAD_KEY * y)
+        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_PageUp):
+            self.moved.emit(0.0, 0.0, STEP_WHEEL)
+        elif key in (Qt.Key.Key_Minus, Qt.Key.Key_PageDown):
+            self.moved.emit(0.0, 0.0, -STEP_WHEEL)
+        elif key in (Qt.Key.Key_0, Qt.Key.Key_Home):
+            self.homeAsked.emit()
+        else:
+            super().keyPressEvent(event)
+
+    def _is_at_line(self, at: QPointF) -> bool:
+        if self._left is None or self._right is None:
+            return False
+        room = self.room()
+        return abs(at.x() - room.left() - self._line * room.width()) <= GRAB_PX

@@ -1,0 +1,232 @@
+"""The Reconstruct tab's widgets put together: signals go to the desk, what it knows comes back here."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtGui import QAction, QCloseEvent
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTabWidget, QVBoxLayout, QWidget
+
+from groundstation.gui.main_window import MainWindow
+from groundstation.gui.questions import Questions
+from groundstation.gui.reconstruct.choice_side import ChoiceSide
+from groundstation.gui.reconstruct.light_page import LightPage
+from groundstation.gui.reconstruct.machine_words import MachineWords
+from groundstation.gui.reconstruct.progress_page import ProgressPage
+from groundstation.gui.reconstruct.questions import ReconstructQuestions
+from groundstation.gui.reconstruct.reconstruct_desk import Phase, ReconstructDesk
+from groundstation.gui.reconstruct.view_pane import ViewPane
+from groundstation.gui.scrolling import scrolled
+from groundstation.gui.stage import Stage
+from groundstation.gui.workspace import Workspace
+from groundstation.services.reconstruct_choices import TrainChoice, method_rows
+from groundstation.services.units import UnitSystem, minutes_text
+
+SIDE_PX, DETAIL_PX, LEAST_DETAIL_PX = 270, 340, 260
+"""Widths beside the view, at 1280 pixels."""
+
+
+class ReconstructPage(QObject):
+    """The tab."""
+
+    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+        super().__init__(stage)
+        self._workspace, self._stage = workspace, stage
+        self.desk, self.questions, self.asks = ReconstructDesk.of(workspace), Questions(), ReconstructQuestions()
+        self._words = MachineWords(self)
+        self.side, self.pane = ChoiceSide(self.desk, self._words), ViewPane(workspace, self.desk)
+        self.progress, self.light = ProgressPage(), LightPage()
+        self.machine = QWidget()
+        self._machine_lines: list[QLabel] = []
+        self.left = self._make_page()
+        self.right: QWidget | None = None
+        self.bottom: QWidget | None = None
+        self._was_busy = False
+        self._connect()
+        self.side.form.setValue(self.desk.choice)
+        self.light.setValue(self.desk.choice.light)
+        self._units_changed(workspace.units)
+        self._show_light()
+        self._show_state()
+
+    # A tab
+
+    def shown(self) -> None:
+        """Take the project's data set where none was chosen, and see what has changed on the disk."""
+        self.desk.warm_up()
+        folder = self.desk.usual_data_set()
+        if self.desk.card is None and folder is not None:
+            self.desk.read(folder)
+        self.desk.look_around()
+
+    def hidden(self) -> None:
+        """A training goes on."""
+
+    def actions(self) -> tuple[QAction, ...]:
+        """There are none."""
+        return ()
+
+    # How it is put together
+
+    def _make_page(self) -> QWidget:
+        page = QWidget()
+        layout = QHBoxLayout(page)
+        layout.setContentsMargins(6, 6, 6, 6)
+        self.splitter = QSplitter(Qt.Orientation.Horizontal)
+        side, detail = scrolled(self.side), self._make_detail()
+        side.setMinimumWidth(SIDE_PX)
+        detail.setMinimumWidth(LEAST_DETAIL_PX)
+        for part in (side, self.pane, detail):
+            self.splitter.addWidget(part)
+        self.splitter.setStretchFactor(1, 1)
+        self.splitter.setSizes([SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX])
+        self.splitter.setChildrenCollapsible(False)
+        layout.addWidget(self.splitter)
+        return page
+
+    def _make_detail(self) -> QTabWidget:
+        lines = QVBoxLayout(self.machine)
+        lines.setContentsMargins(4, 4, 4, 4)
+        lines.addStretch(1)
+        self.details = QTabWidget()
+        self.details.addTab(scrolled(self.machine), self.tr("Computer"))
+        self.details.addTab(self.progress, self.tr("Progress"))
+        self.details.addTab(scrolled(self.light), self.tr("Effects"))
+        self.details.setTabToolTip(0, self.tr("What this computer has, and what follows"))
+        self.details.setTabToolTip(2, self.tr("Which model of mirrored light the scene calls for, and why"))
+        return self.details
+
+    def _connect(self) -> None:
+        desk, side, workspace = self.desk, self.side, self._workspace
+        side.choose.clicked.connect(self._choose_data_set)
+        side.choose_out.clicked.connect(self._choose_out)
+        side.form.valueChanged.connect(self._chosen)
+        side.train.clicked.connect(desk.train)
+        side.pause.clicked.connect(self._pause)
+        side.stop.clicked.connect(desk.stop)
+        side.break_off.clicked.connect(desk.break_off)
+        self.light.valueChanged.connect(self._light_chosen)
+        self.light.asked.connect(desk.ask_scene)
+        desk.dataSetChanged.connect(self.pane.set_data_set)
+        desk.placeChanged.connect(self.pane.offer_models)
+        desk.stateChanged.connect(self._show_state)
+        desk.progressed.connect(self._show_progress)
+        desk.lightChanged.connect(self._show_light)
+        workspace.unitsChanged.connect(self._units_changed)
+        window = self._stage.window()
+        if isinstance(window, MainWindow):
+            window.closing.connect(self._window_closing)
+
+    # What the user does
+
+    def _choose_data_set(self) -> None:
+        folder = self.questions.folder(self._stage.window(), self.tr("Folder of a data set"))
+        if folder is not None:
+            self.desk.read(folder)
+
+    def _choose_out(self) -> None:
+        folder = self.questions.new_folder(self._stage.window(), self.tr("Folder for the model"))
+        if folder is not None:
+            self.desk.choose_out(folder)
+
+    def _chosen(self, choice: TrainChoice) -> None:
+        self.desk.choose(replace(choice, light=self.light.value()))
+
+    def _light_chosen(self, light: str) -> None:
+        self.side.form.set_light(light)
+        self.desk.choose(replace(self.desk.choice, light=light))
+        self._show_light()
+
+    def _pause(self) -> None:
+        self.desk.pause(not self.desk.is_paused)
+
+    def _window_closing(self, event: QCloseEvent) -> None:
+        if not event.isAccepted():
+            return
+        if self.desk.is_busy and not self.asks.break_off(self._stage.window()):
+            event.ignore()
+            return
+        self.pane.close_pictures()
+        self.desk.close()
+
+    # What is shown
+
+    def _show_state(self) -> None:
+        desk = self.desk
+        self.side.form.set_cuda(desk.cuda or ())
+        self.side.show_state()
+        method = next(row for row in method_rows() if row.name == desk.choice.method)
+        is_idle = desk.phase is Phase.IDLE
+        self.light.set_possible(method, can_ask=is_idle and desk.card is not None, can_choose=is_idle)
+        self._show_machine()
+        if desk.is_busy and not self._was_busy:
+            self.details.setCurrentWidget(self.progress)
+            self.pane.show_training()
+        self._was_busy = desk.is_busy
+        self.pane.follow_training()
+        self._show_progress()
+
+    def _show_machine(self) -> None:
+        desk, layout = self.desk, self.machine.layout()
+        assert isinstance(layout, QVBoxLayout)
+        told = self._words.told(desk.machine, desk.cuda, desk.choice, desk.card, desk.forecast(), desk.standing)
+        while len(self._machine_lines) < len(told):
+            label = QLabel()
+            label.setWordWrap(True)
+            layout.insertWidget(len(self._machine_lines), label)
+            self._machine_lines.append(label)
+        for number, label in enumerate(self._machine_lines):
+            role, text = told[number] if number < len(told) else ("", "")
+            label.setVisible(bool(text))
+            label.setText(text)
+            if label.property("role") != role:
+                label.setProperty("role", role)
+                label.style().polish(label)
+
+    def _show_light(self) -> None:
+        desk = self.desk
+        self.light.show_decisions(desk.light, desk.decisions)
+
+    def _show_progress(self) -> None:
+        desk = self.desk
+        stage, stepped = desk.training.stage, desk.training.stepped
+        words, share = "", None
+        if desk.phase is not Phase.IDLE and stage is not None:
+            words = self._workspace.words(stage.stage)
+            share = -1.0 if stage.total <= 0 else stage.done / stage.total
+        elif desk.phase is not Phase.IDLE:
+            words, share = self.tr("starting"), -1.0
+        words = self._phase_words(words)
+        numbers = ""
+        if stepped is not None:
+            numbers = self.tr("{0}, {1} steps, {2} splats").format(
+                minutes_text(stepped.seconds), stepped.step, stepped.n_splats
+            )
+            if desk.training.quality.y:
+                numbers += self.tr("; {0:.2f} dB on facades of unseen views").format(desk.training.quality.y[-1])
+        self.progress.set_state(words, share, numbers)
+        self.progress.set_curves(desk.training.quality, desk.training.terms)
+        self.pane.follow_training()
+
+    def _phase_words(self, stage: str) -> str:
+        desk = self.desk
+        if desk.phase is Phase.ENDING:
+            return self.tr("Breaking off; the state is being kept ...")
+        if desk.phase is Phase.SETTLING and desk.training.stepped is None:
+            return self.tr("Stops as soon as there is a model: {0}").format(stage)
+        if desk.phase is Phase.SETTLING:
+            return self.tr("Stopped: the rates fall, then the model is written.")
+        if desk.is_paused:
+            return self.tr("Paused. The model can be looked at.")
+        if desk.phase is Phase.IDLE and desk.training.ended is not None:
+            return {
+                "done": self.tr("The model is finished."),
+                "kept": self.tr("Broken off; the state is kept."),
+                "failed": self.tr("The training has failed; the message says why."),
+            }[desk.training.ended.outcome]
+        return stage[:1].upper() + stage[1:]
+
+    def _units_changed(self, units: UnitSystem) -> None:
+        self.pane.set_units(units)
+        self.light.set_units(units)

@@ -1,0 +1,286 @@
+"""The view of a model with everything around it: what is shown, the line between two pictures, and the photos below."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSlider, QVBoxLayout, QWidget
+
+from groundstation.gui.reconstruct.error_strip import ErrorStrip
+from groundstation.gui.reconstruct.looks import Looks, View
+from groundstation.gui.reconstruct.model_view import ModelView
+from groundstation.gui.reconstruct.reconstruct_desk import TRAINING, Phase, ReconstructDesk
+from groundstation.gui.reconstruct.small_pictures import SmallPictures
+from groundstation.gui.reconstruct.view_bar import NOTHING, PHOTO, ViewBar
+from groundstation.gui.workspace import Workspace
+from groundstation.services.reconstruct_camera import moved, orbited, sized, turned
+from groundstation.services.reconstruct_messages import Seen, Subject
+from groundstation.services.units import UnitSystem, length_unit
+from reconstruction.cameras import PosedPhoto
+from reconstruction.modelling.layer_names import PICTURE
+
+USUAL_DISTANCE_M = 15.0
+"""To what is looked at, before a picture has told it."""
+
+ERRORS_MS = 200
+"""Between two changes of the strip: photos of a finished model are judged faster than anybody reads."""
+
+
+class ViewPane(QWidget):
+    """Looks at models of the desk's data set."""
+
+    def __init__(self, workspace: Workspace, desk: ReconstructDesk, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._workspace, self._desk = workspace, desk
+        self.pictures = SmallPictures(self)
+        self.bar, self.view, self.strip = ViewBar(), ModelView(), ErrorStrip(self.pictures)
+        self.line, self.worst = QSlider(Qt.Orientation.Horizontal), QPushButton(self.tr("Worst first"))
+        self.looks = Looks(desk.look, self._size_px, self)
+        self._photo: PosedPhoto | None = None
+        self._camera: PosedPhoto | None = None
+        self._distance_m = USUAL_DISTANCE_M
+        self._images: dict[str, QImage | None] = {"left": None, "right": None}
+        self._scale: tuple[float, float] | None = None
+        self._problem = ""
+        self._units = UnitSystem.METRIC
+        self._is_at_home, self._has_model = True, False
+        self._judged = QTimer(self)
+        self._judged.setSingleShot(True)
+        self._judged.setInterval(ERRORS_MS)
+        self._make()
+        self._connect()
+        self.set_data_set()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self._units = units
+        self._say()
+
+    def camera(self) -> PosedPhoto | None:
+        """Where the view is from."""
+        return self._camera
+
+    def close_pictures(self) -> None:
+        """The window goes."""
+        self.pictures.close()
+
+    def set_data_set(self) -> None:
+        """Show the desk's data set."""
+        card = self._desk.card
+        photos = () if card is None else card.source.photos
+        self.strip.set_photos(photos, self._desk.unseen())
+        self._photo = self._camera = None
+        self.offer_models()
+        self._show_errors()
+        if photos:
+            self.strip.choose(photos[0].name)
+        else:
+            self.show_view()
+
+    def offer_models(self) -> None:
+        """The models that there are now."""
+        desk = self._desk
+        own = self.tr("in training") if desk.is_busy else self.tr("trained last") if desk.has_model else ""
+        self._has_model = desk.has_model
+        self.bar.set_models(desk.others, own)
+        self.show_view()
+
+    def show_training(self) -> None:
+        """Turn to the model in training."""
+        self.offer_models()
+        self.bar.setValue("", *self.bar.value()[1:])
+
+    def show_view(self) -> None:
+        """Show what is chosen, from where the camera is."""
+        if self._camera is None:
+            self._images = {"left": None, "right": None}
+            self.looks.show(None)
+            self._say()
+            return
+        _, layer, _ = self.bar.value()
+        left, right = self._subjects()
+        for place, subject in (("left", left), ("right", right)):
+            if subject is None:
+                self._images[place] = None
+        name = "" if self._photo is None else self._photo.name
+        self.looks.show(View(self._camera, left, right, layer, name))
+        self.line.setVisible(left is not None and right is not None)
+        self._say()
+
+    def follow_training(self) -> None:
+        """The training has gone on."""
+        if self._has_model != self._desk.has_model:
+            self.show_training()
+        is_learning = self._desk.phase in (Phase.PREPARING, Phase.TRAINING, Phase.SETTLING)
+        self.looks.set_learning(is_learning and not self._desk.is_paused)
+
+    # How it is put together
+
+    def _make(self) -> None:
+        self.line.setRange(0, 1000)
+        self.line.setValue(500)
+        self.line.setAccessibleName(self.tr("Line between the two pictures"))
+        self.worst.setCheckable(True)
+        self.worst.setToolTip(self.tr("Sort the photos by how well the model shows them now"))
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        layout.addWidget(self.bar)
+        layout.addWidget(self.view, 1)
+        below = QHBoxLayout()
+        below.addStretch(1)
+        below.addWidget(self.line, 8)
+        below.addStretch(1)
+        below.addWidget(self.worst)
+        layout.addLayout(below)
+        layout.addWidget(self.strip)
+
+    def _connect(self) -> None:
+        view, desk = self.view, self._desk
+        self.bar.valueChanged.connect(self._bar_changed)
+        self.bar.homeAsked.connect(self._go_home)
+        self.worst.toggled.connect(self.strip.set_worst_first)
+        self.strip.chosen.connect(self._choose_photo)
+        view.orbited.connect(self._orbit)
+        view.turned.connect(self._turn)
+        view.moved.connect(self._move)
+        view.homeAsked.connect(self._go_home)
+        view.resized.connect(self.show_view)
+        view.valueChanged.connect(self._line_moved)
+        self.line.valueChanged.connect(self._slider_moved)
+        self.looks.pictureCame.connect(self._show_picture)
+        desk.seen.connect(self._take)
+        desk.errorsChanged.connect(self._errors_changed)
+        self._judged.timeout.connect(self._show_errors)
+
+    # What the user does
+
+    def _choose_photo(self, name: str) -> None:
+        card = self._desk.card
+        photo = None if card is None else next((one for one in card.source.photos if one.name == name), None)
+        if photo is not None and photo is not self._photo:
+            self._photo = photo
+            self._go_home()
+
+    def _go_home(self) -> None:
+        if self._photo is not None:
+            lens = self._photo.intrinsics
+            self._camera, self._is_at_home = sized(self._photo, lens.width_px, lens.height_px), True
+            self.show_view()
+
+    def _orbit(self, right_rad: float, up_rad: float) -> None:
+        if self._camera is not None:
+            self._lead(orbited(self._camera, self._distance_m, right_rad, up_rad))
+
+    def _turn(self, right_rad: float, up_rad: float) -> None:
+        if self._camera is not None:
+            self._lead(turned(self._camera, right_rad, up_rad))
+
+    def _move(self, right: float, up: float, forward: float) -> None:
+        if self._camera is not None:
+            far_m = self._distance_m
+            self._lead(moved(self._camera, far_m * right, far_m * up, far_m * forward))
+            self._distance_m = max(0.5, far_m * (1.0 - min(forward, 0.9)))
+
+    def _lead(self, camera: PosedPhoto) -> None:
+        self._camera, self._is_at_home = camera, False
+        self.show_view()
+
+    def _bar_changed(self) -> None:
+        subject = self._model()
+        if subject is not None and subject != self._desk.errors_of:
+            self._desk.watch_errors(subject)
+        self.show_view()
+
+    def _line_moved(self, value: float) -> None:
+        if self.line.value() != round(1000.0 * value):
+            self.line.setValue(round(1000.0 * value))
+
+    def _slider_moved(self, value: int) -> None:
+        if round(1000.0 * self.view.value()) != value:
+            self.view.setValue(value / 1000.0)
+
+    # What is shown
+
+    def _model(self) -> Subject | None:
+        """The model that is looked at."""
+        folder = self.bar.value()[0]
+        if folder:
+            return Subject("model", Path(folder))
+        return TRAINING if self._desk.has_model else None
+
+    def _subjects(self) -> tuple[Subject | None, Subject | None]:
+        left, compare, card = self._model(), self.bar.value()[2], self._desk.card
+        photo = None
+        if card is not None and self._photo is not None and self._is_at_home:
+            photo = Subject("photo", card.folder, self._photo.name)
+        if left is None:
+            return None, photo
+        if compare == PHOTO:
+            return left, photo
+        return left, None if compare == NOTHING else Subject("model", Path(compare))
+
+    def _take(self, seen: Seen | None) -> None:
+        if seen is None:
+            self.looks.forget()
+        else:
+            self.looks.take(seen)
+
+    def _show_picture(self, place: str, image: QImage | None, seen: Seen) -> None:
+        left, right = self._subjects()
+        if seen.look.subject != (left if place == "left" else right):
+            return
+        self._images[place] = image
+        if place == "left":
+            self._scale, self._problem = seen.scale, seen.problem
+            if seen.depth_m is not None:
+                self._distance_m = seen.depth_m
+        elif seen.problem:
+            self._problem = seen.problem
+        self._say()
+
+    def _say(self) -> None:
+        left, right = self._subjects() if self._camera is not None else (None, None)
+        self.view.set_pictures(self._images["left"], self._images["right"])
+        self.view.set_words(self._words(left), self._words(right))
+        self.view.set_note(self._note(left))
+
+    def _words(self, subject: Subject | None) -> str:
+        if subject is None:
+            return ""
+        if subject.kind == "photo":
+            return self.tr("photo")
+        words = self.bar.title("" if subject.kind == "training" else str(subject.folder))
+        stepped = self._desk.training.stepped
+        if subject.kind == "training" and stepped is not None:
+            words = self.tr("step {0}").format(stepped.step)
+        if self._scale is None or self.bar.value()[1] == PICTURE:
+            return words
+        low, high = self._scale
+        if self.bar.value()[1] == "depth":
+            unit = length_unit(self._units)
+            return self.tr("{0}: violet {1}, yellow {2}").format(words, unit.text(low), unit.text(high))
+        return self.tr("{0}: violet {1}, yellow {2}").format(words, f"{low:g}", f"{high:g}")
+
+    def _note(self, left: Subject | None) -> str:
+        if self._desk.card is None:
+            return self.tr("Choose a data set: a folder that 'prepare' or 'scene render' has made.")
+        if left is None:
+            return self.tr("A photo of the data set. The model is shown here once it learns.")
+        if self._problem:
+            return str(self._workspace.words(self._problem))
+        if self.bar.value()[2] == PHOTO and not self._is_at_home:
+            return self.tr("The photo is seen from its own place only; 0 goes back there.")
+        return ""
+
+    def _errors_changed(self) -> None:
+        if not self._judged.isActive():
+            self._judged.start()
+
+    def _show_errors(self) -> None:
+        self.strip.set_errors(self._desk.errors)
+
+    def _size_px(self) -> tuple[int, int]:
+        return max(16, self.view.width()), max(12, self.view.height())

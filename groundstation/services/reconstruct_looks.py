@@ -1,0 +1,240 @@
+"""Renders what somebody wants to see of models and photos, in the process of models.
+
+Models that were looked at last are kept. A photo is decoded as a training sees it: straight, without distortion.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from groundstation.services.reconstruct_colours import coloured
+from groundstation.services.reconstruct_messages import Look, PhotoError, Seen, Subject, WatchErrors
+from planning.errors import GroundStationError
+from reconstruction.modelling.layer_names import PICTURE
+
+if TYPE_CHECKING:
+    from planning.effects import Decision
+    from reconstruction.cameras import PosedPhoto
+    from reconstruction.modelling.model import SceneModel
+    from reconstruction.modelling.photo_errors import PhotoErrors
+    from reconstruction.modelling.saved import TrainedModel
+    from reconstruction.modelling.watching import Visit
+    from reconstruction.reflections.photo_set import PhotoSet
+    from reconstruction.splatting.raster import RasterSettings
+
+MOST_MODELS = 2
+"""Finished ones that are kept: the two that are compared."""
+
+MOST_PHOTOS = 8
+"""Decoded ones that are kept."""
+
+JUDGING_SHARE = 0.03
+"""Of a training's time, for looking at photos one by one."""
+
+NO_MODEL = "there is no model yet: it is being prepared"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Shown:
+    """A model, and what its pictures are made with."""
+
+    model: SceneModel
+    gains: Mapping[str, Any]
+    settings: RasterSettings
+    version: object
+    learned: tuple[str, ...]
+    moves: tuple[Any, ...]
+
+    def photos(self, source: PhotoSet) -> tuple[PosedPhoto, ...]:
+        """All of a data set, those that were learned from where learning light found them to be."""
+        from reconstruction.modelling.photo_moves import moved
+
+        if not self.moves:
+            return source.photos
+        found = {photo.name: photo for photo in moved(source.named(self.learned), self.moves)}
+        return tuple(found.get(photo.name, photo) for photo in source.photos)
+
+
+class Darkroom:
+    """Answers looks, and judges photos.
+
+    Parameters
+    ----------
+    tell
+        Takes messages.
+    """
+
+    def __init__(self, tell: Callable[[Any], None]) -> None:
+        self._tell = tell
+        self._training: _Shown | None = None
+        self._models: OrderedDict[tuple[Path, int], _Shown] = OrderedDict()
+        self._photos: OrderedDict[tuple[Path, str], NDArray[np.uint8]] = OrderedDict()
+        self._sources: dict[Path, PhotoSet] = {}
+        self._errors: tuple[WatchErrors, object, PhotoErrors] | None = None
+        self._n_left, self._judged_s, self._since_s = 0, 0.0, 0.0
+
+    # Models
+
+    def forget_training(self) -> None:
+        """Another training begins."""
+        self._training = None
+        self._sources.clear()
+        self._photos.clear()
+
+    def keep_visit(self, visit: Visit) -> None:
+        """The model in training, as it is now."""
+        learned, moves = visit.record.get("learned", ()), visit.record.get("moves", ())
+        gains = {name: visit.exposures(number) for number, name in enumerate(learned)}
+        self._training = _Shown(visit.model, gains, visit.settings, visit.model, tuple(learned), tuple(moves))
+
+    def keep_trained(self, trained: TrainedModel) -> None:
+        """The model that a training ended with."""
+        self._training = _shown(trained)
+
+    def chosen(self, visit: Visit) -> tuple[str, tuple[Decision, ...]]:
+        """The model of mirrored light of a training, and the decisions about it."""
+        from planning.effects import Decision
+
+        light = visit.record.get("light")
+        decisions = tuple(Decision(**each) for each in visit.record.get("decisions", ()))
+        return ("" if light is None else str(light["name"])), decisions
+
+    def _subject(self, subject: Subject) -> _Shown:
+        if subject.kind == "training":
+            if self._training is None:
+                raise GroundStationError(NO_MODEL)
+            return self._training
+        from reconstruction.modelling.saved import DESCRIPTION, read_model
+
+        assert subject.folder is not None
+        path = subject.folder / DESCRIPTION
+        key = subject.folder, path.stat().st_mtime_ns if path.is_file() else 0
+        if key not in self._models:
+            self._models[key] = _shown(read_model(subject.folder))
+        self._models.move_to_end(key)
+        while len(self._models) > MOST_MODELS:
+            self._models.popitem(last=False)
+        return self._models[key]
+
+    # Pictures
+
+    def seen(self, look: Look) -> Seen:
+        """Answer a look."""
+        begun_s = time.perf_counter()
+        try:
+            if look.subject.kind == "photo":
+                return Seen(look, self._photo(look), seconds=time.perf_counter() - begun_s)
+            return self._rendered(look, self._subject(look.subject), begun_s)
+        except GroundStationError as error:
+            return Seen(look, None, problem=str(error))
+        except (MemoryError, RuntimeError) as error:
+            return Seen(look, None, problem=f"the picture could not be rendered ({error}); make the window smaller")
+
+    def _rendered(self, look: Look, shown: _Shown, begun_s: float) -> Seen:
+        from reconstruction.modelling.render import render_view
+        from reconstruction.splatting.views import View
+
+        gain = shown.gains.get(look.exposed_as, 1.0)
+        wanted = ("depth",) if look.layer == PICTURE else (*dict.fromkeys(("depth", look.layer)),)
+        found = render_view(shown.model, View.of(look.camera, shown.model.origin_enu_m), wanted, gain, shown.settings)
+        values = found.display if look.layer == PICTURE else found.layers[look.layer]
+        picture, scale = coloured(look.layer, values)
+        depth = found.layers["depth"]
+        middle = float(depth[depth.shape[0] // 2, depth.shape[1] // 2])
+        seconds = time.perf_counter() - begun_s
+        return Seen(look, picture, scale, middle if np.isfinite(middle) and middle > 0.0 else None, seconds)
+
+    def _photo(self, look: Look) -> NDArray[np.uint8]:
+        import cv2
+
+        folder, name = look.subject.folder, look.subject.name
+        assert folder is not None
+        key = folder, name
+        if key not in self._photos:
+            self._photos[key] = _decoded(self._source(folder), name)
+        self._photos.move_to_end(key)
+        while len(self._photos) > MOST_PHOTOS:
+            self._photos.popitem(last=False)
+        lens = look.camera.intrinsics
+        picture = self._photos[key]
+        way = cv2.INTER_AREA if lens.width_px < picture.shape[1] else cv2.INTER_LINEAR
+        return np.asarray(cv2.resize(picture, (lens.width_px, lens.height_px), interpolation=way), np.uint8)
+
+    def _source(self, folder: Path) -> PhotoSet:
+        from reconstruction.reflections.photo_set import read_photo_set
+
+        if folder not in self._sources:
+            self._sources[folder] = read_photo_set(folder)
+        return self._sources[folder]
+
+    # Photos, one by one
+
+    def judge(self, wanted: WatchErrors | None, visit: Visit | None) -> bool:
+        """Tell how well one photo is shown, where somebody wants to know; whether there is another one to tell of.
+
+        Beside a training it takes a small share of the time, round and round; of a model that stays as it is each photo
+        is told once.
+        """
+        if wanted is None or wanted.subject is None:
+            self._let_errors_go()
+            return False
+        try:
+            shown = self._subject(wanted.subject)
+            self._turn_to(wanted, shown)
+        except (GroundStationError, OSError):
+            self._let_errors_go()
+            return False
+        assert self._errors is not None
+        errors, now = self._errors[2], time.monotonic()
+        if visit is None:
+            if self._n_left == 0:
+                return False
+            self._n_left -= 1
+        elif not errors.is_ready or self._judged_s > JUDGING_SHARE * (now - self._since_s):
+            return True
+        found = errors.next_db(shown.model, shown.gains, shown.settings)
+        self._judged_s += time.monotonic() - now
+        if found is not None:
+            self._tell(PhotoError(wanted.subject, *found))
+        return True
+
+    def _turn_to(self, wanted: WatchErrors, shown: _Shown) -> None:
+        from reconstruction.modelling.photo_errors import PhotoErrors
+
+        if self._errors is not None and self._errors[0] == wanted and self._errors[1] is shown.version:
+            return
+        self._let_errors_go()
+        photos = shown.photos(self._source(wanted.dataset))
+        self._errors = wanted, shown.version, PhotoErrors(self._source(wanted.dataset), photos)
+        self._n_left, self._judged_s, self._since_s = len(photos), 0.0, time.monotonic()
+
+    def _let_errors_go(self) -> None:
+        if self._errors is not None:
+            self._errors[2].close()
+            self._errors = None
+
+
+def _shown(trained: TrainedModel) -> _Shown:
+    record = trained.record
+    gains = {name: trained.exposures(number) for number, name in enumerate(record.learned)}
+    settings = replace(record.config.raster, threads=0)
+    return _Shown(trained.model, gains, settings, trained, record.learned, record.moves)
+
+
+def _decoded(source: PhotoSet, name: str) -> NDArray[np.uint8]:
+    """A photo, straight, red, green, blue, shape (h, w, 3)."""
+    from planning.errors import InputError
+    from reconstruction.modelling.decoded_photo import Decoding, decode_photo
+
+    photos = source.named((name,))
+    if not photos:
+        raise InputError(f"{source.folder}: has no photo '{name}'")
+    return decode_photo(source, photos[0], Decoding(), 1).display

@@ -1,0 +1,215 @@
+"""What the window and the process of models say to each other; all of it is pickled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from groundstation.services.model_wish import TrainWish
+from planning.effects import Decision
+from reconstruction.cameras import PosedPhoto
+
+SubjectKind = Literal["training", "photo", "model"]
+
+Phase = Literal["preparing", "training", "paused", "settling"]
+"""Of a training: what comes before the joint one, that, a pause of either, and the end of one that was stopped."""
+
+Outcome = Literal["done", "kept", "failed"]
+"""Of a training: there is a model; it was broken off and can be gone on with; an error ended it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """What is looked at.
+
+    Parameters
+    ----------
+    kind
+        The model in training (or trained last), a photo, or a finished model.
+    folder
+        Of the finished model, or of the photo's data set.
+    name
+        Of the photo.
+    """
+
+    kind: SubjectKind
+    folder: Path | None = None
+    name: str = ""
+
+
+# To the process
+
+
+@dataclass(frozen=True, slots=True)
+class Train:
+    """Train a model of a data set into a folder, or go on with what was interrupted there."""
+
+    dataset: Path
+    out: Path
+    wish: TrainWish
+    resume: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class AskScene:
+    """Which model of mirrored light the photos call for."""
+
+    dataset: Path
+    wish: TrainWish
+
+
+@dataclass(frozen=True, slots=True)
+class Pause:
+    """Wait, or go on."""
+
+    is_on: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """It is good enough: settle, and keep what it is then."""
+
+
+@dataclass(frozen=True, slots=True)
+class BreakOff:
+    """End now; what was reached can be gone on with."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Look:
+    """Show something from somewhere. Of two with one `place`, only the newer is answered where neither was yet.
+
+    Parameters
+    ----------
+    place
+        Of the window, that the picture is for.
+    number
+        Rises from look to look.
+    camera
+        Straight, of the picture's size.
+    layer
+        `picture`, or one of `LAYERS`.
+    exposed_as
+        Name of a photo whose exposure the picture shall have; "" for that of no photo.
+    """
+
+    place: str
+    number: int
+    subject: Subject
+    camera: PosedPhoto
+    layer: str = "picture"
+    exposed_as: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class WatchErrors:
+    """Tell how well a model shows each photo of a data set, in turn; None: tell no more."""
+
+    subject: Subject | None
+    dataset: Path
+
+
+# From the process
+
+
+@dataclass(frozen=True, slots=True)
+class Devices:
+    """What torch finds to compute on besides the processor."""
+
+    cuda: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """`done` of `total` parts of a stage are finished; `total` 0: not known."""
+
+    stage: str
+    done: float
+    total: float
+
+
+@dataclass(frozen=True, slots=True)
+class Stepped:
+    """Where a training is; `terms` of the last step's loss."""
+
+    phase: Phase
+    step: int
+    seconds: float
+    progress: float
+    n_splats: int
+    terms: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """PSNR, dB, of held-out views after so many seconds."""
+
+    seconds: float
+    psnr_db: float
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The model of mirrored light, and why; "" where light is the splats' own."""
+
+    light: str
+    decisions: tuple[Decision, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen:
+    """The answer to a look.
+
+    Parameters
+    ----------
+    picture
+        Red, green, blue, shape (h, w, 3); None where `problem` says why.
+    scale
+        Values that the ends of a layer's colours stand for; None where its colours are its values.
+    depth_m
+        Of what is in the picture's middle, along the optical axis; None where nothing is, or that is not known.
+    seconds
+        That it took.
+    """
+
+    look: Look
+    picture: NDArray[np.uint8] | None
+    scale: tuple[float, float] | None = None
+    depth_m: float | None = None
+    seconds: float = 0.0
+    problem: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class PhotoError:
+    """PSNR, dB, of one photo's facades as a model shows it now."""
+
+    subject: Subject
+    name: str
+    psnr_db: float
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """A training ended, or asking the scene did.
+
+    Parameters
+    ----------
+    summary
+        As `train_summary` has it; empty where there is no model.
+    """
+
+    outcome: Outcome
+    error: BaseException | None = None
+    summary: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """The process has ended by itself; `status` as the system has it."""
+
+    status: int

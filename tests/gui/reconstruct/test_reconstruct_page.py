@@ -1,0 +1,430 @@
+"""The Reconstruct tab: what can be done when, what is said, and what the process is told."""
+
+import json
+import signal
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from groundstation.services.reconstruct_messages import (
+    AskScene,
+    BreakOff,
+    Chosen,
+    Devices,
+    Ended,
+    Look,
+    Lost,
+    Measured,
+    Pause,
+    PhotoError,
+    Seen,
+    Stage,
+    Stepped,
+    Stop,
+    Subject,
+    Train,
+    WatchErrors,
+)
+from planning.effects import Decision
+from planning.errors import InputError
+from planning.findings import Severity
+from tests.gui.driving import turn_until
+
+TRAINING = Subject("training")
+STEP = Stepped("training", 12, 30.0, 0.1, 970, {"colour": 0.2, "high frequency": 0.5})
+
+
+def take(page, *messages):
+    for message in messages:
+        page.desk._take(message)
+
+
+def begin(page):
+    page.side.train.click()
+    return page.told.of(Train)[-1]
+
+
+def enabled(page):
+    side = page.side
+    names = ("train", "pause", "stop", "break_off", "choose", "choose_out")
+    return {name for name in names if getattr(side, name).isEnabled()} | ({"form"} if side.form.isEnabled() else set())
+
+
+def test_without_a_data_set_it_says_what_to_do(page):
+    assert enabled(page) == {"choose", "choose_out", "form"}
+    assert "Choose a data set" in page.pane.view.note()
+    assert page.side.data_set.text() == "None is chosen."
+
+
+def test_a_folder_that_is_no_data_set_is_told_and_can_be_followed_by_one_that_is(application, page, data, tmp_path):
+    page.desk.read(tmp_path)
+    turn_until(application, lambda: not page.desk.is_reading and bool(page.messages))
+    assert page.messages[-1].severity is Severity.ERROR
+    assert "has no dataset.json" in page.messages[-1].text
+    page.desk.read(data)
+    turn_until(application, lambda: page.desk.card is not None)
+    assert "6 photos" in page.side.data_set.text()
+    assert page.side.train.isEnabled()
+
+
+def test_a_chosen_data_set_is_shown_and_its_first_photo_looked_at(chosen):
+    assert len(chosen.pane.strip.names()) == 6
+    assert chosen.pane.strip.current() == chosen.pane.strip.names()[0]
+    look = chosen.told.of(Look)[-1]
+    assert (look.place, look.subject.kind, look.subject.name) == ("right", "photo", chosen.pane.strip.current())
+    assert look.camera.intrinsics.is_straight
+    assert "The model is shown here once it learns" in chosen.pane.view.note()
+
+
+def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tmp_path):
+    told = begin(chosen)
+    assert (told.dataset, told.out, told.resume) == (chosen.desk.card.folder, tmp_path / "model", False)
+    assert enabled(chosen) == {"pause", "stop", "break_off"}
+    assert chosen.details.currentWidget() is chosen.progress
+    take(chosen, Stage("learning reflections", 3, 80))
+    assert chosen.progress.text() == "Learning reflections"
+    assert "The model is shown here once it learns" in chosen.pane.view.note()
+    take(chosen, STEP)
+    assert chosen.told.of(Look)[-1].subject == TRAINING
+    take(chosen, STEP, Measured(30.0, 21.5))
+    assert "12 steps, 970 splats; 21.50 dB" in chosen.progress.text()
+    chosen.side.pause.click()
+    assert chosen.told.of(Pause)[-1].is_on
+    assert chosen.side.pause.text() == "Resume"
+    assert "Paused" in chosen.progress.text()
+    chosen.side.pause.click()
+    assert not chosen.told.of(Pause)[-1].is_on
+    chosen.side.stop.click()
+    assert len(chosen.told.of(Stop)) == 1
+    assert enabled(chosen) == {"break_off"}
+    assert "rates fall" in chosen.progress.text()
+    take(chosen, Ended("done", None, {}))
+    assert enabled(chosen) == {"train", "choose", "choose_out", "form"}
+    assert "finished" in chosen.progress.text()
+    assert "The model is written" in chosen.messages[-1].text
+    # It can be looked at all the same.
+    assert chosen.pane.bar.value()[0] == ""
+    assert chosen.pane.bar.model.itemText(0) == "trained last"
+
+
+def test_stopped_before_there_is_a_model_it_says_when_it_stops(chosen):
+    begin(chosen)
+    take(chosen, Stage("learning reflections", 3, 80))
+    chosen.side.stop.click()
+    assert chosen.progress.text() == "Stops as soon as there is a model: learning reflections"
+
+
+def test_broken_off_it_offers_to_go_on_with_what_was_begun(chosen, tmp_path):
+    begin(chosen)
+    take(chosen, STEP)
+    chosen.side.break_off.click()
+    assert len(chosen.told.of(BreakOff)) == 1
+    assert enabled(chosen) == set()
+    (tmp_path / "model").mkdir()
+    (tmp_path / "model" / "checkpoint.safetensors").write_bytes(b"")
+    take(chosen, Ended("kept"))
+    assert "go on with it" in chosen.messages[-1].text
+    assert chosen.side.train.text() == "Go on"
+    assert "form" not in enabled(chosen)
+    assert begin(chosen).resume
+
+
+def test_an_error_is_told_and_the_tab_is_ready_again(chosen):
+    begin(chosen)
+    take(
+        chosen, Ended("failed", InputError("x: shows other panels; name the data set that the training was begun with"))
+    )
+    assert chosen.messages[-1].severity is Severity.ERROR
+    assert "shows other panels" in chosen.messages[-1].text
+    assert "failed" in chosen.progress.text()
+    assert "train" in enabled(chosen)
+    begin(chosen)
+    take(chosen, Ended("failed", ZeroDivisionError("by nothing")))
+    assert "please report it" in chosen.messages[-1].text
+
+
+def test_a_process_that_ends_by_itself_is_an_error_message_and_not_the_end(chosen):
+    begin(chosen)
+    take(chosen, STEP, Lost(-signal.SIGKILL))
+    assert "memory ran out" in chosen.messages[-1].text
+    assert "train" in enabled(chosen)
+    n_messages = len(chosen.messages)
+    take(chosen, Lost(0))
+    assert len(chosen.messages) == n_messages
+
+
+def test_what_stands_in_the_folder_is_said(chosen, tmp_path):
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "letter").write_text("")
+    chosen.desk.choose_out(other)
+    assert "something else" in chosen.side.there.text()
+    (other / "model.json").write_text("{}")
+    chosen.desk.look_around()
+    assert "finished model" in chosen.side.there.text()
+
+
+def test_the_scene_is_asked_and_its_decisions_are_shown_and_overruled(chosen):
+    chosen.light.ask.click()
+    assert isinstance(chosen.told.messages[-1], AskScene)
+    assert not chosen.side.train.isEnabled()
+    near = Decision("near-field light", True, "scene", "mirror images", 2.0, 0.3, "dB", 1.0)
+    take(chosen, Chosen("radiance-grid", (near,)), Ended("done"))
+    assert "The scene calls for: near things" in chosen.light.text()
+    assert "near-field light" in chosen.light.effects.card("near-field light").text()
+    assert chosen.side.train.isEnabled()
+    chosen.light.light.setCurrentIndex(chosen.light.light.findData("mlp"))
+    assert begin(chosen).wish.light == "mlp"
+
+
+def test_a_method_that_has_its_own_light_says_so(chosen):
+    chosen.side.form.method.setCurrentIndex(chosen.side.form.method.findData("refglass-gs"))
+    assert chosen.light.light.itemText(0) == "as the method has it: network by place and direction (paper)"
+    assert begin(chosen).wish.light is None
+    take(chosen, Chosen("mlp", ()))
+    assert chosen.light.text() == "It is learned as: network by place and direction (paper)."
+
+
+def test_a_method_without_panels_has_no_light_to_choose(chosen):
+    chosen.side.form.method.setCurrentIndex(chosen.side.form.method.findData("2dgs"))
+    assert not chosen.light.light.isEnabled()
+    assert not chosen.light.ask.isEnabled()
+    wish = begin(chosen).wish
+    assert (wish.method, wish.light) == ("2dgs", None)
+
+
+def test_the_computer_page_says_what_is_there_and_what_follows(chosen):
+    take(chosen, Devices(()))
+    texts = [label.text() for label in chosen._machine_lines if not label.isHidden()]
+    assert any("cores" in text for text in texts)
+    assert any("No CUDA device" in text for text in texts)
+    assert any("6 photos of 40 x 30 pixels" in text for text in texts)
+    assert not chosen.side.form._form.isRowVisible(chosen.side.form.device)
+    take(chosen, Devices(("H200, 141 GiB",)))
+    assert chosen.side.form._form.isRowVisible(chosen.side.form.device)
+    chosen.side.form.device.setCurrentIndex(1)
+    assert begin(chosen).wish.device == "cuda"
+
+
+def test_short_memory_and_a_full_disk_are_told_before_it_starts(chosen):
+    chosen.desk.machine = replace(chosen.desk.machine, free_bytes=100 << 20)
+    chosen.desk.standing = replace(chosen.desk.standing, free_bytes=5 << 20)
+    chosen.desk.stateChanged.emit()
+    words = chosen.side.wrong.text()
+    assert "Memory is short" in words
+    assert "5 MiB are free on the disk" in words
+    assert not chosen.side.wrong.isHidden()
+    assert begin(chosen).wish.memory_bytes < 1 << 30
+
+
+def test_a_data_set_of_another_site_is_told(application, page, data, desk):
+    from tests.planning.plan_cases import kiosk
+
+    before = desk.workspace.document
+    desk.workspace.amend(replace(before, site=kiosk()))
+    try:
+        page.desk.read(data)
+        turn_until(application, lambda: page.desk.card is not None)
+        assert page.messages[-1].severity is Severity.WARNING
+        assert "other panels than the site that is open" in page.messages[-1].text
+        assert page.side.train.isEnabled()
+    finally:
+        desk.workspace.amend(before)
+
+
+def test_photos_are_judged_and_sorted_the_worst_first(application, chosen):
+    begin(chosen)
+    names = chosen.pane.strip.names()
+    take(chosen, *(PhotoError(TRAINING, name, 20.0 + (k * 7) % 5) for k, name in enumerate(names)))
+    take(chosen, PhotoError(Subject("model", Path("other")), names[0], 99.0))
+    turn_until(application, lambda: bool(chosen.pane.strip._photos.psnr_db))
+    assert "20.00 dB" in chosen.pane.strip.words(names[0])
+    chosen.pane.worst.click()
+    worst = [20.0 + (names.index(name) * 7) % 5 for name in chosen.pane.strip.names()]
+    assert worst == sorted(worst)
+    assert chosen.pane.strip.current() == names[0]
+
+
+def test_a_photo_that_is_judged_later_takes_its_place_among_the_worst(application, chosen):
+    begin(chosen)
+    names = chosen.pane.strip.names()
+    chosen.pane.worst.click()
+    take(chosen, *(PhotoError(TRAINING, name, 30.0) for name in names[:-1]))
+    turn_until(application, lambda: len(chosen.pane.strip._photos.psnr_db) == len(names) - 1)
+    take(chosen, PhotoError(TRAINING, names[-1], 12.0))
+    turn_until(application, lambda: chosen.pane.strip.names()[0] == names[-1])
+
+
+def test_when_it_pauses_it_is_looked_at_once_more(application, chosen):
+    begin(chosen)
+    take(chosen, STEP)
+    turn_until(application, lambda: answered(chosen) and chosen.pane.looks.is_at_rest())
+    n_looks = len(chosen.told.of(Look))
+    chosen.side.pause.click()
+    assert len(chosen.told.of(Look)) == n_looks + 1
+    assert chosen.told.of(Look)[-1].subject == TRAINING
+
+
+def answered(page):
+    """Answer what was asked; True."""
+    for look in page.told.of(Look):
+        take(page, seen(look))
+    return True
+
+
+def seen(look, seconds=0.01, **more):
+    lens = look.camera.intrinsics
+    return Seen(look, np.zeros((lens.height_px, lens.width_px, 3), np.uint8), seconds=seconds, **more)
+
+
+def test_while_the_camera_is_led_only_the_newest_wish_is_asked_for(application, chosen):
+    begin(chosen)
+    take(chosen, STEP)
+    looks = [look for look in chosen.told.of(Look) if look.subject == TRAINING]
+    before = len(looks)
+    for _ in range(20):
+        chosen.pane.view.orbited.emit(0.05, 0.0)
+    looks = [look for look in chosen.told.of(Look) if look.subject == TRAINING]
+    # One was on its way already; none is added until it is back.
+    assert len(looks) == before
+    take(chosen, seen(looks[-1], seconds=2.0, depth_m=9.0))
+    looks = [look for look in chosen.told.of(Look) if look.subject == TRAINING]
+    assert len(looks) == before + 1
+    newest = looks[-1]
+    np.testing.assert_allclose(newest.camera.pose.position_enu_m, chosen.pane.camera().pose.position_enu_m)
+    coarse_px = newest.camera.intrinsics.width_px
+    take(chosen, seen(newest, seconds=2.0, depth_m=9.0))
+    turn_until(application, lambda: len([x for x in chosen.told.of(Look) if x.subject == TRAINING]) > before + 1)
+    fine = chosen.told.of(Look)[-1]
+    assert fine.camera.intrinsics.width_px > 2 * coarse_px
+    np.testing.assert_array_equal(fine.camera.pose.cam_from_enu, newest.camera.pose.cam_from_enu)
+
+
+def test_a_look_that_another_window_has_replaced_is_asked_for_again(chosen):
+    begin(chosen)
+    take(chosen, STEP)
+    lost = next(look for look in reversed(chosen.told.of(Look)) if look.place == "left")
+    n_looks = len(chosen.told.of(Look))
+    take(chosen, seen(replace(lost, number=lost.number - 1)))
+    assert len(chosen.told.of(Look)) == n_looks
+    take(chosen, seen(replace(lost, number=lost.number + 1000)))
+    again = chosen.told.of(Look)[-1]
+    assert (again.place, again.subject) == ("left", TRAINING)
+    assert len(chosen.told.of(Look)) == n_looks + 1
+
+
+def test_an_answer_to_an_older_view_of_something_else_is_not_shown(chosen):
+    begin(chosen)
+    take(chosen, STEP)
+    old = next(look for look in reversed(chosen.told.of(Look)) if look.subject == TRAINING)
+    chosen.desk.training.stepped = None
+    chosen.desk.phase = type(chosen.desk.phase).IDLE
+    chosen.pane.offer_models()
+    take(chosen, seen(old))
+    assert chosen.pane.view.pictures()[0] is None
+
+
+def test_the_photo_is_beside_the_model_from_its_own_place_only(chosen):
+    begin(chosen)
+    take(chosen, STEP)
+    pane = chosen.pane
+    pane.bar.setValue("", "picture", "photo")
+    for place in ("left", "right"):
+        look = next(each for each in reversed(chosen.told.of(Look)) if each.place == place)
+        take(chosen, seen(look))
+    assert all(picture is not None for picture in pane.view.pictures())
+    assert not pane.line.isHidden()
+    pane.line.setValue(250)
+    assert pane.view.value() == 0.25
+    pane.view.setValue(0.75)
+    assert pane.line.value() == 750
+    pane.view.moved.emit(0.1, 0.0, 0.0)
+    assert pane.view.pictures()[1] is None
+    assert "0 goes back" in pane.view.note()
+    pane.view.homeAsked.emit()
+    assert "0 goes back" not in pane.view.note()
+
+
+def test_finished_models_of_the_data_set_are_compared(application, chosen, tmp_path):
+    panels = [{"corners_enu_m": each} for each in chosen.desk.card.source.panels.corners_enu_m.tolist()]
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        content = {"format": "reflight-model/1", "method": "2dgs", "n_splats": 5, "site": {"panels": panels}}
+        (tmp_path / name / "model.json").write_text(json.dumps(content))
+    chosen.desk.look_around()
+    turn_until(application, lambda: len(chosen.desk.others) == 2)
+    bar = chosen.pane.bar
+    assert "2DGS" in bar.model.itemText(0)
+    bar.setValue(str(tmp_path / "one"), "normals", str(tmp_path / "two"))
+    for place in ("left", "right"):
+        # What was on its way before is for nothing now.
+        take(chosen, seen(next(each for each in reversed(chosen.told.of(Look)) if each.place == place)))
+    looks = chosen.told.of(Look)
+    assert {look.place: look.subject.folder for look in looks[-2:]} == {
+        "left": tmp_path / "one",
+        "right": tmp_path / "two",
+    }
+    assert {look.layer for look in looks[-2:]} == {"normals"}
+    assert chosen.pane.view._words == ("one (2DGS)", "two (2DGS)")
+    assert chosen.told.of(WatchErrors)[-1].subject == Subject("model", tmp_path / "one")
+    look = next(each for each in reversed(looks) if each.place == "left")
+    take(chosen, Seen(look, None, problem=f"{tmp_path / 'one'}: holds no finished model"))
+    assert "holds no finished model" in chosen.pane.view.note()
+
+
+def test_closing_asks_while_a_model_is_trained_and_lets_the_process_go(chosen):
+    from PySide6.QtGui import QCloseEvent
+
+    answers = iter([False, True])
+    chosen.asks.break_off = lambda _parent: next(answers)
+    begin(chosen)
+    event = QCloseEvent()
+    chosen._window_closing(event)
+    assert not event.isAccepted()
+    assert "closed" not in chosen.told.messages
+    event = QCloseEvent()
+    chosen._window_closing(event)
+    assert event.isAccepted()
+    assert chosen.told.messages[-1] == "closed"
+
+
+@pytest.mark.slow
+def test_as_a_user_trains_looks_around_and_stops(application, desk, data, tmp_path):
+    """With the real process; the window's thread is never held for long."""
+    import time
+
+    desk.show()
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    desk.window.show_tab("reconstruct")
+    page = desk.window.tab("reconstruct")
+    page.desk.read(data)
+    turn_until(application, lambda: page.desk.card is not None and page.desk.cuda is not None)
+    page.desk.choose_out(tmp_path / "model")
+    page.side.form.method.setCurrentIndex(page.side.form.method.findData("2dgs"))
+    page.desk.choose_out(tmp_path / "model")
+    page.side.train.click()
+    longest = 0.0
+
+    def turn(condition):
+        nonlocal longest
+        end = time.monotonic() + 60.0
+        while not condition():
+            begun = time.thread_time()
+            application.processEvents()
+            longest = max(longest, time.thread_time() - begun)
+            time.sleep(0.002)
+            assert time.monotonic() < end
+
+    turn(lambda: page.desk.training.stepped is not None and page.desk.training.stepped.step > 5)
+    for _ in range(20):
+        page.pane.view.orbited.emit(0.02, 0.01)
+        turn(lambda: page.pane.looks._on_way == {} or True)
+    turn(lambda: page.pane.view.pictures()[0] is not None and len(page.desk.errors) == 6)
+    page.side.stop.click()
+    turn(lambda: page.desk.phase.name == "IDLE")
+    assert (tmp_path / "model" / "model.json").is_file()
+    turn(page.pane.looks.is_at_rest)
+    assert page.pane.view.note() == ""
+    assert longest < 0.05
