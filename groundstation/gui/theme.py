@@ -167,7 +167,8 @@ def _style_sheet(found: Colours) -> str:
     QPushButton:disabled, QToolButton:disabled {{ background: {found.window}; color: {found.muted}; }}
     QPushButton:checked, QToolButton:checked, QPushButton[primary="true"]
         {{ background: {found.accent}; color: {found.accent_text}; border-color: {found.accent}; }}
-    QPushButton[primary="true"]:disabled {{ background: {found.line}; color: {found.muted}; }}
+    QPushButton[primary="true"]:disabled
+        {{ background: {found.window}; color: {found.muted}; border-color: {found.handle}; }}
     QPushButton:focus, QToolButton:focus {{ border: 2px solid {found.accent}; padding: 2px 7px; }}
     QPushButton:checked:focus, QToolButton:checked:focus, QPushButton[primary="true"]:focus
         {{ border: 3px solid {found.text}; padding: 1px 6px; }}

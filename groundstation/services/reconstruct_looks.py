@@ -80,6 +80,7 @@ class Darkroom:
         self._sources: dict[Path, PhotoSet] = {}
         self._errors: tuple[WatchErrors, object, PhotoErrors] | None = None
         self._n_left, self._judged_s, self._since_s = 0, 0.0, 0.0
+        self._was_paused = False
 
     # Models
 
@@ -180,8 +181,8 @@ class Darkroom:
     def judge(self, wanted: WatchErrors | None, visit: Visit | None) -> bool:
         """Tell how well one photo is shown, where somebody wants to know; whether there is another one to tell of.
 
-        Beside a training it takes a small share of the time, round and round; of a model that stays as it is each photo
-        is told once.
+        Beside a training it takes a small share of the time, round and round; of a model that stays as it is, or whose
+        training is paused, each photo is told once.
         """
         if wanted is None or wanted.subject is None:
             self._let_errors_go()
@@ -194,9 +195,15 @@ class Darkroom:
             return False
         assert self._errors is not None
         errors, now = self._errors[2], time.monotonic()
-        if visit is None:
+        is_paused = visit is not None and visit.state == "paused"
+        if is_paused and not self._was_paused:
+            self._n_left = len(errors)
+        self._was_paused = is_paused
+        if visit is None or is_paused:
             if self._n_left == 0:
                 return False
+            if is_paused and not errors.is_ready:
+                return True
             self._n_left -= 1
         elif not errors.is_ready or self._judged_s > JUDGING_SHARE * (now - self._since_s):
             return True
@@ -215,6 +222,7 @@ class Darkroom:
         photos = shown.photos(self._source(wanted.dataset))
         self._errors = wanted, shown.version, PhotoErrors(self._source(wanted.dataset), photos)
         self._n_left, self._judged_s, self._since_s = len(photos), 0.0, time.monotonic()
+        self._was_paused = False
 
     def _let_errors_go(self) -> None:
         if self._errors is not None:

@@ -23,6 +23,9 @@ from groundstation.services.reconstruct_messages import Lost
 SERVER = "groundstation.services.reconstruct_server"
 """The module that runs over there. By its name only: it loads what the window must not."""
 
+NICENESS = 10
+"""The window's own threads run first when both want a processor."""
+
 Listener = Callable[[Any], None]
 
 
@@ -33,10 +36,13 @@ class ModelProcess:
     ----------
     listener
         Called with every message that comes, on a thread that reads them.
+    niceness
+        By which it leaves the processor to others, the window first of all; not on Windows.
     """
 
-    def __init__(self, listener: Listener) -> None:
+    def __init__(self, listener: Listener, niceness: int = NICENESS) -> None:
         self._listener = listener
+        self._niceness = niceness
         self._process: subprocess.Popen[bytes] | None = None
         self._reader: threading.Thread | None = None
         self._lock = threading.Lock()
@@ -81,7 +87,7 @@ class ModelProcess:
             self._let_go()
             paths = os.pathsep.join(path for path in sys.path if path)
             self._process = subprocess.Popen(
-                [sys.executable, "-m", SERVER],
+                [sys.executable, "-m", SERVER, str(self._niceness)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 env={**os.environ, "PYTHONPATH": paths},

@@ -44,9 +44,6 @@ if TYPE_CHECKING:
 REPORT_S = 0.1
 """Shortest time between two reports of one stage, and of two steps."""
 
-NICENESS = 10
-"""The window's own threads run first when both want a processor."""
-
 LAST_S = 30.0
 """For keeping the state of a training after the window has gone."""
 
@@ -230,11 +227,11 @@ def _sendable(error: BaseException) -> BaseException:
     return error
 
 
-def serve() -> None:
+def serve(niceness: int) -> None:
     """What the process does: messages have its standard output for themselves, all else goes to the error output."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides what Ctrl+C ends
     if sys.platform != "win32":
-        os.nice(NICENESS)
+        os.nice(niceness)
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     wishes = _Wishes()
@@ -246,4 +243,4 @@ if __name__ == "__main__":
     # By its full name, so that what is pickled here has the same classes over there.
     from groundstation.services.reconstruct_server import serve as serve_by_name
 
-    serve_by_name()
+    serve_by_name(int(sys.argv[1]))

@@ -41,6 +41,9 @@ class PhotoErrors:
         self._small: dict[str, DecodedPhoto] = {}
         self._next, self._coming = 0, None if not photos else self._asked(0)
 
+    def __len__(self) -> int:
+        return len(self._photos)
+
     @property
     def is_ready(self) -> bool:
         """Whether the next photo is at hand."""
