@@ -31,6 +31,7 @@ from tests.benchmarks import (
     segmentation,
     site_imports,
     speed_profiles,
+    stopping,
     top_ups,
     tradeoffs,
     tsplib_tours,
@@ -73,6 +74,7 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     modelling_parts.BENCHMARK,
     models.BENCHMARK,
     presets.BENCHMARK,
+    stopping.BENCHMARK,
     window.BENCHMARK,
     view3d.BENCHMARK,
 )
