@@ -1,4 +1,4 @@
-"""The strategy that a configuration asks for, with its schedule in steps, and what it is shown."""
+"""The strategy that a configuration asks for, and what it is shown."""
 
 from __future__ import annotations
 
@@ -16,20 +16,21 @@ from reconstruction.splatting.densify_adaptive import AdaptiveControl, AdaptiveP
 from reconstruction.splatting.densify_mcmc import MarkovChain, McmcParameters
 from reconstruction.splatting.raster import Raster
 
+ALWAYS = 1 << 62
+"""Steps."""
+
 
 def strategy_of(config: TrainConfig, n_splats: int) -> Densification:
-    """Adds splats between two shares of the training, to `max_splats` at most.
+    """Adds splats, to `max_splats` at most, whenever it is asked: the trainer asks between two shares of the training.
 
     Opacities are never reset: splats start on surfaces that are known, and trainings are short.
     """
     limits = Limits(n_most=max(config.max_splats, n_splats))
     if config.densification == "none":
         return FixedNumber(limits)
-    start, stop = (round(share * config.iterations) for share in (config.densify_from, config.densify_until))
-    stop = max(start, stop)
     if config.densification == "mcmc":
-        return MarkovChain(McmcParameters(start=start, stop=stop, n_splats=config.max_splats), limits)
-    return AdaptiveControl(AdaptiveParameters(start=start, stop=stop, reset_every=0), limits)
+        return MarkovChain(McmcParameters(start=0, stop=ALWAYS, n_splats=config.max_splats), limits)
+    return AdaptiveControl(AdaptiveParameters(start=0, stop=ALWAYS, reset_every=0), limits)
 
 
 def show(

@@ -92,7 +92,7 @@ class Trainer(TrainingState):
         at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
         super().__init__(model, exposures, photos, strategy, config, extent_m, checkpoint, at)
         self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Stopwatch()
-        self.at.spent_s = self.at.saved_at_s = self._watch()
+        self.at.spent_s = self.at.saved_at_s = self.at.began_s = self._watch()
         self._settings = replace(config.raster, threads=config.threads)
         self._no_more, self._ranks = FixedNumber(), ranks
         self._reserve_s = 0.0
@@ -102,10 +102,17 @@ class Trainer(TrainingState):
 
     @property
     def progress(self) -> float:
-        """Of the training, 0 to 1: by steps or by time, whichever is further."""
-        limit_s = self.config.time_limit_s
-        by_time = 0.0 if limit_s is None else (self.at.spent_s + self._reserve_s) / limit_s
-        return min(1.0, max(self.at.step / self.config.iterations, by_time))
+        """Of the joint training, 0 to 1: by steps or by time, whichever is further.
+
+        Time counts from its own beginning: what light took before is no part of what rates and losses go through.
+        """
+        at, limit_s = self.at, self.config.time_limit_s
+        by_steps = min(1.0, at.step / self.config.iterations)
+        if limit_s is None:
+            return by_steps
+        left_s = limit_s - at.began_s
+        by_time = 1.0 if left_s <= 0.0 else (at.spent_s + self._reserve_s - at.began_s) / left_s
+        return min(1.0, max(by_steps, by_time))
 
     def run(self, watching: Watching) -> None:
         """Train to the end, until stopped and settled, or until time is up.
@@ -231,7 +238,7 @@ class Trainer(TrainingState):
         parameters = [value for group in self.optimiser.param_groups for value in group["params"]]
         require_finite(self._ranks.average_gradients(parameters, loss.detach()), parameters)
         self.is_editing = True
-        is_growing = settling is None and self.progress < config.densify_until
+        is_growing = settling is None and config.densify_from <= self.progress < config.densify_until
         strategy = self.strategy if is_growing else self._no_more
         stage = config.losses.stage(self.progress) if self._with_glass else None
         show(strategy, picture.raster, offsets, samples, self._ranks, 0.0 if stage is None else stage.weight)

@@ -128,11 +128,14 @@ class Progress:
     ----------
     scored_step
         At which the quality was measured last.
+    began_s
+        What had been spent when the joint training began.
     """
 
     step: int = 0
     scored_step: int = -1
     spent_s: float = 0.0
+    began_s: float = 0.0
     factor: float = 1.0
     n_undone: int = 0
     window_px: int = 0

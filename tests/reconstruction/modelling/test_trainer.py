@@ -127,6 +127,33 @@ def test_splats_are_added_and_stay_below_their_number(make):
     assert n_before < len(trainer.model.splats) <= 220
 
 
+def test_a_time_limit_is_gone_through_from_the_joint_training_s_own_beginning(make):
+    now = [40.0]
+    watch = Stopwatch(lambda: now[0], 0.0)
+    trainer = make(replace(CONFIG, iterations=100, time_limit_s=100.0), watch=watch)
+    found = []
+    for seconds in (40.0, 70.0, 97.0, 200.0):
+        now[0] = trainer.at.spent_s = seconds
+        found.append(trainer.progress)
+    assert found == pytest.approx([0.0, 0.5, 0.95, 1.0])
+    trainer.at.spent_s, trainer.at.step = 41.0, 60
+    assert trainer.progress == pytest.approx(0.6)
+
+
+def test_where_learning_light_took_all_the_time_there_is_no_step(make):
+    trainer = make(replace(CONFIG, time_limit_s=30.0), watch=Stopwatch(lambda: 40.0, 0.0))
+    assert trainer.progress == 1.0
+
+
+def test_splats_are_added_only_between_the_shares_that_are_told(make):
+    config = replace(CONFIG, iterations=220, densify_from=0.7, densify_until=0.95, densification="mcmc", max_splats=400)
+    trainer, numbers = make(config), []
+    trainer.run(Watching(visit=lambda at: numbers.append((at.step, len(at.model.splats)))))
+    changes = [step for (step, n), (_, before) in zip(numbers[1:], numbers, strict=False) if n != before]
+    assert changes
+    assert all(0.7 * 220 < step <= 0.95 * 220 + 1 for step in changes)
+
+
 @pytest.mark.parametrize("light", [None, "harmonics", "environment-map", "mlp", "radiance-grid"])
 def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):
     config = CONFIG if light is None else replace(CONFIG, method="refglass-gs", light=light, reflections=TINY)
