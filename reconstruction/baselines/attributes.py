@@ -28,8 +28,6 @@ class Attribute:
         From what is learned to the value.
     spread
         Standard deviation of normal noise on what is learned, at the start: features that all were alike would stay so.
-    is_blended
-        Whether values are blended into pictures as they are; else something made of them is.
     """
 
     name: str
@@ -37,7 +35,6 @@ class Attribute:
     start: float
     activation: Activation = "none"
     spread: float = 0.0
-    is_blended: bool = True
 
     def __post_init__(self) -> None:
         if self.activation == "sigmoid" and not 0.0 < self.start < 1.0:

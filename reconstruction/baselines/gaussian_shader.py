@@ -75,11 +75,11 @@ class GaussianShaderSettings:
     def attributes(self) -> tuple[Attribute, ...]:
         """Of each splat; its light is made of them, and blended."""
         return (
-            Attribute("diffuse", (3,), self.diffuse, "sigmoid", is_blended=False),
-            Attribute("tint", (3,), self.tint, "sigmoid", is_blended=False),
-            Attribute("roughness", (), self.roughness, "sigmoid", is_blended=False),
-            Attribute("residual_normals", (2, 3), 0.0, is_blended=False),
-            Attribute("residual_sh", (N_HARMONICS, 3), 0.0, is_blended=False),
+            Attribute("diffuse", (3,), self.diffuse, "sigmoid"),
+            Attribute("tint", (3,), self.tint, "sigmoid"),
+            Attribute("roughness", (), self.roughness, "sigmoid"),
+            Attribute("residual_normals", (2, 3), 0.0),
+            Attribute("residual_sh", (N_HARMONICS, 3), 0.0),
         )
 
 

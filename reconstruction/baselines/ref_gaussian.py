@@ -74,7 +74,7 @@ class RefGaussianSettings:
             Attribute("albedo", (3,), 0.5, "sigmoid"),
             Attribute("metallic", (), self.metallic, "sigmoid"),
             Attribute("roughness", (), self.roughness, "sigmoid"),
-            Attribute("indirect", (N_HARMONICS, 3), 0.0, is_blended=False),
+            Attribute("indirect", (N_HARMONICS, 3), 0.0),
         )
 
 

@@ -13,6 +13,9 @@ from reconstruction.splatting.raster import Raster
 from reconstruction.splatting.splats import FEATURES, Splats
 from reconstruction.splatting.views import View
 
+NEAREST_M = 1e-6
+"""Of a splat to the camera: nearer ones have no direction, and are not drawn either."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shaded:
@@ -35,6 +38,13 @@ class Shaded:
     mirrored: Tensor
     reflectivity: Tensor
     penalty: Tensor | None = None
+
+
+def directions_to(splats: Splats, position_m: Tensor) -> Tensor:
+    """Unit directions from a camera at `position_m` to the splats' middles, shape (n, 3); without a gradient."""
+    towards = splats.means.detach() - position_m
+    unit: Tensor = towards / towards.norm(dim=1, keepdim=True).clamp(min=NEAREST_M)
+    return unit
 
 
 class Shader(nn.Module):

@@ -19,7 +19,7 @@ from reconstruction.baselines.gaussian_shader import (
 )
 from reconstruction.modelling.config import Rates
 from reconstruction.modelling.losses import surface_normals
-from reconstruction.modelling.shader import Shaded, Shader
+from reconstruction.modelling.shader import Shaded, Shader, directions_to
 from reconstruction.modelling.shaders.start_colours import with_colours
 from reconstruction.splatting.ellipsoid_axes import thinnest_axes
 from reconstruction.splatting.raster import Raster
@@ -46,7 +46,7 @@ class GaussianShader(Shader):
 
     def colours(self, splats: Splats, position_m: Tensor, degree: int) -> Tensor:
         """Light of each splat."""
-        omega_o = _towards(splats, position_m)
+        omega_o = directions_to(splats, position_m)
         light: Tensor = self.shading(
             torch.sigmoid(splats.attribute("diffuse_logits")),
             torch.sigmoid(splats.attribute("tint_logits")),
@@ -59,7 +59,7 @@ class GaussianShader(Shader):
 
     def channels(self, splats: Splats, position_m: Tensor) -> Tensor:
         """Normals that are shaded with."""
-        return self._normals(splats, _towards(splats, position_m))
+        return self._normals(splats, directions_to(splats, position_m))
 
     def forward(self, view: View, raster: Raster, directions: Tensor, channels: Tensor, splats: Splats) -> Shaded:
         """Light as blended, and the method's own losses."""
@@ -81,10 +81,3 @@ class GaussianShader(Shader):
     def _normals(splats: Splats, omega_o: Tensor) -> Tensor:
         axes = thinnest_axes(splats.quats, splats.log_scales)
         return shading_normals(axes, splats.attribute("residual_normals"), omega_o)
-
-
-def _towards(splats: Splats, position_m: Tensor) -> Tensor:
-    """Unit directions from the camera, shape (n, 3)."""
-    towards = splats.means.detach() - position_m
-    unit: Tensor = towards / towards.norm(dim=1, keepdim=True).clamp(min=1e-6)
-    return unit

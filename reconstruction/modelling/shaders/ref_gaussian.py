@@ -13,7 +13,7 @@ from planning.mesh import TriangleMesh
 from reconstruction.baselines.ref_gaussian import RefGaussianSettings, RefGaussianShading, indirect_light
 from reconstruction.baselines.visibility import meets_scene, points_on_mesh
 from reconstruction.modelling.config import Rates
-from reconstruction.modelling.shader import Shaded, Shader
+from reconstruction.modelling.shader import Shaded, Shader, directions_to
 from reconstruction.modelling.shaders.pixels import Pixels, covered_pixels
 from reconstruction.modelling.shaders.start_colours import with_colours
 from reconstruction.ray_casting import RayCaster
@@ -55,8 +55,7 @@ class RefGaussian(Shader):
 
     def channels(self, splats: Splats, position_m: Tensor) -> Tensor:
         """Metallic, roughness, and light from the splats' own mirrored directions."""
-        towards = splats.means.detach() - position_m
-        omega_o = towards / towards.norm(dim=1, keepdim=True).clamp(min=1e-6)
+        omega_o = directions_to(splats, position_m)
         indirect = indirect_light(splats.attribute("indirect"), splats.normals(position_m).detach(), omega_o)
         logits = [splats.attribute("metallic_logits"), splats.attribute("roughness_logits")]
         shares = torch.sigmoid(torch.stack(logits, dim=1))

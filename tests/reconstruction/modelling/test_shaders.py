@@ -10,11 +10,12 @@ from reconstruction.modelling.config import TrainConfig, config_of
 from reconstruction.modelling.methods import METHODS
 from reconstruction.modelling.photo_stream import PhotoStream
 from reconstruction.modelling.saved import read_model, save_model
-from reconstruction.modelling.shaders.made import Surroundings, shader_of
+from reconstruction.modelling.shaders.made import Surroundings, shader_of, with_primitive
 from reconstruction.modelling.shaders.pixels import covered_pixels
 from reconstruction.modelling.shaders.ref_gaussian import RefGaussian
 from reconstruction.modelling.train import train_model
 from reconstruction.reflections.photo_set import read_photo_set
+from reconstruction.splatting.splats import Splats
 
 BASE = TrainConfig(iterations=14, n_splats=200, max_splats=260, densify_from=0.0, score_every_s=1e9)
 OTHERS = [name for name, method in METHODS.items() if not method.knows_panels]
@@ -106,3 +107,20 @@ def test_where_the_mirrored_ray_meets_the_mesh_the_light_is_indirect(data_set):
 def pictures_view(trained, data_set):
     with PhotoStream(read_photo_set(data_set), None, trained.model.origin_enu_m) as photos:
         return photos.frame(0).view
+
+
+def test_discs_become_flat_ellipsoids_and_the_same_discs_again():
+    generator = torch.Generator().manual_seed(0)
+    quats, scales = torch.randn(20, 4, generator=generator), 0.1 + torch.rand(20, 2, generator=generator)
+    panels = torch.arange(20) % 3 - 1
+    ones = torch.ones(20)
+    discs = Splats.of(torch.randn(20, 3, generator=generator), quats, scales, 0.8 * ones, torch.rand(20, 3), panels)
+    solid = with_primitive(discs, "ellipsoids")
+    assert not solid.is_flat
+    assert (solid.scales[:, 2] < discs.scales.min(dim=1).values).all()
+    assert with_primitive(discs, "discs") is discs
+    back = with_primitive(solid, "discs")
+    camera = torch.tensor([0.0, 0.0, 50.0])
+    assert torch.allclose(back.normals(camera), discs.normals(camera), atol=1e-5)
+    assert torch.allclose(back.scales.sort(dim=1).values, discs.scales.sort(dim=1).values, rtol=1e-5)
+    assert torch.equal(back.panels, discs.panels)
