@@ -38,6 +38,7 @@ from tests.benchmarks import (
     view3d,
     view_counts,
     window,
+    window_training,
 )
 from tests.benchmarks.harness import Benchmark
 
@@ -76,5 +77,6 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     presets.BENCHMARK,
     stopping.BENCHMARK,
     window.BENCHMARK,
+    window_training.BENCHMARK,
     view3d.BENCHMARK,
 )

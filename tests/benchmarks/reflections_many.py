@@ -21,7 +21,7 @@ from tests.benchmarks.lessons import (
     rendered,
 )
 
-SCENES, WIDTH_PX, N_VIEWS = ("planar", "curved"), 128, 400
+SCENES, WIDTH_PX, N_VIEWS = ("planar", "curved"), 128, 600
 SEEDS, QUICK_SEEDS = (0, 1, 2), (0,)
 
 MLP_DB, LONGEST_S = 3.0, 600.0
@@ -74,7 +74,7 @@ def _course(folder: Path, seed: int, config: ReflectionConfig, short: Reflection
 BENCHMARK = Benchmark(
     "reflections-many",
     "Models of mirrored light with many photos",
-    f"As above with {N_VIEWS} photos, of which 340 are learned from. `mlp` is the Reflection MLP of 6 x 256 with 3500 "
+    f"As above with {N_VIEWS} photos, of which 510 are learned from. `mlp` is the Reflection MLP of 6 x 256 with 3500 "
     "steps; `environment-map` and `harmonics` are as by default.",
     measure,
 )

@@ -2,35 +2,23 @@
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import subprocess
-import sys
-import tempfile
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
+from tests.benchmarks.harness import Benchmark, Context, Row
+from tests.benchmarks.window_process import run_window
 from tests.benchmarks.window_run import N_EDITS, N_VIEWS
 
 OPEN_TARGET_S, GAP_TARGET_MS, EDIT_TARGET_MS = 2.0, 50.0, 100.0
 
 N_STARTS = 5
 
-SCREEN_VARIABLES = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
-"""Left out, so that every measurement has a virtual screen of its own."""
-
 
 def measure(context: Context) -> Iterator[Row]:
     """Each measurement in a fresh process on a virtual screen of its own."""
-    if shutil.which("Xvfb") is None:
-        raise Skipped("Xvfb is not installed")
     n_starts = 1 if context.is_quick else N_STARTS
-    starts = {what: [_run(what) for _ in range(n_starts)] for what in ("startup", "startup-eager")}
+    starts = {what: [run_window(what) for _ in range(n_starts)] for what in ("startup", "startup-eager")}
     painted, eager = (float(np.median([one["painted_s"] for one in runs])) for runs in starts.values())
     yield Row(
         "empty",
@@ -45,7 +33,7 @@ def measure(context: Context) -> Iterator[Row]:
     )
     ready = float(np.median([one["ready_s"] for one in starts["startup"]]))
     yield Row("empty", "3-D view ready", ready, "s", seeds=n_starts)
-    found = _run("planning")
+    found = run_window("planning")
     idle = np.array(found["idle_ms"])
     first, *later = (np.array(gaps_ms) for gaps_ms in found["planning_ms"])
     busy = min(later, key=np.max)
@@ -76,15 +64,6 @@ def measure(context: Context) -> Iterator[Row]:
         f"95 % under {EDIT_TARGET_MS:g} ms",
         bool(high < EDIT_TARGET_MS),
     )
-
-
-def _run(what: str) -> dict[str, Any]:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "measured.json"
-        command = [sys.executable, "-m", "tests.benchmarks.window_run", what, str(path)]
-        screenless = {name: value for name, value in os.environ.items() if name not in SCREEN_VARIABLES}
-        subprocess.run(command, check=True, env=screenless)
-        return dict(json.loads(path.read_text("utf-8")))
 
 
 BENCHMARK = Benchmark(

@@ -1,4 +1,4 @@
-"""One measurement of the real window in a process of its own: `python -m tests.benchmarks.window_run WHAT FILE`.
+"""One measurement of the real window in a process of its own: `python -m tests.benchmarks.window_run FILE WHAT`.
 
 Writes what was measured to FILE as JSON. Without a screen it starts a virtual one and a second process, whose time does
 not hold the start of the screen.
@@ -25,6 +25,9 @@ from groundstation.gui.virtual_screen import has_screen, start_virtual_screen
 N_VIEWS, N_EDITS = 560, 40
 BUDGET_S, IDLE_S, N_PLANS = 20.0, 4.0, 3
 TICK_MS = 2
+
+TRAINING_S, TURN_EVERY_S = 45.0, 0.3
+"""How long a training is watched, and how often the view is turned in the second half of it."""
 
 
 def _turn_until(application: Any, condition: Callable[[], bool], timeout_s: float = 200.0) -> None:
@@ -142,14 +145,71 @@ def planning() -> dict[str, Any]:
     return {"idle_ms": idle_ms, "planning_ms": planning_ms, "shown_ms": shown_ms, "pure_ms": pure_ms}
 
 
+def training(dataset: Path, out: Path) -> dict[str, Any]:
+    """Gaps while the Reconstruct tab idles, while it trains, and while its view is turned beside that; and the waits
+    from a turn of the view to its first picture."""
+    from PySide6.QtWidgets import QApplication
+
+    from groundstation.gui.desk import Desk
+    from groundstation.gui.reconstruct.reconstruct_desk import Phase
+
+    application = QApplication(["reflight"])
+    desk = Desk(application)
+    desk.show()
+    desk.window.setGeometry(0, 0, 1280, 720)
+    _turn_until(application, lambda: desk.window.stage.scene() is not None)
+    desk.window.show_tab("reconstruct")
+    page = desk.window.tab("reconstruct")
+    page.desk.read(dataset)
+    _turn_until(application, lambda: page.desk.card is not None)
+    page.desk.choose(replace(page.desk.choice, minutes=5.0))
+    page.desk.choose_out(out)
+    _turn_until_idle(application, desk)
+    gaps = _Gaps()
+    _turn_for(application, IDLE_S)
+    idle_ms = gaps.gaps_ms
+    page.side.train.click()
+    _turn_until(application, lambda: page.desk.phase is Phase.TRAINING)
+    gaps.restart()
+    _turn_for(application, 0.5 * TRAINING_S)
+    watched_ms = gaps.gaps_ms
+    came: list[bytes] = []
+    page.pane.looks.pictureCame.connect(lambda _place, _image, seen: came.append(_place_of(seen.look.camera)))
+    waits_ms = []
+    gaps.restart()
+    end_s = time.perf_counter() + 0.5 * TRAINING_S
+    while time.perf_counter() < end_s:
+        page.pane.view.orbited.emit(0.02, 0.0)
+        began_s, place = time.perf_counter(), _place_of(page.pane.camera())
+        _turn_until(application, lambda place=place: place in came)
+        waits_ms.append(1e3 * (time.perf_counter() - began_s))
+        came.clear()
+        _turn_for(application, TURN_EVERY_S)
+    turned_ms = gaps.gaps_ms
+    page.desk.break_off()
+    _turn_until(application, lambda: not page.desk.is_busy)
+    return {"idle_ms": idle_ms, "watched_ms": watched_ms, "turned_ms": turned_ms, "waits_ms": waits_ms}
+
+
+def _place_of(camera: Any) -> bytes:
+    return bytes(camera.pose.position_enu_m.tobytes())
+
+
+def _measured(what: str, folder: Path) -> dict[str, Any]:
+    if what == "planning":
+        return planning()
+    if what == "training":
+        return training(folder / "photos", folder / "model")
+    return startup(eager=what == "startup-eager")
+
+
 if __name__ == "__main__":
     if not has_screen():
         start_virtual_screen()
         sys.exit(subprocess.run([sys.executable, "-m", "tests.benchmarks.window_run", *sys.argv[1:]]).returncode)
     with tempfile.TemporaryDirectory() as folder:
         os.environ["REFLIGHT_CONFIG_DIR"] = folder
-        what = sys.argv[1]
-        measured = planning() if what == "planning" else startup(eager=what == "startup-eager")
-        Path(sys.argv[2]).write_text(json.dumps(measured), "utf-8")
+        path, what = Path(sys.argv[1]), sys.argv[2]
+        path.write_text(json.dumps(_measured(what, path.parent)), "utf-8")
         sys.stdout.flush()
         os._exit(0)  # nothing of the window is worth saving

@@ -1,0 +1,55 @@
+"""The window beside a training: whether it answers, and how soon a model in training is seen from elsewhere."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from tests.benchmarks.harness import Benchmark, Context, Row
+from tests.benchmarks.lessons import QUICK_N_VIEWS, QUICK_WIDTH_PX, rendered
+from tests.benchmarks.window_process import run_window
+
+GAP_TARGET_MS = 50.0
+
+N_VIEWS, WIDTH_PX = 60, 256
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """One training in the Reconstruct tab."""
+    n_views, width = (QUICK_N_VIEWS, QUICK_WIDTH_PX) if context.is_quick else (N_VIEWS, WIDTH_PX)
+    with tempfile.TemporaryDirectory() as place:
+        rendered("planar", Path(place) / "photos", n_views, width)
+        found = run_window("training", Path(place))
+    idle = np.array(found["idle_ms"])
+    for name, key in (("a model trains", "watched_ms"), ("a model trains and is turned", "turned_ms")):
+        gaps_ms = np.array(found[key])
+        yield Row(
+            "planar",
+            f"longest gap while {name} (99 %: {np.percentile(gaps_ms, 99):.1f} ms; idle: {idle.max():.1f} ms)",
+            float(gaps_ms.max()),
+            "ms",
+            float(gaps_ms.max() / idle.max()),
+            "the idle window",
+            f"under {GAP_TARGET_MS:g} ms",
+            bool(gaps_ms.max() < GAP_TARGET_MS),
+        )
+    waits_ms = np.array(found["waits_ms"])
+    middle, high = np.percentile(waits_ms, [50, 95])
+    yield Row(
+        "planar",
+        f"from a turn of the view to its first picture, median of {len(waits_ms)} (95 %: {high:.0f} ms)",
+        float(middle),
+        "ms",
+    )
+
+
+BENCHMARK = Benchmark(
+    "window-training",
+    "The window beside a training",
+    "The Reconstruct tab with a training of the default method: the longest time in which the window's thread did not "
+    "answer, by a timer of 2 ms; and how long the first picture is waited for when the view is turned meanwhile.",
+    measure,
+)
