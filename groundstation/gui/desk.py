@@ -59,7 +59,7 @@ class Desk(QObject):
         self._questions = Questions() if questions is None else questions
         self._settings, self._settings_problem = _read_settings()
         self._translations = Translations(application)
-        self._garbage = GarbageCollector(self, lambda: bool(self.workspace.jobs()))
+        self._garbage = GarbageCollector(self, lambda: self.workspace.is_busy)
         self._own_worker = Worker() if worker is None else None
         self._worker = self._own_worker if worker is None else worker
         self._runner = JobRunner(worker=self._worker)

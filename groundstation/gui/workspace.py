@@ -73,6 +73,7 @@ class Workspace(QObject):
         self._units = UnitSystem.METRIC
         self._waiting: dict[int, _Waiting] = {}
         self._quiet: set[int] = set()
+        self._busy: list[Callable[[], bool]] = []
         self.bridge = JobBridge(runner, self)
         self.bridge.state_changed.connect(self._job_changed)
         session.subscribe(self._document_changed)
@@ -146,6 +147,15 @@ class Workspace(QObject):
     def jobs(self) -> tuple[Job[Any], ...]:
         """Jobs that have not ended, in the order in which they run."""
         return tuple(waiting.job for waiting in self._waiting.values())
+
+    def count_as_busy(self, is_busy: Callable[[], bool]) -> None:
+        """Ask this, too, whether anything goes on: for work that is no job, and lasts as long as the workspace."""
+        self._busy.append(is_busy)
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a job has not ended, or other work goes on; nothing of the window's own may hold it up then."""
+        return bool(self._waiting) or any(is_busy() for is_busy in self._busy)
 
     def cancel(self, job: Job[Any], *, quietly: bool = False) -> None:
         """Throw a job away, whether it runs or waits; `quietly` where the user has no part in it."""

@@ -61,6 +61,19 @@ def test_a_result_arrives_in_the_windows_thread(application, workspace):
     assert workspace.jobs() == ()
 
 
+def test_it_is_busy_while_a_job_runs_and_while_other_work_says_so(application, workspace):
+    gate, trains = Gate(), [False]
+    workspace.count_as_busy(lambda: trains[0])
+    assert not workspace.is_busy
+    workspace.start("job", gate)
+    assert workspace.is_busy
+    gate.open.set()
+    wait(application, lambda: not workspace.jobs())
+    assert not workspace.is_busy
+    trains[0] = True
+    assert workspace.is_busy
+
+
 def test_an_error_is_shown_with_what_to_do_and_passed_on(application, workspace, messages):
     heard = []
 

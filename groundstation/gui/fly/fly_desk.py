@@ -97,6 +97,7 @@ class FlyDesk(QObject):
         self.in_hand: FlightInHand | None = None
         self.after, self.signing = AfterFlight(workspace, self), SigningDesk(workspace, self)
         self._published.connect(self._take)
+        workspace.count_as_busy(lambda: self.is_in_flight)
 
     @classmethod
     def of(cls, workspace: Workspace) -> FlyDesk:

@@ -90,6 +90,7 @@ class ReconstructDesk(PlaceDesk):
         self.light, self.decisions = "", tuple[Decision, ...]()
         self.errors: dict[str, float] = {}
         self.errors_of: Subject | None = None
+        workspace.count_as_busy(lambda: self.is_busy)
 
     @classmethod
     def of(cls, workspace: Workspace) -> ReconstructDesk:

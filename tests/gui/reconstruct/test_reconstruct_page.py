@@ -79,7 +79,9 @@ def test_a_chosen_data_set_is_shown_and_its_first_photo_looked_at(chosen):
 
 
 def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tmp_path):
+    assert not chosen._workspace.is_busy
     told = begin(chosen)
+    assert chosen._workspace.is_busy, "nothing may hold the window up that can wait"
     assert (told.dataset, told.out, told.resume) == (chosen.desk.card.folder, tmp_path / "model", False)
     assert enabled(chosen) == {"pause", "stop", "break_off"}
     assert chosen.details.currentWidget() is chosen.progress
