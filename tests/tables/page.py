@@ -8,6 +8,7 @@ from pathlib import Path
 
 from reconstruction.modelling.methods import METHODS
 from tests.tables.definitions import Above, Table
+from tests.tables.measured import measured_sections
 from tests.tables.results import Result, of_case
 from tests.tables.scales import Scale
 from tests.tables.trainings import Case
@@ -27,16 +28,10 @@ photos. The paper's numbers are of its real photos, with other sites, cameras an
 cannot.
 """
 
-ELSEWHERE = """## Table 1 and Fig. 14
-
-Panels ([benchmarks.md](benchmarks.md#segmentation), `python -m tests.benchmarks --only segmentation`) and the number of
-views ([benchmarks.md](benchmarks.md#fig14), `--only fig14`) are measured there, beside the paper's numbers.
-"""
-
 
 def write_page(path: Path, tables: Sequence[Table], scale: Scale, results: Sequence[Result]) -> None:
     """Write the page, of results of one scale."""
-    parts = [HEADER, _setup(scale), _methods(), ELSEWHERE]
+    parts = [HEADER, _setup(scale), _methods(), "\n".join(measured_sections(path.parent))]
     parts += ["\n".join(_section(table, scale, results, path.parent / PICTURES)) for table in tables]
     path.write_text("\n".join(parts), "utf-8")
 

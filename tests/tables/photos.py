@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -12,6 +13,7 @@ from groundstation.services.flying import FlightWish, fly_files
 from groundstation.services.planning import plan_site
 from groundstation.services.scene_photos import photograph_files
 from groundstation.services.scene_views import SITE_FILE, SceneWish
+from groundstation.services.scene_views import as_written as site_as_written
 from planning.optimise.candidates import spread_candidates
 from planning.optimise.problem import take
 from planning.plan import Constraints, Plan
@@ -19,6 +21,8 @@ from planning.plan_file import write_plan
 from planning.plan_records import as_written, viewpoints_of
 from planning.planner import Planned
 from planning.request import GreedyParameters, PlanRequest
+from reconstruction.scenes.bundled import curved_site, planar_site
+from reconstruction.scenes.photographers import DEFAULT_POINTS
 
 FARTHEST_M = 40.0
 """Of all views: the panels of one that is further away are a few pixels wide at the tables' sizes."""
@@ -34,6 +38,9 @@ SITE_WIDTH_PX = 64
 
 Planner = Literal["greedy", "noto", "unseen"]
 
+BARE_SITES = {"planar": planar_site, "curved": curved_site}
+"""Sites of scenes that can be given another street."""
+
 
 @dataclass(frozen=True, slots=True)
 class Photos:
@@ -43,6 +50,9 @@ class Photos:
     ----------
     planner
         Of the flight; `unseen` for places and directions drawn at random, which nobody flies.
+    street_m
+        To the buildings opposite, where that is not to be as in the scene; inf for nothing near at all. Photos are
+        taken from where they would be in the scene itself.
     """
 
     scene: str
@@ -50,11 +60,18 @@ class Photos:
     n_views: int
     width_px: int
     seed: int = 0
+    street_m: float | None = None
+
+    @property
+    def flight_name(self) -> str:
+        """Of the files with where they are taken from."""
+        return f"{self.scene}-{self.planner}-{self.n_views}-{self.seed}"
 
     @property
     def name(self) -> str:
         """Of their folder."""
-        return f"{self.scene}-{self.planner}-{self.n_views}-{self.width_px}-{self.seed}"
+        street = "" if self.street_m is None else f"-street-{self.street_m:g}"
+        return f"{self.flight_name}-{self.width_px}{street}"
 
 
 def photos_in(work: Path, photos: Photos) -> Path:
@@ -62,25 +79,36 @@ def photos_in(work: Path, photos: Photos) -> Path:
     folder = work / photos.name
     if (folder / "dataset.json").is_file():
         return folder
-    site = _site_file(work, photos.scene)
-    plan_path, flight_path = work / f"{photos.name}.plan.json", work / f"{photos.name}.flight.json"
+    plan_path, flight_path = _flown(work, photos)
+    look = None if photos.street_m is None else work / f"street-{photos.street_m:g}.toml"
+    scene = photos.scene
+    if look is not None:
+        scene = str(_bare_site_file(work, photos.scene))
+        look.write_text(f"street_m = {photos.street_m}\n" if math.isfinite(photos.street_m) else "near = false\n")
+    n_points = 0 if flight_path is None else DEFAULT_POINTS
+    wish = SceneWish(scene, plan=plan_path, flight=flight_path, look=look, width_px=photos.width_px, n_points=n_points)
+    photograph_files(wish, folder, 1)
+    return folder
+
+
+def _flown(work: Path, photos: Photos) -> tuple[Path, Path | None]:
+    """Files of the plan, and of the flight where there is one; made if they are not there yet."""
+    plan_path, flight_path = (work / f"{photos.flight_name}.{kind}.json" for kind in ("plan", "flight"))
+    site, is_unseen = _site_file(work, photos.scene), photos.planner == "unseen"
     request = PlanRequest(
-        method="greedy" if photos.planner == "unseen" else photos.planner,
+        method="noto" if photos.planner == "noto" else "greedy",
         n_views=photos.n_views,
         constraints=Constraints(max_distance_m=FARTHEST_M),
         seed=photos.seed,
         time_budget_s=PLANNING_S,
     )
-    if photos.planner == "unseen":
+    if is_unseen and not plan_path.is_file():
         few = replace(request, n_views=1, greedy=GreedyParameters(n_candidates=500, improve=False, certify=False))
         write_plan(plan_path, _drawn(plan_site(site, few, None), photos))
-        wish = SceneWish(photos.scene, plan=plan_path, width_px=photos.width_px, n_points=0)
-    else:
+    elif not is_unseen and not flight_path.is_file():
         plan_site(site, request, plan_path)
         fly_files(plan_path, site, flight_path, FlightWish(seed=photos.seed))
-        wish = SceneWish(photos.scene, plan=plan_path, flight=flight_path, width_px=photos.width_px)
-    photograph_files(wish, folder, 1)
-    return folder
+    return plan_path, None if is_unseen else flight_path
 
 
 def _site_file(work: Path, scene: str) -> Path:
@@ -88,6 +116,18 @@ def _site_file(work: Path, scene: str) -> Path:
     if not (folder / SITE_FILE).is_file():
         photograph_files(SceneWish(scene, n_square=1, width_px=SITE_WIDTH_PX, n_points=0), folder, 1)
     return folder / SITE_FILE
+
+
+def _bare_site_file(work: Path, scene: str) -> Path:
+    """The site alone, for a street to be built before it."""
+    folder = work / f"{scene}-bare"
+    folder.mkdir(exist_ok=True)
+    path = folder / SITE_FILE
+    if not path.is_file():
+        _, files = site_as_written(BARE_SITES[scene]())
+        for name, content in files.items():
+            (folder / name).write_bytes(content)
+    return path
 
 
 def _drawn(planned: Planned, photos: Photos) -> Plan:
