@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QAbstractListModel, QModelIndex, QPersistentModelIndex, QRect, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPen
-from PySide6.QtWidgets import QListView, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QWidget
+from PySide6.QtCore import QModelIndex, QRect, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QImage, QPainter
+from PySide6.QtWidgets import QWidget
 
+from groundstation.gui.photo_strip import PhotoStrip
 from groundstation.gui.reconstruct.small_pictures import SmallPictures
 from groundstation.gui.theme import Colours, colours
 from reconstruction.cameras import PosedPhoto
@@ -21,83 +22,8 @@ UNSEEN = "\u25c7"
 LEAST_SPREAD_DB = 3.0
 """Between the worst and the best photo, for the colours of bars: less is no difference to speak of."""
 
-Index = QModelIndex | QPersistentModelIndex
 
-
-class _Photos(QAbstractListModel):
-    """The photos, in the order in which they are shown."""
-
-    def __init__(self, strip: ErrorStrip) -> None:
-        super().__init__(strip)
-        self._strip = strip
-        self.photos: tuple[PosedPhoto, ...] = ()
-        self.unseen: frozenset[str] = frozenset()
-        self.psnr_db: dict[str, float] = {}
-        self.range_db = (0.0, 1.0)
-
-    def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008, N802
-        """Number of photos."""
-        return 0 if parent.isValid() else len(self.photos)
-
-    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> object:
-        """Name and error, in words."""
-        if role in (Qt.ItemDataRole.ToolTipRole, Qt.ItemDataRole.AccessibleTextRole):
-            return self._strip.words(self.photos[index.row()].name)
-        return None
-
-
-class _Painter(QStyledItemDelegate):
-    """Paints one photo."""
-
-    def __init__(self, pictures: SmallPictures, parent: QWidget) -> None:
-        super().__init__(parent)
-        self._pictures = pictures
-
-    def sizeHint(self, _option: QStyleOptionViewItem, _index: Index) -> QSize:  # noqa: N802
-        """All are of one size."""
-        return CELL
-
-    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
-        """Picture, bar, sign and decibels."""
-        model = index.model()
-        assert isinstance(model, _Photos)
-        photo, look = model.photos[index.row()], colours()
-        box: QRect = option.rect.adjusted(3, 3, -3, -3)
-        room = box.adjusted(0, 0, 0, -FOOT_PX - BAR_PX)
-        painter.save()
-        painter.fillRect(box, QColor(look.window))
-        lens = photo.intrinsics
-        picture = self._pictures.picture(photo.path, max(lens.width_px, lens.height_px))
-        if picture is not None:
-            place = QRect(room.topLeft(), picture.size().scaled(room.size(), Qt.AspectRatioMode.KeepAspectRatio))
-            place.moveCenter(room.center())
-            painter.drawImage(place, picture)
-        found = model.psnr_db.get(photo.name)
-        if found is not None:
-            low, high = model.range_db
-            share = min(1.0, max(0.0, (found - low) / (high - low)))
-            bar = QRect(box.left() + 2, room.bottom() + 1, box.width() - 4, BAR_PX - 1)
-            painter.fillRect(bar, QColor(look.handle))
-            bar.setWidth(max(3, round(share * bar.width())))
-            painter.fillRect(bar, _colour(share, look))
-        foot = QRect(box.left() + 3, box.bottom() - FOOT_PX, box.width() - 6, FOOT_PX)
-        painter.setPen(QColor(look.text))
-        sign = f"{UNSEEN} " if photo.name in model.unseen else ""
-        left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
-        middle = Qt.AlignmentFlag.AlignVCenter
-        metrics = painter.fontMetrics()
-        room_px = foot.width() - (36 if found is not None else 0) - metrics.horizontalAdvance(sign)
-        name = metrics.elidedText(Path(photo.name).stem, Qt.TextElideMode.ElideLeft, room_px)
-        painter.drawText(foot, left | middle, sign + name)
-        if found is not None:
-            painter.drawText(foot, right | middle, f"{found:.1f}")
-        is_chosen = bool(option.state & QStyle.StateFlag.State_Selected)
-        painter.setPen(QPen(QColor(look.accent if is_chosen else look.line), 3 if is_chosen else 1))
-        painter.drawRect(box)
-        painter.restore()
-
-
-class ErrorStrip(QListView):
+class ErrorStrip(PhotoStrip[PosedPhoto]):
     """Shows photos beside each other, in the order of their names or the worst first.
 
     Signals
@@ -109,39 +35,37 @@ class ErrorStrip(QListView):
     chosen = Signal(str)
 
     def __init__(self, pictures: SmallPictures, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._photos = _Photos(self)
+        super().__init__(CELL, BAR_PX + FOOT_PX, lambda photo: photo.path, parent)
+        self._pictures = pictures
         self._all: tuple[PosedPhoto, ...] = ()
+        self._unseen: frozenset[str] = frozenset()
+        self._psnr_db: dict[str, float] = {}
+        self._range_db = (0.0, 1.0)
         self._worst_first, self._is_filling = False, False
-        self.setModel(self._photos)
-        self.setItemDelegate(_Painter(pictures, self))
-        self.setFlow(QListView.Flow.LeftToRight)
-        self.setWrapping(False)
-        self.setUniformItemSizes(True)
-        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
-        self.setHorizontalScrollMode(QListView.ScrollMode.ScrollPerPixel)
-        self.setFixedHeight(CELL.height() + 24)
         self.setAccessibleName(self.tr("Photos of the data set, and how well the model shows them"))
         self.selectionModel().currentChanged.connect(self._current_changed)
-        pictures.ready.connect(self._repaint_one)
+        pictures.ready.connect(self.repaint_path)
 
     def set_photos(self, photos: tuple[PosedPhoto, ...], unseen: frozenset[str]) -> None:
         """Show other photos; `unseen` are not learned from."""
-        self._all, self._photos.unseen = photos, unseen
-        self._photos.psnr_db = {}
+        self._all, self._unseen = photos, unseen
+        self._psnr_db = {}
         self._arrange()
 
     def set_errors(self, psnr_db: dict[str, float]) -> None:
         """Show other errors; the order stays until `set_worst_first`, or until more photos are known."""
-        knows_more = bool(set(psnr_db) - set(self._photos.psnr_db))
-        self._photos.psnr_db = dict(psnr_db)
+        knows_more = bool(set(psnr_db) - set(self._psnr_db))
+        self._psnr_db = dict(psnr_db)
         if psnr_db:
             low, high = min(psnr_db.values()), max(psnr_db.values())
-            self._photos.range_db = low - 0.1 * LEAST_SPREAD_DB, max(high, low + LEAST_SPREAD_DB)
+            self._range_db = low - 0.1 * LEAST_SPREAD_DB, max(high, low + LEAST_SPREAD_DB)
         if self._worst_first and knows_more:
             self._arrange()
         self.viewport().update()
+
+    def errors(self) -> dict[str, float]:
+        """Those that are shown, PSNR in dB."""
+        return self._psnr_db
 
     def set_worst_first(self, is_on: bool) -> None:
         """Sort by what is known now, or by names."""
@@ -152,55 +76,75 @@ class ErrorStrip(QListView):
 
     def choose(self, name: str) -> None:
         """Mark a photo, and bring it into sight."""
-        row = next((row for row, photo in enumerate(self._photos.photos) if photo.name == name), None)
+        row = self._row_of(name)
         if row is not None:
-            index = self._photos.index(row)
-            self.setCurrentIndex(index)
-            self.scrollTo(index)
+            self.choose_row(row)
 
     def current(self) -> str:
         """Name of the photo that is marked; "" for none."""
         row = self.currentIndex().row()
-        return self._photos.photos[row].name if 0 <= row < len(self._photos.photos) else ""
+        return self.photos()[row].name if 0 <= row < len(self.photos()) else ""
 
     def names(self) -> tuple[str, ...]:
         """As they are shown."""
-        return tuple(photo.name for photo in self._photos.photos)
+        return tuple(photo.name for photo in self.photos())
 
-    def words(self, name: str) -> str:
+    def picture(self, photo: PosedPhoto) -> QImage | None:
+        """Its picture; None where it is still being read."""
+        lens = photo.intrinsics
+        return self._pictures.picture(photo.path, max(lens.width_px, lens.height_px))
+
+    def paint_foot(self, painter: QPainter, foot: QRect, _row: int, photo: PosedPhoto) -> None:
+        """Bar, sign, name and decibels."""
+        look, found = colours(), self._psnr_db.get(photo.name)
+        if found is not None:
+            low, high = self._range_db
+            share = min(1.0, max(0.0, (found - low) / (high - low)))
+            bar = QRect(foot.left() + 2, foot.top(), foot.width() - 4, BAR_PX - 1)
+            painter.fillRect(bar, QColor(look.handle))
+            bar.setWidth(max(3, round(share * bar.width())))
+            painter.fillRect(bar, _colour(share, look))
+        line = foot.adjusted(3, BAR_PX - 1, -3, -1)
+        sign = f"{UNSEEN} " if photo.name in self._unseen else ""
+        left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
+        middle = Qt.AlignmentFlag.AlignVCenter
+        metrics = painter.fontMetrics()
+        room_px = line.width() - (36 if found is not None else 0) - metrics.horizontalAdvance(sign)
+        name = metrics.elidedText(Path(photo.name).stem, Qt.TextElideMode.ElideLeft, room_px)
+        painter.drawText(line, left | middle, sign + name)
+        if found is not None:
+            painter.drawText(line, right | middle, f"{found:.1f}")
+
+    def words(self, photo: PosedPhoto) -> str:
         """What is known of a photo."""
-        found = self._photos.psnr_db.get(name)
-        lines = [name]
+        found = self._psnr_db.get(photo.name)
+        lines = [photo.name]
         if found is not None:
             lines.append(self.tr("{0:.2f} dB on the facades, as the model is now").format(found))
-        if name in self._photos.unseen:
+        if photo.name in self._unseen:
             lines.append(self.tr("{0} not learned from: kept for scoring").format(UNSEEN))
         return "\n".join(lines)
 
+    def _row_of(self, name: str) -> int | None:
+        return next((row for row, photo in enumerate(self.photos()) if photo.name == name), None)
+
     def _arrange(self) -> None:
-        chosen, errors = self.current(), self._photos.psnr_db
+        chosen, errors = self.current(), self._psnr_db
         place = self.horizontalScrollBar().value()
         order = sorted(self._all, key=lambda photo: photo.name)
         if self._worst_first:
             order = sorted(order, key=lambda photo: errors.get(photo.name, float("inf")))
         self._is_filling = True
-        self._photos.beginResetModel()
-        self._photos.photos = tuple(order)
-        self._photos.endResetModel()
-        rows = [row for row, photo in enumerate(order) if photo.name == chosen]
-        if rows:
-            self.setCurrentIndex(self._photos.index(rows[0]))
+        self.show_photos(tuple(order))
+        row = self._row_of(chosen)
+        if row is not None:
+            self.setCurrentIndex(self.model().index(row, 0))
         self.horizontalScrollBar().setValue(place)
         self._is_filling = False
 
     def _current_changed(self, now: QModelIndex, _before: QModelIndex) -> None:
         if now.isValid() and not self._is_filling:
-            self.chosen.emit(self._photos.photos[now.row()].name)
-
-    def _repaint_one(self, path: Path) -> None:
-        for row, photo in enumerate(self._photos.photos):
-            if photo.path == path:
-                self.viewport().update(self.visualRect(self._photos.index(row)))
+            self.chosen.emit(self.photos()[now.row()].name)
 
 
 def _colour(share: float, look: Colours) -> QColor:

@@ -241,8 +241,8 @@ def test_photos_are_judged_and_sorted_the_worst_first(application, chosen):
     names = chosen.pane.strip.names()
     take(chosen, *(PhotoError(TRAINING, name, 20.0 + (k * 7) % 5) for k, name in enumerate(names)))
     take(chosen, PhotoError(Subject("model", Path("other")), names[0], 99.0))
-    turn_until(application, lambda: bool(chosen.pane.strip._photos.psnr_db))
-    assert "20.00 dB" in chosen.pane.strip.words(names[0])
+    turn_until(application, lambda: bool(chosen.pane.strip.errors()))
+    assert "20.00 dB" in chosen.pane.strip.words(chosen.pane.strip.photos()[0])
     chosen.pane.worst.click()
     worst = [20.0 + (names.index(name) * 7) % 5 for name in chosen.pane.strip.names()]
     assert worst == sorted(worst)
@@ -254,7 +254,7 @@ def test_a_photo_that_is_judged_later_takes_its_place_among_the_worst(applicatio
     names = chosen.pane.strip.names()
     chosen.pane.worst.click()
     take(chosen, *(PhotoError(TRAINING, name, 30.0) for name in names[:-1]))
-    turn_until(application, lambda: len(chosen.pane.strip._photos.psnr_db) == len(names) - 1)
+    turn_until(application, lambda: len(chosen.pane.strip.errors()) == len(names) - 1)
     take(chosen, PhotoError(TRAINING, names[-1], 12.0))
     turn_until(application, lambda: chosen.pane.strip.names()[0] == names[-1])
 
