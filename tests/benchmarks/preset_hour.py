@@ -1,0 +1,51 @@
+"""The preset of an hour at its own hour, on the photos that the preset of ten minutes was measured with."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from reconstruction.modelling.presets import HOUR_S, preset
+from reconstruction.modelling.tradeoff import Setting
+from tests.benchmarks import presets
+from tests.benchmarks.harness import Benchmark, Context, Row
+from tests.benchmarks.lessons import rendered
+
+NAME = "1h"
+LOOKS = 12
+"""At held-out views on the way."""
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """One training: some held-out views on the way, all of them in the end."""
+    is_quick = context.is_quick
+    n_views, width = (
+        (presets.QUICK_N_VIEWS, presets.QUICK_WIDTH_PX) if is_quick else (presets.N_VIEWS, presets.WIDTH_PX)
+    )
+    config = preset("smoke") if is_quick else preset(NAME)
+    longest_s = presets.QUICK_BUDGET_S if is_quick else HOUR_S
+    setting = Setting(
+        f"preset {NAME}", "its hour", replace(config, time_limit_s=longest_s, score_every_s=longest_s / LOOKS)
+    )
+    with tempfile.TemporaryDirectory() as place:
+        found = presets.trial(rendered("planar", Path(place) / "planar", n_views, width), setting)
+    for point in found.history:
+        what = f"after {point.t_s / 60.0:.0f} min, facades of some unseen views"
+        yield Row("planar", what, round(point.value, 2), "dB")
+    beside = (
+        f"whole pictures {found.whole_db:.1f} dB, SSIM of facades {found.ssim or 0.0:.3f}; {found.n_steps} steps, "
+        f"{found.n_splats} splats"
+    )
+    what = f"in the end ({found.seconds / 60.0:.0f} min), facades of unseen views"
+    yield Row("planar", what, round(found.facade_db, 2), "dB", None, beside)
+
+
+BENCHMARK = Benchmark(
+    "preset-hour",
+    "The preset of an hour",
+    f"The preset `{NAME}` in its own hour of processor time, one thread, on the photos of [presets](#presets). "
+    "Its rates fall until the hour ends: on the way it has less than a shorter training in the end.",
+    measure,
+)
