@@ -39,6 +39,11 @@ class Table:
     cases: tuple[Case, ...]
     must_hold: tuple[Above, ...] = ()
 
+    @property
+    def compares_plans(self) -> bool:
+        """Whether its cases learn from photos of different flights."""
+        return len({case.planner for case in self.cases}) > 1
+
 
 OURS, PAPERS = "Reflight", "RefGlass-GS"
 

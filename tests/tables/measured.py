@@ -1,4 +1,4 @@
-"""Table 1 and Fig. 14, of what `tests.benchmarks` has measured last."""
+"""Table 1, Fig. 14, and what Table 2 depends on, of what `tests.benchmarks` has measured last."""
 
 from __future__ import annotations
 
@@ -38,6 +38,24 @@ def measured_sections(folder: Path) -> Iterator[str]:
     """
     yield from _panels(_rows(folder / BENCHMARKS / "segmentation.csv"))
     yield from _views(_rows(folder / BENCHMARKS / "fig14.csv"), folder)
+
+
+def gap_section(folder: Path) -> Iterator[str]:
+    """Lines of the page on what the gap of Table 2 depends on; `folder` as above."""
+    rows = _rows(folder / BENCHMARKS / "plan-gap.csv")
+    yield "### How the gap grows\n"
+    yield (
+        "The same of mirrored light alone, in photos of different sizes and with things at different distances. The "
+        "paper has 13.15 dB, in photos 5280 pixels wide. [benchmarks.md](benchmarks.md#plan-gap), "
+        "`python -m tests.benchmarks --only plan-gap`\n"
+    )
+    yield "| photos, before the facade, model of light | our plan above NOTO, dB | |"
+    yield "| --- | ---: | --- |"
+    for (_, what), row in rows.items():
+        yield f"| {what.partition(':')[0]} | {row['value']} | {row['against']} |"
+    if not rows:
+        yield "| not run | | |"
+    yield ""
 
 
 def _rows(path: Path) -> Rows:

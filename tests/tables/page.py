@@ -8,7 +8,7 @@ from pathlib import Path
 
 from reconstruction.modelling.methods import METHODS
 from tests.tables.definitions import Above, Table
-from tests.tables.measured import measured_sections
+from tests.tables.measured import gap_section, measured_sections
 from tests.tables.results import Result, of_case
 from tests.tables.scales import Scale
 from tests.tables.trainings import Case
@@ -32,7 +32,10 @@ cannot.
 def write_page(path: Path, tables: Sequence[Table], scale: Scale, results: Sequence[Result]) -> None:
     """Write the page, of results of one scale."""
     parts = [HEADER, _setup(scale), _methods(), "\n".join(measured_sections(path.parent))]
-    parts += ["\n".join(_section(table, scale, results, path.parent / PICTURES)) for table in tables]
+    for table in tables:
+        parts.append("\n".join(_section(table, scale, results, path.parent / PICTURES)))
+        if table.compares_plans:
+            parts.append("\n".join(gap_section(path.parent)))
     path.write_text("\n".join(parts), "utf-8")
 
 

@@ -68,7 +68,11 @@ def test_what_benchmarks_measured_stands_beside_the_paper_s_numbers(tmp_path):
     (measured / "segmentation.csv").write_text(head + panels, "utf-8")
     views = 'office,"100 views, PSO, 2.3 s",7175.7,sections,0.7722,the bound,,,3\n'
     (measured / "fig14.csv").write_text(head + views, "utf-8")
+    gap = 'planar,"64 px, street of 28 m, mlp: our plan above NOTO",3.21,dB,,"NOTO 24.0, ours 27.2 dB",,,2\n'
+    (measured / "plan-gap.csv").write_text(head + gap, "utf-8")
     text = page(tmp_path, [])
+    assert "| 64 px, street of 28 m, mlp | 3.21 | NOTO 24.0, ours 27.2 dB |" in text
+    assert text.index("How the gap grows") < text.index("## Table 3")
     assert "| Overall mIoU | 0.9812 | 50 | 0.9895 | 0.8597 |" in text
     assert "| Coverage, 5 % | 0.7500 | 50 | 1.0000 | 1.0000 |" in text
     assert "| Overall mIoU | not run |  | 0.9871 | 0.7316 |" in text
