@@ -23,6 +23,7 @@ def test_demo_plans_checks_and_exports_and_says_where_things_are(reflight, tmp_p
     assert reflight("check", folder / "single-panel.plan.json", folder / "single-panel.site.json").status == 0
 
 
+@pytest.mark.slow
 def test_json_names_all_files(reflight, tmp_path):
     done = reflight("demo", "--scene", "roof", "--out", tmp_path, "--json")
     assert (done.status, done.err) == (0, "")

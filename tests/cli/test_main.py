@@ -117,6 +117,7 @@ def test_control_characters_from_a_damaged_file_do_not_reach_the_terminal(reflig
     assert "[2J" in error
 
 
+@pytest.mark.slow
 def test_a_site_with_characters_the_terminal_lacks_is_no_error(process, pane):
     environment = {**os.environ, "PYTHONIOENCODING": "ascii:strict"}
     done = process("check", pane / "plan.json", pane / "größe.json", env=environment)

@@ -79,6 +79,7 @@ def test_wrong_input_is_refused_in_words(flight, reflight, tmp_path):
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_a_corrected_panels_file_stands_in_for_a_search(flight, reflight, tmp_path):
     folder, made = flight
     grids, out = tmp_path / "grids", tmp_path / "x.site.json"
@@ -106,6 +107,7 @@ def test_a_corrected_panels_file_stands_in_for_a_search(flight, reflight, tmp_pa
     assert "photo 'other.jpg'" in reflight(*ask).error
 
 
+@pytest.mark.slow
 def test_how_photos_are_rectified_and_whether_together_is_told(flight, reflight, tmp_path):
     folder, _ = flight
     out = tmp_path / "x.site.json"

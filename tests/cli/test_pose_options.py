@@ -48,6 +48,7 @@ def without_pycolmap(monkeypatch):
     monkeypatch.setitem(sys.modules, "pycolmap", None)
 
 
+@pytest.mark.slow
 def test_one_refinement_serves_photos_panels_and_prepare(flight, site, kept, reflight, tmp_path, without_pycolmap):
     photos = reflight("photos", flight / "photos", site, "--refine", "--scale", 8, "--json")
     assert photos.status == 0, photos

@@ -170,6 +170,7 @@ def test_a_folder_of_something_else_is_left_alone_whatever_the_scene(render, ref
     assert [path.name for path in (tmp_path / "photos").iterdir()] == ["letter.txt"]
 
 
+@pytest.mark.slow
 def test_views_inside_buildings_opposite_are_told(reflight, pane, changed, tmp_path):
     plan = changed(pane / "plan.json", "viewpoints", 0, "position_enu_m", [0.0, -40.0, 6.0])
     done = reflight("scene", "render", pane / "site.json", "--plan", plan, "-o", tmp_path / "out", *QUICK)
@@ -203,6 +204,7 @@ def test_a_camera_file_with_a_mistake_is_refused_before_anything_is_written(rend
     assert not (tmp_path / "photos").exists()
 
 
+@pytest.mark.slow
 def test_a_cluster_renders_the_photos_that_one_process_renders(reflight, render, pane, look, tmp_path):
     distributed = pytest.importorskip("distributed")
     render("--plan", pane / "plan.json")

@@ -31,6 +31,7 @@ def test_made_photos_are_scored_and_the_worst_shown(reflight, tmp_path):
     assert "coverage, 5 % percentile" in text
 
 
+@pytest.mark.slow
 def test_masks_of_another_method_are_scored_on_saved_photos(reflight, tmp_path):
     photos, masks = tmp_path / "photos", tmp_path / "masks"
     done = reflight("score", "segmentation", *QUICK, "-o", tmp_path / "a", "--save-photos", photos, "--json")

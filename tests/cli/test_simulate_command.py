@@ -18,6 +18,7 @@ from planning.plan_file import read_plan
 from planning.progress import StopRequest
 from planning.site_file import read_site
 from tests.cli.conftest import BAD_CONTENTS
+from tests.slow import slow
 
 
 @pytest.fixture
@@ -119,7 +120,7 @@ def test_the_flight_may_not_replace_the_plan(reflight, pane):
     assert (pane / "plan.json").read_bytes() == before
 
 
-@pytest.mark.parametrize("autopilot", list(Autopilot))
+@pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_a_vehicle_at_a_link_is_flown_and_logged(fly, pane, tmp_path, autopilot):
     plan, model = read_plan(pane / "plan.json"), read_site(pane / "site.json")
     airframe, _ = make_airframe(plan, model, plan.sorties[0])

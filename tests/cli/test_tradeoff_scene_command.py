@@ -29,6 +29,7 @@ def test_a_table_and_a_picture_are_written(reflight, tmp_path):
     assert (out / "tradeoff-scene.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_it_speaks_json(reflight, tmp_path):
     found = reflight("tradeoff", "scene", "planar-far", "-o", tmp_path, *QUICK, "--turn", "none", "--json").json
     assert found["truth"]["error"] == 0.0

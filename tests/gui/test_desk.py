@@ -211,6 +211,7 @@ def test_work_without_a_project_survives_a_crash_too(application, make_desk, ans
     assert second.workspace.document.site.site.name == "roof"
 
 
+@pytest.mark.slow
 def test_a_second_window_on_one_project_is_told(application, make_desk, tmp_path):
     first = make_desk()
     with_site(application, first)

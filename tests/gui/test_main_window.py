@@ -202,6 +202,7 @@ def test_the_window_answers_within_50_ms_while_a_plan_runs(application, desk):
     pytest.fail(f"longest gaps of {len(longest_ms)} plans: {longest_ms} ms")
 
 
+@pytest.mark.slow
 def test_the_language_waits_while_something_runs(application, desk):
     opened(application, desk, "roof")
     desk.window.show_tab("plan")

@@ -78,6 +78,7 @@ def test_undo_of_the_first_plan_leaves_nothing_of_it(application, desk, page_of_
     assert page.lists.waypoints.model().rowCount() > 8
 
 
+@pytest.mark.slow
 def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application, desk, page):
     desk.workspace.select(Item(ItemKind.PANEL, desk.workspace.document.site.site.panels[3].id))
     opened(application, desk, "office")

@@ -147,6 +147,7 @@ def test_every_tab_shows_a_site_without_panels(opened):
     assert [finding.code for finding in findings.findings()] == ["no-panels"]
 
 
+@pytest.mark.slow
 def test_a_plan_stays_when_the_panels_go_and_says_what_it_lacks(opened):
     model = roof()
     entry = PlanEntry("plan-1", "First", plan_flight(model, PlanRequest(n_views=4, greedy=QUICK)).plan)

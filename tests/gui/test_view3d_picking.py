@@ -129,6 +129,7 @@ def test_viewpoints_and_legs_are_picked_by_their_pixels_unless_a_surface_hides_t
     assert 0.0 <= along <= 1.0
 
 
+@pytest.mark.slow
 def test_a_pick_among_ten_thousand_panels_and_a_thousand_viewpoints_takes_under_20_ms():
     site = site_scene(large_site(), LIGHT)
     index, plan = PickIndex(site), plan_scene(large_plan(), LIGHT)

@@ -28,6 +28,7 @@ from planning.site import NoFlyZone, SiteModel
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import NEAR, QUICK
 from tests.planning.test_planner import assert_keeps_the_contract
+from tests.slow import slow
 
 CAMERA_ITEMS = (mavlink.MAV_CMD_DO_DIGICAM_CONTROL, mavlink.MAV_CMD_IMAGE_START_CAPTURE)
 GIMBAL_ITEMS = (mavlink.MAV_CMD_DO_MOUNT_CONTROL, mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW)
@@ -63,7 +64,7 @@ def photo_ids(mission: Mission) -> list[str]:
     return [photo.viewpoint_id for waypoint in mission.waypoints for photo in waypoint.photos]
 
 
-@pytest.mark.parametrize("number", [1, 2])
+@pytest.mark.parametrize("number", [slow(1), 2])
 def test_flown_and_resumed_views_are_all_views_once_and_the_rest_passes_every_check(number: int) -> None:
     sortie = planned().sorties[number - 1]
     before = {view.id: view for view in planned().viewpoints}
@@ -77,6 +78,7 @@ def test_flown_and_resumed_views_are_all_views_once_and_the_rest_passes_every_ch
         assert rest.plan.sorties[0].duration_s <= sortie.duration_s + 10.0
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(data=st.data())
 def test_views_skipped_in_the_middle_are_flown_and_those_done_are_not(data: st.DataObject) -> None:

@@ -50,6 +50,7 @@ def brute_force(travel_s: Floats, service_s: Floats, covers: Covers, n_things: i
     return best
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), n=st.integers(1, 6), n_things=st.integers(1, 8))
 def test_the_route_is_the_shortest_of_all_on_small_instances(seed: int, n: int, n_things: int) -> None:

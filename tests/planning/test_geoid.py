@@ -89,6 +89,7 @@ def test_the_source_grid_is_reproduced_to_half_a_millimetre() -> None:
     np.testing.assert_allclose(nodes, source_m[rows, columns], atol=0.000501)
 
 
+@pytest.mark.slow
 def test_packing_the_grid_again_gives_the_file_that_is_carried() -> None:
     import lzma
 

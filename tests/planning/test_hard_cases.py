@@ -97,6 +97,7 @@ def test_airspace_that_is_only_the_column_above_home_is_refused() -> None:
         plan_kiosk(kiosk(airspace=narrow))
 
 
+@pytest.mark.slow
 def test_a_no_fly_volume_over_everything_but_home_leaves_what_can_be_seen_from_there() -> None:
     ring = NoFlyZone("ring", ((-40.0, -24.0), (40.0, -24.0), (40.0, 40.0), (-40.0, 40.0)), -1.0, 90.0)
     model = kiosk(airspace=Airspace((-40.0, -40.0, 3.0), (40.0, 40.0, 40.0), 0.0, (ring,)))

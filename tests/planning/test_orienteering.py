@@ -103,6 +103,7 @@ def scores(folder: Path, files: list[Path], max_rounds: int | None) -> list[tupl
     return found
 
 
+@pytest.mark.slow
 def test_published_best_scores_are_reached_on_most_instances(shared_data: Path) -> None:
     folder = shared_data / "routing" / "orienteering"
     found = scores(folder, sorted(folder.glob("*/*.txt"))[::5], max_rounds=400)

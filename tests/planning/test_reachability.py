@@ -21,6 +21,7 @@ from planning.reachability import elevation_range_rad, find_reachable
 from planning.scenes import SCENES
 from planning.site import Airspace, NoFlyZone, panel_corners
 from planning.space import free_space
+from tests.slow import slow
 
 CAMERA = profile("m3e").camera
 
@@ -58,7 +59,7 @@ def sections_hit(model, space, n_seeds=6, n=3000):
 
 
 @pytest.mark.parametrize(
-    ("scene", "occlusion"), [("office", False), ("library", False), ("court", True), ("roof", False)]
+    ("scene", "occlusion"), [("office", False), ("library", False), slow("court", True), ("roof", False)]
 )
 def test_nothing_proven_unreachable_is_ever_seen_from_an_allowed_place(scene, occlusion):
     model, space, found = whole_scene(scene, occlusion)

@@ -26,6 +26,7 @@ from planning.routing.sorties import (
 )
 from planning.routing.tsplib import read_instance
 from tests.planning.routing_cases import Cancelling, Counting, distances, fewest_by_force, random_distances
+from tests.slow import slow
 
 
 def facade_problem(n: int, budget_s: float, seed: int = 0) -> SortieProblem:
@@ -106,7 +107,7 @@ def test_a_tour_is_cut_where_trying_every_cut_would_cut_it(n: int, seed: int, fe
     assert (len(cut) if fewest_first else 0, sum(sortie_durations_s(problem, cut))) == min(options)
 
 
-@pytest.mark.parametrize(("n", "budget_s"), [(60, 300.0), (150, 600.0)])
+@pytest.mark.parametrize(("n", "budget_s"), [(60, 300.0), slow(150, 600.0)])
 def test_sorties_keep_the_battery_and_hardly_need_more_than_the_proven_fewest(n: int, budget_s: float) -> None:
     problem = facade_problem(n, budget_s)
     sorties = solve_sorties(problem, max_rounds=10_000)

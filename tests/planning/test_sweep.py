@@ -50,6 +50,7 @@ def test_address_where_no_scheduler_answers_is_a_clear_error():
         sweep(math.sqrt, ARGUMENTS, address="tcp://127.0.0.1:1")
 
 
+@pytest.mark.slow
 def test_nothing_of_a_client_that_found_no_scheduler_is_left_to_be_collected_later():
     distributed = pytest.importorskip("distributed")
     gc.disable()

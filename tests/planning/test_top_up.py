@@ -209,6 +209,7 @@ def test_a_full_battery_is_taken_where_the_one_on_board_does_not_suffice() -> No
     assert (found.on_board, found.closed, len(found.plan.sorties)) == (False, found.wanted, 1)
 
 
+@pytest.mark.slow
 def test_the_battery_on_board_is_flown_first_where_full_ones_do_not_suffice() -> None:
     plan = flown_plan()
     short = replace(plan, rules=replace(plan.rules, battery_reserve=0.97))
@@ -224,6 +225,7 @@ def test_the_battery_on_board_is_flown_first_where_full_ones_do_not_suffice() ->
         assert sortie.duration_s <= usable_battery_s(short.aircraft, short.rules) + 30.01
 
 
+@pytest.mark.slow
 def test_a_battery_on_board_that_reaches_nothing_is_left_out() -> None:
     plan = flown_plan()
     short = replace(plan, rules=replace(plan.rules, battery_reserve=0.97))
@@ -244,6 +246,7 @@ def test_as_many_full_batteries_as_it_takes_close_everything() -> None:
     assert_keeps_the_contract(kiosk(), found.plan)
 
 
+@pytest.mark.slow
 def test_what_is_only_out_of_reach_stays_in_sight_round_after_round(monkeypatch: pytest.MonkeyPatch) -> None:
     """With the plan's own views as only candidates: after the first round only those within reach are known."""
     monkeypatch.setattr(closing_candidates, "_places", lambda *_: np.zeros((0, 3)))

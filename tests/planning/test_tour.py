@@ -24,6 +24,7 @@ from tests.planning.routing_cases import (
     shortest_by_force,
     symmetric_costs,
 )
+from tests.slow import slow
 
 
 @given(cost=symmetric_costs(), closed=st.booleans())
@@ -93,7 +94,7 @@ def test_a_descended_tour_is_optimal_among_all_exchanges_of_three_legs(seed: int
 
 
 @pytest.mark.parametrize(
-    ("name", "optimum"), [("kroA100", 21282), ("lin318", 42029), ("pcb442", 50778), ("u724", 41910)]
+    ("name", "optimum"), [("kroA100", 21282), ("lin318", 42029), ("pcb442", 50778), slow("u724", 41910)]
 )
 def test_published_optima_are_met_within_half_a_percent(shared_data: Path, name: str, optimum: int) -> None:
     cost = read_instance(shared_data / "routing" / "tsplib" / f"{name}.tsp").cost

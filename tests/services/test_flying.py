@@ -21,6 +21,7 @@ from planning.request import PlanRequest
 from planning.scenes import office, single_panel, write_scene
 from planning.site_file import read_site
 from tests.planning.revision.cases import QUICK
+from tests.slow import slow
 
 BOTH = pytest.mark.parametrize("autopilot", list(Autopilot))
 POSITION_M, HEADING_DEG, PITCH_DEG, COVERED, DURATION = 0.5, 3.0, 2.0, 0.97, 0.10
@@ -70,8 +71,15 @@ def test_the_office_is_flown_as_planned(model, plan, autopilot):
     assert not [f for f in flown.flight.report.findings if f.severity == "error"]
 
 
-@BOTH
-@pytest.mark.parametrize("profile", ["ardupilot", "px4"])
+@pytest.mark.parametrize(
+    ("autopilot", "profile"),
+    [
+        slow(Autopilot.ARDUPILOT, "ardupilot"),
+        (Autopilot.ARDUPILOT, "px4"),
+        slow(Autopilot.PX4, "ardupilot"),
+        slow(Autopilot.PX4, "px4"),
+    ],
+)
 def test_the_office_is_flown_as_planned_by_self_built_aircraft(model, autopilot, profile):
     plan = self_built(profile)
     assert_kept(fly_plan(plan, model, FlightWish(autopilot=autopilot)), plan)
@@ -86,7 +94,7 @@ def test_the_whole_office_is_flown_as_planned_in_several_sorties(model, autopilo
     assert_kept(flown, plan)
 
 
-@BOTH
+@pytest.mark.parametrize("autopilot", [Autopilot.PX4, slow(Autopilot.ARDUPILOT)])
 def test_the_same_seed_gives_the_same_flight_and_another_one_another(small, autopilot):
     site, plan = small
     wish = FlightWish(autopilot=autopilot, conditions=Conditions(wind_m_s=5.0, fix="single"), seed=3)
@@ -203,6 +211,7 @@ def test_sorties_flown_at_a_link_are_kept_when_a_later_one_fails(tmp_path, monke
     assert len(read_flight(out).sorties) == 1
 
 
+@pytest.mark.slow
 def test_what_a_vehicle_at_a_link_flew_before_it_vanished_is_kept(tmp_path, monkeypatch):
     from groundstation.services import flying
 

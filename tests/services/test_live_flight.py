@@ -30,6 +30,7 @@ from missions.mavlink.messages import MissionAck
 from missions.simulator.scene import Conditions
 from planning.errors import MissionError
 from tests.services.live_cases import SPEED_UP, Follower, Reopening, planned, simulation, sortie
+from tests.slow import slow
 
 
 @pytest.fixture
@@ -60,7 +61,7 @@ def fly(flight, follower):
     flight.request(Request.START)
 
 
-@pytest.mark.parametrize("autopilot", Autopilot)
+@pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_a_sortie_is_flown_from_connecting_to_the_report(flight, tmp_path, autopilot):
     live, follower = flight(simulation(autopilot=autopilot))
     fly(live, follower)
@@ -84,6 +85,7 @@ def test_a_sortie_is_flown_from_connecting_to_the_report(flight, tmp_path, autop
     assert len(logged.photos) == len(photos)
 
 
+@pytest.mark.slow
 def test_the_report_compares_with_how_long_the_items_take(flight):
     live, follower = flight()
     fly(live, follower)
@@ -219,6 +221,7 @@ def test_disconnecting_in_flight_keeps_what_was_flown(flight):
     assert read_flight(ended.path).sorties
 
 
+@pytest.mark.slow
 def test_a_folder_that_cannot_be_written_is_told_and_replaced(flight, tmp_path):
     blocked = tmp_path / "blocked"
     blocked.write_text("a file where the folder should be")
@@ -271,6 +274,7 @@ def test_a_mission_that_the_vehicle_refuses_is_never_called_on_board(flight):
     assert follower.view.on_board.mission is None
 
 
+@pytest.mark.slow
 def test_photos_of_an_earlier_battery_count_on(flight):
     live, follower = flight()
     fly(live, follower)

@@ -165,6 +165,7 @@ def test_quick_pictures_are_as_large_as_the_machine_allows_and_never_larger_than
     assert MAX_WIDTH_PX == 1280
 
 
+@pytest.mark.slow
 def test_a_tower_of_thousands_of_panels_is_photographed():
     model = tower()
     assert model.site.n_panels > 3000

@@ -415,6 +415,7 @@ def test_identifiers_that_differ_only_in_case_get_files_that_differ_in_more(tmp_
     assert is_same(open_project(tmp_path / "p").document, made)
 
 
+@pytest.mark.slow
 def test_a_tower_saves_in_well_under_a_second_when_only_a_plan_has_changed(tmp_path):
     folder = tmp_path / "p"
     tower = Document(SCENES["tower"]()).with_plan(PlanEntry("plan-1", "560", plan(n_views=560)))

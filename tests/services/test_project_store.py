@@ -116,6 +116,7 @@ def test_any_sequence_of_saves_that_succeed_fail_or_crash_holds_a_whole_project(
         assert opened.notes == ()
 
 
+@pytest.mark.slow
 def test_a_disk_may_be_full_to_any_degree(tmp_path):
     with small_disk(tmp_path / "disk", 400) as disk:
         if disk is None:

@@ -114,6 +114,7 @@ def test_without_any_record_everything_is_missing() -> None:
     assert found.wanted == found.promised
 
 
+@pytest.mark.slow
 def test_what_the_battery_leaves_open_is_a_warning_with_its_number() -> None:
     charge = 0.92 + 100.0 / planned().aircraft.endurance_s
     found, findings = top_up_flight(opened([]), replace(SOON, battery=charge, time_budget_s=0.4), prepared())

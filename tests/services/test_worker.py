@@ -17,6 +17,7 @@ from planning.progress import QUIET, StopRequest, Trace, never
 from planning.request import GreedyParameters, PlanRequest
 from planning.scenes import SCENES
 from tests.planning.plan_cases import kiosk
+from tests.slow import slow
 
 MAIN_FILE = """
 import sys
@@ -103,7 +104,7 @@ def test_the_work_is_done_in_one_other_process(worker):
 
 
 @pytest.mark.parametrize(
-    "scene", [SCENES["single-panel"], kiosk], ids=["a single panel", "kiosk, whose walls hide one another"]
+    "scene", [SCENES["single-panel"], slow(kiosk)], ids=["a single panel", "kiosk, whose walls hide one another"]
 )
 def test_a_plan_is_the_one_that_is_made_here(worker, scene):
     model, request = scene(), PlanRequest(n_views=2, greedy=GreedyParameters(n_candidates=400), time_budget_s=60.0)
@@ -170,7 +171,7 @@ def test_a_result_that_cannot_be_sent_is_an_error_and_not_the_end_of_the_process
     assert worker.run(where) == process
 
 
-@pytest.mark.parametrize(("end", "words"), [(die, "exit status 7"), (die_of_memory, "memory")])
+@pytest.mark.parametrize(("end", "words"), [slow(die, "exit status 7"), (die_of_memory, "memory")])
 def test_a_lost_process_is_an_error_and_the_next_call_has_a_new_one(worker, end, words):
     if end is die_of_memory and sys.platform == "win32":
         pytest.skip("Windows has no such signal")
@@ -179,6 +180,7 @@ def test_a_lost_process_is_an_error_and_the_next_call_has_a_new_one(worker, end,
     assert worker.run(double, 4) == 8
 
 
+@pytest.mark.slow
 def test_a_process_that_was_started_early_works_as_any_other():
     early = Worker()
     early.start()
@@ -187,6 +189,7 @@ def test_a_process_that_was_started_early_works_as_any_other():
     early.close()
 
 
+@pytest.mark.slow
 def test_closing_ends_work_at_once_as_if_it_were_cancelled():
     worker, began, ended = Worker(), threading.Event(), []
 
@@ -227,6 +230,7 @@ def test_a_job_works_apart_with_a_worker_and_here_without_one(worker):
         assert "doubling" in [event.stage for event in events if isinstance(event, JobProgress)]
 
 
+@pytest.mark.slow
 def test_the_program_s_main_file_is_not_run_again(tmp_path):
     import subprocess
 

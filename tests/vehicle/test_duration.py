@@ -17,6 +17,7 @@ from planning.request import PlanRequest
 from planning.scenes import single_panel
 from planning.timing import leg_times_s, motion_limits
 from tests.planning.revision.cases import QUICK
+from tests.slow import slow
 
 LEGS = [
     (5.61, -0.02, 6.10),
@@ -43,7 +44,7 @@ def test_legs_take_what_a_real_arducopter_took():
     assert abs(differences.mean()) < 0.15
 
 
-@pytest.mark.parametrize("profile_id", ["ardupilot", "m3e"])
+@pytest.mark.parametrize("profile_id", ["ardupilot", slow("m3e")])
 def test_the_simulated_vehicle_takes_what_its_items_are_reckoned_to(profile_id):
     """The M3E states no jerk: both fly with the autopilot's own."""
     model = single_panel()

@@ -19,6 +19,7 @@ from missions.simulator.effects.link_loss import LossyLink
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
 from tests.missions.simulator.flying import planned
+from tests.slow import slow
 
 
 @cache
@@ -37,8 +38,15 @@ def flown(autopilot, loss, seed):
     return outcome.record, plan
 
 
-@pytest.mark.parametrize("autopilot", list(Autopilot))
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize(
+    ("autopilot", "seed"),
+    [
+        (Autopilot.ARDUPILOT, 0),
+        slow(Autopilot.PX4, 0),
+        slow(Autopilot.ARDUPILOT, 1),
+        (Autopilot.PX4, 1),
+    ],
+)
 def test_photos_whose_reports_the_radio_lost_are_not_taken_for_missing_ones(autopilot, seed):
     """All were taken: PX4's camera tells of them when asked again, ArduPilot's says how many there were."""
     record, plan = flown(autopilot, 0.25, seed)

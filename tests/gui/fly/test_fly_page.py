@@ -334,6 +334,7 @@ def test_times_of_notes_carry_seconds_into_minutes(application, page):
     assert page.notes.texts().endswith("1:00.0  nearly a minute")
 
 
+@pytest.mark.slow
 def test_a_finding_of_the_report_leads_to_its_view(application, desk, page):
     connect(application, page)
     take_off(application, page)
@@ -404,6 +405,7 @@ def test_parameters_of_a_real_vehicle_are_set_only_where_allowed_and_after_a_que
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
 
+@pytest.mark.slow
 def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_picture(application, desk, page, tmp_path):
     from planning.scenes import write_scene
     from planning.site_file import read_site

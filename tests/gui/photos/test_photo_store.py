@@ -66,6 +66,7 @@ def test_a_file_that_has_gone_is_told(application, store, photos, tmp_path):
     assert came[0].levels == ()
 
 
+@pytest.mark.slow
 def test_thousands_of_photos_are_shown_at_once_and_few_of_them_decoded(application, store, photos):
     from groundstation.gui.photos.photo_store import MAX_WANTED
     from groundstation.gui.photos.place_map import PlaceMap

@@ -74,6 +74,7 @@ def test_a_record_length_of_zero_does_not_stop_the_reader(tmp_path: Path) -> Non
     assert len(flights.records[0].photos) == 6
 
 
+@pytest.mark.slow
 def test_a_log_of_nothing_but_starts_of_frames_is_refused_at_once(tmp_path: Path) -> None:
     content = write.tlog(FLOWN, SITE)[:200] + (bytes(8) + b"\xfd") * 300_000
     start_s = time.perf_counter()

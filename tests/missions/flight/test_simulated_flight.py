@@ -23,9 +23,10 @@ from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.findings import Severity
 from tests.missions.simulator.flying import planned
+from tests.slow import slow
 
 
-@pytest.mark.parametrize("autopilot", list(Autopilot))
+@pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_the_telemetry_log_tells_what_the_live_record_tells(tmp_path: Path, autopilot: Autopilot) -> None:
     model, plan = planned("single-panel", 6)
     site = model.site

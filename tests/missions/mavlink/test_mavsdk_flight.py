@@ -17,6 +17,7 @@ from missions.simulator.vehicle import SimulatedVehicle
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4
 from tests.missions.plans import make_plan, ring
 from tests.missions.simulator.ground import PointMass
+from tests.slow import slow
 
 mavsdk = pytest.importorskip("mavsdk", reason="MAVSDK is not installed")
 action = pytest.importorskip("mavsdk.plugins.action")
@@ -37,7 +38,7 @@ def heard(changes: queue.SimpleQueue[Any], wanted: Any) -> list[Any]:
     return told
 
 
-@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
+@pytest.mark.parametrize("autopilot", [ARDUPILOT, slow(PX4)])
 def test_mavsdks_client_flies_our_mission_to_the_end_on_our_vehicle(autopilot: Autopilot) -> None:
     plan = make_plan([(ring(4), {})])
     (mission,) = missions_from_plan(plan)

@@ -33,6 +33,7 @@ from tests.missions.mavlink.transfer.test_simulated_vehicle import planned
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4
 from tests.missions.plans import example_plan
 from tests.missions.simulator.ground import ORIGIN, PointMass
+from tests.slow import slow
 
 mavsdk = pytest.importorskip("mavsdk", reason="MAVSDK is not installed")
 mission_raw = pytest.importorskip("mavsdk.plugins.mission_raw")
@@ -87,8 +88,9 @@ def ours(items: list[Any]) -> tuple[MissionItemInt, ...]:
     return tuple(MissionItemInt(1, 1, **{name: getattr(item, name) for name in names}) for item in items)
 
 
-@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
-@pytest.mark.parametrize("kind", ["udp", "tcpin"])
+@pytest.mark.parametrize(
+    ("autopilot", "kind"), [(ARDUPILOT, "udp"), (PX4, "tcpin"), slow(ARDUPILOT, "tcpin"), slow(PX4, "udp")]
+)
 def test_mavsdks_client_uploads_to_our_vehicle_and_reads_back_the_same(autopilot: Autopilot, kind: str) -> None:
     lists = {
         MissionType.MISSION: to_wire(planned(autopilot, 60), autopilot),

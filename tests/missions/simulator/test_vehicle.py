@@ -53,6 +53,7 @@ from planning.scenes import SCENES
 from tests.missions.plans import example_plan, plans
 from tests.missions.simulator.flying import bundled
 from tests.missions.simulator.ground import ARDUPILOT, ORIGIN, PX4, Ground, PointMass, at, item, planned
+from tests.slow import slow
 
 
 @cache
@@ -107,7 +108,7 @@ def test_views_of_a_site_are_photographed_one_by_one(autopilot: Autopilot, scene
     check_photos(ground, plan, mission, 0.5, 2.0)
 
 
-@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
+@pytest.mark.parametrize("autopilot", [ARDUPILOT, slow(PX4)])
 def test_planned_office_is_flown_with_as_many_photos_as_views(autopilot: Autopilot) -> None:
     model = SCENES["office"]()
     plan = planned_office()
@@ -124,7 +125,7 @@ def test_heights_above_sea_and_above_home_lead_to_the_same_places(autopilot, ref
         check_photos(fly(plan, mission, autopilot, reference=reference), plan, mission, 0.05, 0.1)
 
 
-@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
+@pytest.mark.parametrize("autopilot", [slow(ARDUPILOT), PX4])
 @given(plan=plans())
 @settings(max_examples=3)
 def test_plans_anywhere_on_the_globe_are_flown_with_every_photo(autopilot: Autopilot, plan: Plan) -> None:
@@ -161,6 +162,7 @@ def test_steps_that_are_no_duration_are_wrong_calls(duration_s: float) -> None:
         SimulatedVehicle(ARDUPILOT, PointMass(), ORIGIN).step(duration_s)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_control_step_changes_photos_by_less_than_a_centimetre(autopilot: Autopilot) -> None:
     """What accuracy costs: ten times the decisions move no photo by more than the aircraft sways in still air."""
@@ -309,7 +311,7 @@ def odd_items(draw: st.DrawFn) -> MissionItemInt:
     return MissionItemInt(1, 1, 0, frame, command, 0, 1, *p, draw(whole), draw(whole), draw(numbers))
 
 
-@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
+@pytest.mark.parametrize("autopilot", [ARDUPILOT, slow(PX4)])
 @given(odd=st.lists(odd_items(), min_size=1, max_size=12))
 @settings(max_examples=12, phases=(Phase.explicit, Phase.generate))
 def test_missions_of_odd_items_are_flown_or_refused_without_a_crash(autopilot: Autopilot, odd) -> None:

@@ -23,6 +23,7 @@ from planning.site_import.options import ImportOptions
 from planning.space import SAFETY_MARGIN_M
 from tests.planning.insight.cases import CAMERA, NEAR, prepared, reasons, scene
 from tests.planning.plan_cases import distances, inside_zone, lines_free, solid_triangles
+from tests.slow import slow
 
 TOLERANCE_M = 0.01
 """Margins of 2 mm, and of 1e-5 rad over some hundred metres."""
@@ -110,7 +111,7 @@ def test_sections_that_can_be_covered_have_no_reason_and_all_that_cannot_have_on
     assert found.of(panel, section) == ()
 
 
-@pytest.mark.parametrize("name", ["kiosk", "canyon", pytest.param("court", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["kiosk", slow("canyon"), slow("court")])
 def test_random_places_find_no_rule_that_would_give_for_much_less(name):
     site = prepared(name)
     model, found = scene(name), reasons(name)

@@ -13,6 +13,7 @@ from planning.photo_files.exif import Tag, read_exif
 from planning.photo_files.metadata import read_photo
 from planning.photo_files.xmp import MAX_PROPERTIES, read_xmp
 from tests.planning.photo_files.photo_writer import exif_part, extended_segments, gps_tags, jpeg, packet, save
+from tests.slow import slow
 
 LONGEST_S = 1.0
 N_MUTANTS = 6_000
@@ -57,7 +58,7 @@ def mutants(content, n, seed):
         yield bytes(made)
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, slow(1)])
 def test_mutated_photos_are_read_or_refused_in_time(tmp_path, seed):
     path, n_read = tmp_path / "DJI_0001.JPG", 0
     for content in mutants(whole_photo(), N_MUTANTS // 2, seed):

@@ -17,6 +17,7 @@ from planning.revision import Revision, delete, lock, move, revise
 from planning.speed_profile import fastest_profile
 from planning.timing import flight_path, motion_limits, stopping_times_s
 from tests.planning.revision.cases import SETTINGS, Edit, assert_is_as_from_scratch, edits, planned, prepared
+from tests.slow import slow
 
 OURS = ("sorties", "path", "length", "duration", "coverage")
 """Rules about what the plan says of itself: an edit leaves them kept."""
@@ -29,7 +30,9 @@ def assert_states_the_truth(revision: Revision) -> None:
     assert set(kept) == nothing_covered | nothing_flown
 
 
-@pytest.mark.parametrize("name", sorted(SETTINGS))
+@pytest.mark.parametrize(
+    "name", [slow(name) if name in ("canyon", "short sorties") else name for name in sorted(SETTINGS)]
+)
 def test_any_edits_leave_what_a_revision_from_scratch_gives(name: str) -> None:
     @settings(max_examples=15)
     @given(st.lists(edits(), min_size=1, max_size=5))

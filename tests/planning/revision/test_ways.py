@@ -25,6 +25,7 @@ def ways_of(name: str) -> Ways:
     return Ways.over(prepared(name).problem.roadmap, M3E, FlightRules())
 
 
+@pytest.mark.slow
 def test_ways_keep_every_distance_and_are_those_of_a_table_of_the_same_places() -> None:
     ways, model = ways_of("kiosk"), kiosk()
     places = [HOME, *(tuple(stop) for stop in allowed_stops(model, 8, height_m=5.0).tolist())]

@@ -80,6 +80,7 @@ def test_an_empty_model_and_one_without_points_come_back(tmp_path, kind):
     assert len(read_model(tmp_path / "1").points) == 0
 
 
+@pytest.mark.slow
 def test_the_real_model_goes_through_both_formats_unchanged(shared_data, tmp_path):
     real = read_model(shared_data / "multiview" / "lund_door" / "colmap_ground_truth")
     assert len(real.images) == 12

@@ -16,6 +16,7 @@ from reconstruction.colmap.georeference import angle_between_deg, georeference, 
 from reconstruction.colmap.record import rotation_of
 from reconstruction.colmap.similarity import Similarity
 from tests.reconstruction.colmap.models import covariance, model, photos, turned
+from tests.slow import slow
 
 AWAY = Similarity(0.137, rotation_of((0.3, -0.5, 0.7, 0.2)), np.array([4.0, -9.0, 2.0]))
 """From the site's frame to a model's own."""
@@ -70,7 +71,7 @@ def test_photos_in_one_row_are_turned_by_their_cameras_angles():
     assert_posed(posed_photos(in_enu(model(row), AWAY), found.enu_from_model, FOLDER), row, 0.3, 1.0)
 
 
-@pytest.mark.parametrize(("sigma_m", "sigma_deg"), [(2.0, 0.5), (0.02, 20.0)], ids=["angles", "positions"])
+@pytest.mark.parametrize(("sigma_m", "sigma_deg"), [slow(2.0, 0.5), (0.02, 20.0)], ids=["angles", "positions"])
 def test_what_is_known_better_decides(sigma_m, sigma_deg):
     """Errors of the model's angles stay below those of either alone: 2 m on a flight of 12 m, or 20 degrees."""
     errors = []

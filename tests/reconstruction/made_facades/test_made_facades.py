@@ -85,6 +85,7 @@ def test_index_image_shows_the_polygons_of_the_panels(layout: Layout, curvature:
     np.testing.assert_array_equal(made.index[~doubtful], expected[~doubtful])
 
 
+@pytest.mark.slow
 def test_picture_is_the_mean_of_what_a_finer_one_shows() -> None:
     layout = Layout(5, 9, frame_depth_m=0.05)
     case = simple_case(layout, SOFTLY, intrinsics=SMALL, oblique_deg=20.0)

@@ -145,6 +145,7 @@ def test_where_learning_light_took_all_the_time_there_is_no_step(make):
     assert trainer.progress == 1.0
 
 
+@pytest.mark.slow
 def test_splats_are_added_only_between_the_shares_that_are_told(make):
     config = replace(CONFIG, iterations=220, densify_from=0.7, densify_until=0.95, densification="mcmc", max_splats=400)
     trainer, numbers = make(config), []

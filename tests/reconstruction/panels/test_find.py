@@ -14,6 +14,7 @@ from reconstruction.cameras import PosedPhoto
 from reconstruction.made_facades.record import MadeFacade
 from reconstruction.panels.find import FindParameters, find_panels
 from tests.reconstruction.made_photos import coarse_model, made_photos
+from tests.slow import slow
 
 TOLD = np.diag([0.02**2] * 3 + [np.radians(0.1) ** 2] * 3)
 """Covariance that the poses state; they are exact."""
@@ -34,7 +35,7 @@ def load_from(photos: list[MadeFacade]):  # type: ignore[no-untyped-def]
     return load
 
 
-@pytest.mark.parametrize("curvature", [0.0, 0.05])
+@pytest.mark.parametrize("curvature", [slow(0.0), 0.05])
 def test_every_panel_is_found_in_3d_within_centimetres(curvature: float) -> None:
     photos = made_photos(curvature)
     wall = photos[0].case.wall

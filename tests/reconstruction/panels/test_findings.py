@@ -30,6 +30,7 @@ def with_heading_sigma(photos: Sequence[PosedPhoto], degrees: float) -> list[Pos
     return [replace(photo, pose=replace(photo.pose, covariance=covariance)) for photo in photos]
 
 
+@pytest.mark.slow
 def test_poses_that_cannot_tell_panels_apart_are_warned_of() -> None:
     photos, panels = found()
     (facade,) = panels.facades

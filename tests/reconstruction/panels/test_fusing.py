@@ -80,6 +80,7 @@ def bare(grid: FacadeGrid) -> FacadeGrid:
     return FacadeGrid("A", grid.rectification, (), (), ())
 
 
+@pytest.mark.slow
 def test_photos_that_agree_are_not_searched_together() -> None:
     found = searched("auto")
     fusion = found.decisions[1]

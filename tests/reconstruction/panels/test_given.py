@@ -25,6 +25,7 @@ from reconstruction.segmentation.cells import facade_grid
 from reconstruction.segmentation.record import FacadeGrid, GridLine, InclinedLine, Segmentation
 from tests.reconstruction.made_photos import coarse_model, made_photos
 from tests.reconstruction.panels.test_find import posed
+from tests.slow import slow
 
 WIDTH_M = 0.06
 NAMES = ("a.jpg", "b.jpg")
@@ -74,7 +75,7 @@ def errors_m(found: Any, truth: MadeFacade) -> np.ndarray[Any, Any]:
     return np.concatenate([panel.corners_enu_m - corners[panel.row, panel.column] for panel in found.panels])
 
 
-@pytest.mark.parametrize("curvature", [0.0, 0.05])
+@pytest.mark.parametrize("curvature", [slow(0.0), 0.05])
 def test_given_grids_are_used_and_their_photos_not_searched(curvature: float) -> None:
     given = {name: drawn_by_hand(number, curvature) for number, name in enumerate(NAMES)}
     found = find_panels(named(curvature), coarse_model(made(curvature)[0].case.wall), never, given=given)
@@ -167,7 +168,7 @@ def test_files_of_other_photos_and_sizes_are_refused_in_words() -> None:
     assert len(found.facades[0].panels) == len(made()[1].panels)
 
 
-@pytest.mark.parametrize("kind", ["exact", "tangent", "polynomial"])
+@pytest.mark.parametrize("kind", [slow("exact"), "tangent", slow("polynomial")])
 def test_panels_are_found_through_every_view_of_a_round_wall(kind: ViewKind) -> None:
     photos = made(0.05)
     images = {name: photo.image for name, photo in zip(NAMES, photos, strict=True)}

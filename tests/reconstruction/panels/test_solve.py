@@ -123,6 +123,7 @@ def test_covariances_tell_the_errors_over_many_seeds(curvature: float) -> None:
     assert 1.0 < np.mean(squares) < 6.0
 
 
+@pytest.mark.slow
 def test_more_photos_make_better_corners_and_smaller_covariances() -> None:
     few, many = [], []
     for seed in range(5):

@@ -182,6 +182,7 @@ def test_photos_taken_twice_are_told_by_picture_and_place(tmp_path):
     assert check_quality(photos).alike == ((0, 1), (0, 2), (1, 2))
 
 
+@pytest.mark.slow
 def test_at_a_reduced_scale_strong_blur_is_found_and_sharp_photos_are_left_alone(tmp_path):
     """What changes with the scale: blur of 3 px is told down to 1/2, of 5 px down to 1/4, of 12 px down to 1/8."""
     least = {1: 2.0, 2: 3.0, 4: 5.0, 8: 12.0}

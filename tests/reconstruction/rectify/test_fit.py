@@ -55,6 +55,7 @@ def test_a_half_round_tower_is_found() -> None:
     assert 1.0 / found.surface.curvature_per_m == pytest.approx(10.0, abs=0.02)
 
 
+@pytest.mark.slow
 def test_curvature_and_its_standard_deviation_agree_with_the_truth_over_many_seeds() -> None:
     truth = surface(0.003)
     off = []

@@ -50,6 +50,7 @@ def test_the_choice_can_be_cancelled_and_one_photo_is_not_enough_for_one(found):
     assert choose_light(one, planes, CONFIG) == ("environment-map", ())
 
 
+@pytest.mark.slow
 def test_kernels_that_are_compiled_first_do_not_count_for_the_trials(found, monkeypatch):
     _, rays, planes, (name, _) = found
     now_s = [0.0]

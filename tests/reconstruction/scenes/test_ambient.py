@@ -159,6 +159,7 @@ def test_a_scene_without_bodies_needs_none() -> None:
     assert not decided.on
 
 
+@pytest.mark.slow
 def test_it_is_the_same_for_any_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     made = bundled_scene("concrete")
     view = photo((2.0, 12.0, 4.0), 170.0, -10.0, width_px=240, height_px=160, focal_px=160.0)

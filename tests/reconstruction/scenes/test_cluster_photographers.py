@@ -91,6 +91,7 @@ def test_only_a_worker_that_reads_the_token_writes_by_itself(scene, alone, tmp_p
     assert job.photos[0].path.exists() == (found == b"mine")
 
 
+@pytest.mark.slow
 def test_a_cancelled_run_leaves_nothing_behind_and_goes_on_without_the_cluster(scene, client, alone, tmp_path):
     job = job_for(scene, tmp_path)
     with pytest.raises(OperationCancelled):

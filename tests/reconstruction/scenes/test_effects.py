@@ -35,6 +35,7 @@ from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky, Texture
 from reconstruction.scenes.renderer import Photograph, Renderer, RenderSettings
 from reconstruction.scenes.taking import Taking
 from tests.reconstruction.scenes.small_scenes import MIRROR, board, facing_south, ground, photo, ramp, scene, with_panes
+from tests.slow import slow
 
 SUNNY = Sky(sun_heading_deg=180.0, sun_elevation_deg=40.0)
 
@@ -202,7 +203,7 @@ def test_noise_is_simulated_where_it_is_more_than_rounding(full_well_e: float, u
 
 
 @pytest.mark.parametrize(
-    ("name", "near"), [("planar", True), ("curved", True), ("planar-far", False), ("curved-far", False)]
+    ("name", "near"), [("planar", True), slow("curved", True), slow("planar-far", False), ("curved-far", False)]
 )
 def test_bundled_scenes_are_near_or_far_as_they_say(name: str, near: bool) -> None:
     made = bundled_scene(name)

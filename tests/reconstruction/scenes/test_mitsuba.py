@@ -121,6 +121,7 @@ def test_a_textured_wall_is_mirrored_alike() -> None:
     assert_agree_unless(shifted, scene(wall(COARSE), sky=LOW_SUN), camera((0.0, -3.0, 10.0)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("heading_deg", "index"), [(10.0, 2.2), (65.0, 1.1)])
 def test_double_panes_mirror_alike_at_all_angles(heading_deg: float, index: float) -> None:
     def of_other_glass(made: Scene) -> Scene:
@@ -131,11 +132,13 @@ def test_double_panes_mirror_alike_at_all_angles(heading_deg: float, index: floa
     assert_agree_unless(of_other_glass, made, camera(position, heading_deg))
 
 
+@pytest.mark.slow
 def test_without_fresnel_both_mirror_at_a_slant_as_at_normal_incidence() -> None:
     made = scene(wall(COARSE), glass=replace(GLAZED, coating=0.0), sky=LOW_SUN, room=0.05)
     assert_agree_unless(same, made, camera((-6.0, -2.0, 10.0), 70.0), {"Fresnel": "off"})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", ["panel tilt", "curvature"])
 def test_tilted_and_bowed_panes_mirror_alike(effect: str) -> None:
     bent = {"tilts_rad": np.array([[0.03, -0.02]]), "bows_per_m": np.array([[0.01, 0.02]])}
@@ -143,6 +146,7 @@ def test_tilted_and_bowed_panes_mirror_alike(effect: str) -> None:
     assert_agree_unless(same, made, camera((0.0, -3.0, 10.0)), {effect: "off"})
 
 
+@pytest.mark.slow
 def test_a_textured_wall_lies_alike_in_sun_and_shadow() -> None:
     def elsewhere(made: Scene) -> Scene:
         return replace(made, sky=replace(made.sky, sun_heading_deg=made.sky.sun_heading_deg + 8.0))
@@ -250,6 +254,7 @@ def test_settings_choose_the_renderer() -> None:
         RenderSettings(mitsuba_rays=0)
 
 
+@pytest.mark.slow
 def test_rooms_that_mitsuba_lacks_are_added_and_light_adds_up() -> None:
     made = build_scene(single_panel(), Look(near=False), 2)
     (taken,) = square_photos(made, Intrinsics(16, 12, 14.0, 14.0, 8.0, 6.0), 1, Path())

@@ -179,6 +179,7 @@ def test_the_number_of_threads_changes_nothing(monkeypatch: pytest.MonkeyPatch) 
     assert np.array_equal(several.normal_enu, one.normal_enu)
 
 
+@pytest.mark.slow
 def test_several_rays_where_detail_calls_for_them_do_nearly_as_well_as_everywhere() -> None:
     made = bundled_scene("planar")
     camera = photo((3.0, 13.0, 9.0), 178.0, width_px=120, height_px=90, focal_px=90.0)

@@ -28,6 +28,7 @@ def test_a_flat_facade_stands_on_a_plane_and_a_curved_one_on_its_cylinder():
     assert high[0] - low[0] == pytest.approx(34.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_panels_are_found_in_a_rendered_photo_where_its_truth_has_them():
     scene = bundled_scene("planar-far")
     (photo,) = square_photos(scene, LENS, 1, Path(), seed=2)

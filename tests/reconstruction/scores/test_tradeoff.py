@@ -52,6 +52,7 @@ def test_values_that_no_knob_takes_are_refused() -> None:
         SegmentVariants(view_kinds=("round",))
 
 
+@pytest.mark.slow
 def test_more_samples_of_a_row_take_the_posterior_and_change_what_is_compared() -> None:
     """Without the posterior no rows are compared, and the knob would turn nothing."""
     photo = scored(make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(640, 480))))

@@ -19,6 +19,7 @@ from reconstruction.segmentation.parameters import SegmentationParameters
 from reconstruction.segmentation.record import FacadeGrid
 from reconstruction.segmentation.segment import segment_image, segment_rectified
 from tests.reconstruction.segmentation.pictures import draw, spans
+from tests.slow import slow
 
 Array = NDArray[np.float64]
 
@@ -45,8 +46,8 @@ def tilts_deg(grid: FacadeGrid) -> list[float]:
     ("braces", "n_lines"),
     [
         (((0, 0, 8, 12),), 1),
-        (((2, 3, 6, 9),), 1),
-        (((0, 0, 8, 12), (8, 0, 0, 12)), 2),
+        slow(((2, 3, 6, 9),), 1),
+        slow(((0, 0, 8, 12), (8, 0, 0, 12)), 2),
         (((0, 0, 8, 6), (0, 12, 8, 6)), 2),
     ],
     ids=["one", "one that ends at nodes", "both ways", "two that meet"],
@@ -61,6 +62,7 @@ def test_braces_cut_the_panels_that_they_cross(braces: tuple[tuple[float, ...], 
     assert all(line.open_side == 0 and line.confidence > 0.9 for line in grid.inclined)
 
 
+@pytest.mark.slow
 def test_a_gable_ends_the_facade_and_its_short_rows_and_columns_are_found() -> None:
     grid, scores = found_in(Layout(top="gable", n_sloped_rows=6))
     assert (len(grid.rows), len(grid.columns), len(grid.inclined)) == (9, 13, 2)
@@ -71,12 +73,14 @@ def test_a_gable_ends_the_facade_and_its_short_rows_and_columns_are_found() -> N
     assert {(panel.row, panel.column) for panel in grid.panels}.isdisjoint(grid.missing)
 
 
+@pytest.mark.slow
 def test_the_slope_of_a_single_row_is_found_though_the_grid_ends_below_it() -> None:
     grid, scores = found_in(Layout(top="sloped"))
     assert len(grid.rows) == 9
     assert (scores.n_missed, scores.n_false) == (0, 0)
 
 
+@pytest.mark.slow
 def test_triangles_of_a_diagrid_without_mullions_are_faces_of_its_lines() -> None:
     ends = [(0.0, 0.5), (1 / 6, 4 / 6), (2 / 6, 5 / 6), (0.5, 1.0)]
     braces = tuple((0, a, 6, b) for a, b in ends) + tuple((0, b, 6, a) for a, b in ends)
@@ -88,7 +92,7 @@ def test_triangles_of_a_diagrid_without_mullions_are_faces_of_its_lines() -> Non
     assert scores.individual_miou > 0.98
 
 
-@pytest.mark.parametrize("tilt_deg", [2.0, 5.0])
+@pytest.mark.parametrize("tilt_deg", [2.0, slow(5.0)])
 def test_nearly_upright_profiles_are_not_straightened_away(tilt_deg: float) -> None:
     run = 8 * 2.4 * np.tan(np.radians(tilt_deg)) / 1.5
     grid, scores = found_in(Layout(braces=((0, 2, 8, 2 + run), (0, 6, 8, 6 + run))))
@@ -96,7 +100,7 @@ def test_nearly_upright_profiles_are_not_straightened_away(tilt_deg: float) -> N
     assert scores.n_missed == 0
 
 
-@pytest.mark.parametrize("tilt_deg", [0.0, 0.35])
+@pytest.mark.parametrize("tilt_deg", [slow(0.0), 0.35])
 def test_mirrored_roofs_and_shadows_cut_nothing(tilt_deg: float) -> None:
     roofs = replace(STRONG, opposite="roofs", tilt_deg=tilt_deg, pillow_deg=0.0)
     grid, _ = found_in(Layout(), roofs, seed=3)
@@ -104,6 +108,7 @@ def test_mirrored_roofs_and_shadows_cut_nothing(tilt_deg: float) -> None:
     assert all(panel.part == 0 for panel in grid.panels)
 
 
+@pytest.mark.slow
 def test_without_inclined_lines_nothing_changes_and_the_reason_is_told() -> None:
     photo = scored(make_facade(random_case("planar", 1, CAMERA)))
     with_search, without = (
@@ -127,7 +132,7 @@ def test_an_empty_facade_calls_for_no_search_and_says_why() -> None:
     assert "no inclined line has edges enough" in decision.reason
 
 
-@pytest.mark.parametrize("width_px", [600, 1600])
+@pytest.mark.parametrize("width_px", [600, slow(1600)])
 def test_braces_are_found_at_any_scale(width_px: int) -> None:
     layout = Layout(braces=((0, 0, 8, 12), (8, 0, 0, 12)))
     grid, scores = searched(simple_case(layout, STRONG, intrinsics=wide_camera(width_px, 3 * width_px // 4)))

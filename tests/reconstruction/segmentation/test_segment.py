@@ -83,6 +83,7 @@ def test_one_row_of_panels_is_found() -> None:
     check(segment_rectified(truth.picture), truth, 0.5)
 
 
+@pytest.mark.slow
 def test_two_hundred_columns_are_found() -> None:
     columns, rows = spans(np.full(200, 14.0), 4.0, 20.0), spans(np.full(3, 40.0), 4.0, 20.0)
     truth = draw(columns, rows, (3650, 180), 4.0, seed=1)

@@ -18,6 +18,7 @@ from reconstruction.scores.run import own_method, score_answer
 from reconstruction.scores.sets import scored
 from reconstruction.segmentation.evidence import ENOUGH, UNSEEN, Evidence
 from reconstruction.segmentation.stillness import N_BANDS, OF_A_WITNESS, Stillness, spread_in_bands
+from tests.slow import slow
 
 Array = NDArray[np.float64]
 WIDTH = 200
@@ -95,7 +96,7 @@ def scores(shape: str, seed: int) -> PhotoScores:
     return score_answer(photo, own_method()(photo, QUIET))
 
 
-@pytest.mark.parametrize(("shape", "seed"), [("curved", 32), ("planar", 56)])
+@pytest.mark.parametrize(("shape", "seed"), [slow("curved", 32), ("planar", 56)])
 def test_dark_frames_before_a_mirrored_grid_are_found(shape: str, seed: int) -> None:
     """Columns drowned in the mirrored grid; rows, since its bars were taken for lines that have to be straightened."""
     found = scores(shape, seed)

@@ -24,6 +24,7 @@ from tests.reconstruction.splatting.learned_scenes import (
 from tests.reconstruction.splatting.test_densify_adaptive import QUICK, forced, grey_wall, half_detailed
 from tests.reconstruction.splatting.test_densify_mcmc import QUICK as QUICK_CHAIN
 from tests.reconstruction.splatting.test_densify_mcmc import relocated
+from tests.slow import slow
 
 VIEW = view_from((0.0, -4.0, 0.3))
 
@@ -39,7 +40,7 @@ def scene():
 
 
 @pytest.mark.parametrize(
-    ("strategy", "times"), [(AdaptiveControl(QUICK, Limits(n_most=300)), 1.3), (MarkovChain(QUICK_CHAIN), 1.2)]
+    ("strategy", "times"), [(AdaptiveControl(QUICK, Limits(n_most=300)), 1.3), slow(MarkovChain(QUICK_CHAIN), 1.2)]
 )
 def test_detail_is_learned_better_with_more_ellipsoids(scene, strategy, times):
     views, truths, plain = scene

@@ -84,6 +84,7 @@ def test_what_is_seen_nowhere_is_relocated_too():
     assert abs(splats.means[0, 1].item()) < 1e-6
 
 
+@pytest.mark.slow
 def test_detail_is_learned_better_with_more_splats():
     views = views_around(3, width=40, height=30, f_px=42.0)
     truths = truths_of(half_detailed(), views)

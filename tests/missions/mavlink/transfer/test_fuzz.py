@@ -106,6 +106,7 @@ def mangled(n_frames: int) -> None:
     assert n_verified > 0
 
 
+@pytest.mark.slow
 def test_five_thousand_broken_frames_end_equal_or_clearly_not() -> None:
     mangled(5_000)
 
