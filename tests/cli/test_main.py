@@ -164,6 +164,7 @@ def test_a_reader_that_leaves_early_is_no_error_message(pane, unbuffered):
     assert "Exception ignored" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="closes file descriptors as a POSIX shell does")
 def test_closed_streams_do_no_harm(pane):
     line = f'"{sys.executable}" app.py check "{pane / "plan.json"}" "{pane / "site.json"}" >&- 2>&-'

@@ -55,6 +55,7 @@ def test_photos_and_a_mesh_become_a_site_that_can_be_planned(flight, found, refl
     assert planned.json["covered"] > 0
 
 
+@pytest.mark.slow
 def test_a_site_gets_its_panels_anew_and_keeps_the_rest(flight, found, reflight, tmp_path):
     folder, made = flight
     first, second = found[0], tmp_path / "b.site.json"

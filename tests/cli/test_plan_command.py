@@ -88,6 +88,7 @@ def test_a_pixel_size_becomes_the_distance_at_which_the_camera_reaches_it(reflig
     assert plan.camera.gsd_m(plan.constraints.max_distance_m) == pytest.approx(0.005)
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_views(reflight, pane, tmp_path):
     plans = []
     for name in ("a.json", "b.json"):

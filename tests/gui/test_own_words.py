@@ -361,6 +361,7 @@ def test_what_is_wrong_with_a_site_file_is_german(german, tmp_path, changes):
     assert in_german(str(caught.value)) != str(caught.value)
 
 
+@pytest.mark.slow
 def test_the_notes_of_an_import_are_german_and_without_metres_in_the_imperial_window(german, shared_data):
     files = ("buildings/cityjson/zurich_subset_lod2.json", "bim/curtain_wall_small.ifc")
     previews = [preview_import(shared_data / name, ImportOptions()) for name in files]

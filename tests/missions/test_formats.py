@@ -99,6 +99,7 @@ def waypoints_of(sortie: Sortie, by_id: dict[str, Viewpoint]) -> np.ndarray:
     return np.array(sortie.path_enu_m)[kept]
 
 
+@pytest.mark.slow
 @given(plan=plans())
 @settings(max_examples=10)
 def test_one_point_is_the_same_point_in_all_formats(plan: Plan) -> None:

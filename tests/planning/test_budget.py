@@ -112,6 +112,7 @@ def test_a_few_candidates_give_what_brute_force_finds(
     assert covered <= bound <= len(np.unique(pool.elements.items))
 
 
+@pytest.mark.slow
 def test_more_batteries_and_longer_ones_cover_more() -> None:
     covered = [problem().model.covered_count(choose(60.0, n)[0]) for n in (1, 2, 4)]
     assert covered[0] * 1.2 < covered[1]

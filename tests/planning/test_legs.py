@@ -175,6 +175,7 @@ def test_pulling_a_way_tight_does_not_crowd_its_waypoints(monkeypatch: pytest.Mo
     assert (spaced < MIN_SPACING_M).sum() < (crowded < MIN_SPACING_M).sum()
 
 
+@pytest.mark.slow
 def test_in_flight_time_ways_have_few_stops_and_legs_from_home_cost_what_they_take() -> None:
     metric = round_trip_metric(motion_limits(profile("m3e").aircraft, FlightRules()))
     for scene in ("court", "canyon"):

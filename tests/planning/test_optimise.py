@@ -178,6 +178,7 @@ def test_same_seed_gives_the_same_views_and_another_seed_others():
     assert not np.array_equal(views[0].positions_enu_m, views[2].positions_enu_m)
 
 
+@pytest.mark.slow
 def test_refining_never_loses_and_stops_when_asked():
     problem = problem_of("office")
     pool = candidate_pool(problem, 0, 2000)

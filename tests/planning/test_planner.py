@@ -33,6 +33,7 @@ from tests.planning.plan_cases import (
     seen_by_contract,
     solid_triangles,
 )
+from tests.slow import slow
 
 FEW = GreedyParameters(n_candidates=600, improve=False, certify=False)
 NEAR = Constraints(min_distance_m=5.0)
@@ -164,7 +165,7 @@ def without_wall_times(plan: Plan) -> str:
 
 
 @pytest.mark.parametrize(
-    ("precision", "goal"), [("f32", {"n_views": 5}), ("f32", {"share": 0.3}), ("f64", {"share": 0.3})]
+    ("precision", "goal"), [("f32", {"n_views": 5}), slow("f32", {"share": 0.3}), slow("f64", {"share": 0.3})]
 )
 def test_same_seed_gives_the_same_plan_whatever_the_number_of_threads(
     goal: dict[str, float], precision: str, monkeypatch: pytest.MonkeyPatch

@@ -219,6 +219,7 @@ def test_local_search_is_left_out_where_directions_differ():
         run_tours(case, 0.1, ("local-search",))
 
 
+@pytest.mark.slow
 def test_case_of_a_plan_leads_around_the_building_through_home_and_all_views():
     model = SCENES["office"]()
     plan = plan_flight(model, PlanRequest(n_views=12, time_budget_s=0.8)).plan

@@ -94,7 +94,8 @@ def test_the_whole_office_is_flown_as_planned_in_several_sorties(model, autopilo
     assert_kept(flown, plan)
 
 
-@pytest.mark.parametrize("autopilot", [Autopilot.PX4, slow(Autopilot.ARDUPILOT)])
+@pytest.mark.slow
+@BOTH
 def test_the_same_seed_gives_the_same_flight_and_another_one_another(small, autopilot):
     site, plan = small
     wish = FlightWish(autopilot=autopilot, conditions=Conditions(wind_m_s=5.0, fix="single"), seed=3)

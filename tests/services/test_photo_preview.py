@@ -60,6 +60,7 @@ def _nothing_kept():
     photo_preview._KEPT.clear()
 
 
+@pytest.mark.slow
 def test_the_fine_picture_is_the_photo_that_would_be_rendered_whole(monkeypatch, tmp_path):
     model = office()
     monkeypatch.setattr(photo_preview, "STRIP_PX", 96 * 20)

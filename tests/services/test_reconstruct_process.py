@@ -171,6 +171,7 @@ def test_what_cannot_be_is_said_and_it_goes_on_working(heard, card, wish, tmp_pa
     assert "damaged" in heard.seen(Subject("photo", tmp_path / "copy", photo.name), photo).problem
 
 
+@pytest.mark.slow
 def test_a_process_that_is_ended_is_told_and_another_one_takes_its_place(heard, card):
     photo = card.source.photos[0]
     heard.seen(Subject("photo", card.folder, photo.name), photo)

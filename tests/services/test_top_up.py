@@ -124,6 +124,7 @@ def test_what_the_battery_leaves_open_is_a_warning_with_its_number() -> None:
     assert "change the battery" in finding.message
 
 
+@pytest.mark.slow
 def test_everything_reachable_can_be_asked_for() -> None:
     first, second = sizes()
     flown = opened([range(first), range(second)])

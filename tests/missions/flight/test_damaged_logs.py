@@ -42,6 +42,7 @@ def test_logs_damaged_at_random_are_read_or_refused(tmp_path: Path, name: str) -
     assert n_read > 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["dronekit_la_log171.bin", "sample_px4_events.ulg", "uavlogviewer_vtol.tlog"])
 def test_real_logs_damaged_at_random_are_read_or_refused(shared_data: Path, tmp_path: Path, name: str) -> None:
     content = (shared_data / "logs" / name).read_bytes()

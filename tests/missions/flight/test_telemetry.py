@@ -124,6 +124,7 @@ STREAMS = st.lists(
 )
 
 
+@pytest.mark.slow
 @given(STREAMS)
 @settings(max_examples=150)
 def test_any_stream_is_the_same_live_and_from_its_telemetry_log(sent: list[Sent]) -> None:

@@ -52,6 +52,7 @@ def test_ardupilot_takes_every_photo_in_its_place_and_turned_to_it(plan: Plan, t
         assert twin.n_dropped == 0
 
 
+@pytest.mark.slow
 @given(plan=plans())
 @settings(max_examples=40)
 def test_px4_takes_every_photo_in_its_place_and_turned_to_it(plan: Plan) -> None:

@@ -387,6 +387,7 @@ def test_a_training_that_is_nearly_over_settles_no_longer_than_it_would_have_las
     assert trainer.at.step == 10
 
 
+@pytest.mark.slow
 def test_while_it_settles_no_splats_are_added_and_the_losses_stay_what_they_were(make, monkeypatch):
     losses = LossWeights(consistent_from=0.5, high_frequency_from=0.5)
     config = replace(CONFIG, iterations=400, densify_from=0.0, densify_until=1.0, densification="mcmc", losses=losses)

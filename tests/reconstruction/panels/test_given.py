@@ -153,6 +153,7 @@ def test_a_file_that_says_nothing_of_a_facade_leaves_the_photo_out() -> None:
     assert {number for _, number in found.grids} == {1}
 
 
+@pytest.mark.slow
 def test_files_of_other_photos_and_sizes_are_refused_in_words() -> None:
     model = coarse_model(made()[0].case.wall)
     with pytest.raises(InputError, match=r"'c\.jpg' are given, which is none of the 2 photos"):

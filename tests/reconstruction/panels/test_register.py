@@ -70,6 +70,7 @@ def test_photos_with_wrong_poses_lie_on_one_another_to_a_pixel(curvature: float,
     assert placed[1].moved_px == pytest.approx(before, rel=0.6)
 
 
+@pytest.mark.slow
 def test_right_poses_stay_as_they_are() -> None:
     made = photos()
     views = views_of(

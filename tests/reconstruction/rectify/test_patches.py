@@ -46,6 +46,7 @@ def test_two_facades_of_a_corner_are_two() -> None:
         assert patch.cylinder.curvature_significance < 5.0 or abs(patch.cylinder.surface.curvature_per_m) < 1e-4
 
 
+@pytest.mark.slow
 def test_a_facade_and_a_round_tower_behind_it_are_told_apart() -> None:
     front = wall(180.0, (-12.0, 0.0, 10.0))
     tower = wall(180.0, (14.0, 12.0, 12.0), 0.1)

@@ -88,6 +88,7 @@ def test_another_exposure_is_made_up_for(folder, trained, tmp_path):
     assert score_views(trained, read_photo_set(darker), names).mean_db < here - 5.0
 
 
+@pytest.mark.slow
 def test_photos_that_were_exposed_one_by_one_are_as_good_where_the_folder_says_how(folder, tmp_path):
     metered = shutil.copytree(folder, tmp_path / "metered")
     captures = {}

@@ -144,6 +144,7 @@ def test_a_loss_that_is_no_number_is_an_error_that_says_what_to_do(plain):
         train_reflections(broken, planes, "mlp", SHORT)
 
 
+@pytest.mark.slow
 def test_an_mlp_whose_rates_are_too_high_dies_and_its_health_says_so(plain):
     rays, _, planes = plain
     some = replace(SMALL, steps=60)

@@ -114,6 +114,7 @@ def test_slivers_and_faces_without_area_get_light_that_is_a_number(thin_m: float
     assert np.isfinite(light).all()
 
 
+@pytest.mark.slow
 def test_it_is_the_same_whatever_was_asked_for_before() -> None:
     made = bundled_scene("planar-far")
     view = photo((2.0, 14.0, 9.0), 180.0, width_px=40, height_px=30, focal_px=30.0)

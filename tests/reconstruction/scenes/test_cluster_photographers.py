@@ -103,6 +103,7 @@ def test_a_cancelled_run_leaves_nothing_behind_and_goes_on_without_the_cluster(s
     assert files_of(tmp_path) == files_of(alone)
 
 
+@pytest.mark.slow
 def test_a_photo_that_fails_by_itself_is_named(scene, client, tmp_path):
     job = job_for(scene, tmp_path)
     elsewhere = replace(job.photos[1], path=Path("elsewhere.jpg"))

@@ -241,6 +241,7 @@ def test_without_mitsuba_it_is_said_how_to_get_it(monkeypatch: pytest.MonkeyPatc
         mitsuba("no_such_variant")
 
 
+@pytest.mark.slow
 def test_a_variant_that_ends_its_process_is_told_from_one_that_works() -> None:
     assert survives("scalar_rgb")
     assert not survives("no_such_variant")

@@ -163,6 +163,7 @@ def test_an_interrupted_run_goes_on_and_ends_as_if_it_had_not_been(scene, writte
     assert record_of(tmp_path / "again") == record_of(written.folder)
 
 
+@pytest.mark.slow
 def test_photos_whose_files_are_damaged_or_gone_are_made_again(scene, tmp_path):
     job = job_for(scene, tmp_path)
     photograph(job, tmp_path, 1)

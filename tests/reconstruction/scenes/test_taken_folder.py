@@ -145,6 +145,7 @@ def test_what_is_off_leaves_no_trace(scene: Scene, tmp_path: Path) -> None:
         assert (capture["exposure"], capture["exposure_s"], capture["moved_enu_m"]) == (1.0, 0.004, [0.0] * 3)
 
 
+@pytest.mark.slow
 def test_another_way_of_taking_is_another_run(scene: Scene, written: ScenePhotos) -> None:
     other = replace(TAKING, sensor=replace(TAKING.sensor, gain=2.0))
     with pytest.raises(InputError, match=r"taking\.sensor\.gain is 1\.0 there, and 2\.0 was asked for"):

@@ -150,6 +150,7 @@ def test_real_cmp_photos_have_a_window_for_each_line_of_their_tables(shared_data
     assert all(0.95 * n <= count <= n for n, count in zip(lines, counts, strict=True))
 
 
+@pytest.mark.slow
 def test_real_ecp_photos_show_windows_where_their_masks_are_red(shared_data: Path) -> None:
     photos = annotated_set("ecp", shared_data / "facades")
     for photo in photos.photos():

@@ -184,6 +184,7 @@ def test_colour_pictures_and_grey_ones_give_the_same() -> None:
         assert np.allclose(a.corners_px, b.corners_px)
 
 
+@pytest.mark.slow
 def test_the_same_picture_gives_the_same_panels() -> None:
     truth = made(seed=2)
     first, second = (segment_rectified(truth.picture) for _ in range(2))

@@ -65,6 +65,7 @@ def test_two_facades_and_their_verticals_are_three_points() -> None:
     assert sum(candidate.is_vertical for candidate in found[:3]) == 1
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 30))
 def test_the_same_seed_gives_the_same_points(seed: int) -> None:
     segments = towards(POINTS["far"], 30, np.random.default_rng(seed))

@@ -95,6 +95,7 @@ def test_detail_is_learned_better_with_more_splats():
     assert error(grown, views, truths) < error(plain, views, truths) / 1.35
 
 
+@pytest.mark.slow
 def test_more_splats_change_nothing_where_there_is_no_detail():
     views = [view_from((0.0, -1.2, 0.0)), view_from((0.1, -1.2, 0.05))]
     truths = truths_of(wall(32, 24, torch.full((768, 3), 0.5)), views)
