@@ -29,7 +29,7 @@ USUAL_STREET_M, USUAL_WIDTH_PX = 28.0, 128
 WIDTHS_PX, STREETS_M = (64, 128, 256), (20.0, 28.0, 56.0, math.inf)
 LIGHTS: tuple[ModelName, ...] = ("mlp", "radiance-grid")
 PLANNERS: tuple[Planner, ...] = ("noto", "greedy")
-SEEDS = (0, 1)
+SEEDS = (0,)
 
 
 class _Case(NamedTuple):
@@ -52,7 +52,6 @@ def measure(context: Context) -> Iterator[Row]:
     cases = [usual] if is_quick else [_Case(USUAL_STREET_M, width) for width in WIDTHS_PX]
     cases += [] if is_quick else [_Case(street, USUAL_WIDTH_PX) for street in STREETS_M if street != USUAL_STREET_M]
     n_views, n_unseen = (QUICK_N_VIEWS, 4) if is_quick else (N_VIEWS, N_UNSEEN)
-    seeds = SEEDS[:1] if is_quick else SEEDS
     with tempfile.TemporaryDirectory() as place:
         work = Path(place)
         folders = {
@@ -71,12 +70,12 @@ def measure(context: Context) -> Iterator[Row]:
                 for case in cases
                 for light in LIGHTS
                 for planner in PLANNERS
-                for seed in seeds
+                for seed in SEEDS
             }
             for case in cases:
                 for light in LIGHTS:
                     noto, ours = (
-                        [asked[case, light, planner, seed].result() for seed in seeds] for planner in PLANNERS
+                        [asked[case, light, planner, seed].result() for seed in SEEDS] for planner in PLANNERS
                     )
                     yield _row(case, light, noto, ours)
 
@@ -92,7 +91,7 @@ def unseen_db(learned: Path, unseen: Path, light: ModelName, seed: int, is_quick
 
 def _row(case: _Case, light: str, noto: list[float], ours: list[float]) -> Row:
     gaps = [b - a for a, b in zip(noto, ours, strict=True)]
-    beside = f"NOTO {statistics.fmean(noto):.1f}, ours {statistics.fmean(ours):.1f} dB; worst gap {min(gaps):.1f}"
+    beside = f"NOTO {statistics.fmean(noto):.1f}, ours {statistics.fmean(ours):.1f} dB"
     what = f"{case.name}, {light}: our plan above NOTO"
     return Row(SCENE, what, round(statistics.fmean(gaps), 2), "dB", None, beside, seeds=len(gaps))
 

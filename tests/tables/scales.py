@@ -65,7 +65,7 @@ def _scale(
 
 SMALL = _scale(
     "small",
-    (340, 128, 60),
+    (510, 128, 60),
     TrainConfig(
         time_limit_s=600.0,
         light_share=0.6,
