@@ -13,7 +13,6 @@ from tests.benchmarks import presets
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import rendered
 
-NAME = "1h"
 LOOKS = 12
 """At held-out views on the way."""
 
@@ -24,10 +23,10 @@ def measure(context: Context) -> Iterator[Row]:
     n_views, width = (
         (presets.QUICK_N_VIEWS, presets.QUICK_WIDTH_PX) if is_quick else (presets.N_VIEWS, presets.WIDTH_PX)
     )
-    config = preset("smoke") if is_quick else preset(NAME)
+    config = preset("smoke") if is_quick else preset(presets.HIGHER)
     longest_s = presets.QUICK_BUDGET_S if is_quick else HOUR_S
     setting = Setting(
-        f"preset {NAME}", "its hour", replace(config, time_limit_s=longest_s, score_every_s=longest_s / LOOKS)
+        f"preset {presets.HIGHER}", "its hour", replace(config, time_limit_s=longest_s, score_every_s=longest_s / LOOKS)
     )
     with tempfile.TemporaryDirectory() as place:
         found = presets.trial(rendered("planar", Path(place) / "planar", n_views, width), setting)
@@ -45,7 +44,7 @@ def measure(context: Context) -> Iterator[Row]:
 BENCHMARK = Benchmark(
     "preset-hour",
     "The preset of an hour",
-    f"The preset `{NAME}` in its own hour of processor time, one thread, on the photos of [presets](#presets). "
-    "Its rates fall until the hour ends: on the way it has less than a shorter training in the end.",
+    f"The preset `{presets.HIGHER}` in its own hour of processor time, one thread, on the photos of "
+    "[presets](#presets). Its rates fall until the hour ends: on the way it has less than a shorter one in the end.",
     measure,
 )

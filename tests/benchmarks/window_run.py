@@ -1,4 +1,4 @@
-"""One measurement of the real window in a process of its own: `python -m tests.benchmarks.window_run FILE WHAT`.
+"""One measurement of the real window in a own process: `python -m tests.benchmarks.window_run WHAT FILE [FOLDER]`.
 
 Writes what was measured to FILE as JSON. Without a screen it starts a virtual one and a second process, whose time does
 not hold the start of the screen.
@@ -195,11 +195,11 @@ def _place_of(camera: Any) -> bytes:
     return bytes(camera.pose.position_enu_m.tobytes())
 
 
-def _measured(what: str, folder: Path) -> dict[str, Any]:
+def _measured(what: str, folders: list[Path]) -> dict[str, Any]:
     if what == "planning":
         return planning()
     if what == "training":
-        return training(folder / "photos", folder / "model")
+        return training(folders[0] / "photos", folders[0] / "model")
     return startup(eager=what == "startup-eager")
 
 
@@ -209,7 +209,7 @@ if __name__ == "__main__":
         sys.exit(subprocess.run([sys.executable, "-m", "tests.benchmarks.window_run", *sys.argv[1:]]).returncode)
     with tempfile.TemporaryDirectory() as folder:
         os.environ["REFLIGHT_CONFIG_DIR"] = folder
-        path, what = Path(sys.argv[1]), sys.argv[2]
-        path.write_text(json.dumps(_measured(what, path.parent)), "utf-8")
+        what, path, *folders = sys.argv[1:]
+        Path(path).write_text(json.dumps(_measured(what, [Path(each) for each in folders])), "utf-8")
         sys.stdout.flush()
         os._exit(0)  # nothing of the window is worth saving
