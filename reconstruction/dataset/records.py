@@ -87,7 +87,13 @@ def _description(
         "site": site.name,
         "origin": asdict(site.origin),
         "panels": [
-            {"index": number, "id": panel.id, "facade": facade, "corners_enu_m": panel.corners_enu_m}
+            {
+                "index": number,
+                "id": panel.id,
+                "facade": facade,
+                "corners_enu_m": panel.corners_enu_m,
+                **({} if panel.source_id is None else {"source_id": panel.source_id}),
+            }
             for number, (facade, panel) in enumerate(panels, 1)
         ],
         "photos": [

@@ -35,11 +35,18 @@ Vec3 = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class PanelRecord:
-    """A panel of the site."""
+    """A panel of the site.
+
+    Parameters
+    ----------
+    source_id
+        Of the object that it was imported from, as `planning.site.Panel` has it.
+    """
 
     id: str
     facade: str
     corners_enu_m: tuple[Vec3, Vec3, Vec3, Vec3]
+    source_id: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +160,7 @@ def site_record(folder: Path) -> SiteRecord:
     content = read_json(path)
     expect_format(content, DATASET_FORMAT, path)
     found = to_record(content, _Description, path)
-    panels = tuple(PanelRecord(panel.id, panel.facade, panel.corners_enu_m) for panel in found.panels)
+    panels = tuple(PanelRecord(panel.id, panel.facade, panel.corners_enu_m, panel.source_id) for panel in found.panels)
     return SiteRecord(found.site, found.origin, panels)
 
 
@@ -162,6 +169,7 @@ class _Panel:
     corners_enu_m: tuple[Vec3, Vec3, Vec3, Vec3]
     id: str = ""
     facade: str = ""
+    source_id: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -79,6 +79,10 @@ class _Saved(ModelRecord):
     n_steps: int = 0
     seconds: float = 0.0
     notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _File(_Saved):
     weights: _Weights = _Weights("", "")
 
 
@@ -91,21 +95,11 @@ def save_model(trained: TrainedModel, folder: Path) -> None:
         It cannot be written.
     """
     make_folder(folder)
-    content = save(_tensors(trained))
+    content = save(tensors_of(trained))
     digest = hashlib.sha256(content).hexdigest()
     name = f"weights-{digest[:12]}.safetensors"
     write_atomically(folder / name, content)
-    description = {
-        "format": FORMAT,
-        "method": trained.record.config.method,
-        "n_splats": trained.n_splats,
-        **asdict(trained.record),
-        "history": [asdict(point) for point in trained.history],
-        "n_steps": trained.n_steps,
-        "seconds": trained.seconds,
-        "notes": list(trained.notes),
-        "weights": {"file": name, "sha256": digest},
-    }
+    description = {**description_of(trained), "weights": {"file": name, "sha256": digest}}
     write_atomically(folder / DESCRIPTION, json.dumps(description, indent=1, allow_nan=False).encode())
     # Last: it is for other programs, and nothing here reads it.
     kind: Kind = "2dgs" if trained.model.splats.is_flat else "3dgs"
@@ -140,17 +134,52 @@ def read_model(folder: Path) -> TrainedModel:
         raise InputError(f"{folder}: holds no finished model; {advice}")
     content = read_json(path)
     expect_format(content, FORMAT, path)
-    saved = to_record(content, _Saved, path)
+    saved = to_record(content, _File, path)
     if Path(saved.weights.file).name != saved.weights.file or not saved.weights.file:
         raise InputError(f"{path}: weights.file: expected the name of a file beside it, got '{saved.weights.file}'")
     weights = folder / saved.weights.file
-    tensors = _read_tensors(weights, saved.weights.sha256)
+    return _trained(saved, _read_tensors(weights, saved.weights.sha256), weights)
+
+
+def description_of(trained: TrainedModel) -> dict[str, Any]:
+    """All that a model is besides its weights, as plain values."""
+    return {
+        "format": FORMAT,
+        "method": trained.record.config.method,
+        "n_splats": trained.n_splats,
+        **asdict(trained.record),
+        "history": [asdict(point) for point in trained.history],
+        "n_steps": trained.n_steps,
+        "seconds": trained.seconds,
+        "notes": list(trained.notes),
+    }
+
+
+def trained_of(description: Mapping[str, Any], tensors: Mapping[str, Tensor], path: Path) -> TrainedModel:
+    """The model that `description_of` and `tensors_of` told.
+
+    Parameters
+    ----------
+    path
+        Where they are from, for messages.
+
+    Raises
+    ------
+    InputError
+        They are damaged, or of different models.
+    """
+    expect_format(description, FORMAT, path)
+    return _trained(to_record(description, _Saved, path), tensors, path)
+
+
+def _trained(saved: _Saved, tensors: Mapping[str, Tensor], path: Path) -> TrainedModel:
     record = ModelRecord(*(getattr(saved, each.name) for each in fields(ModelRecord)))
-    model, exposures = _filled(record, tensors, weights)
+    model, exposures = _filled(record, tensors, path)
     return TrainedModel(record, model, exposures, saved.history, saved.n_steps, saved.seconds, saved.notes)
 
 
-def _tensors(trained: TrainedModel) -> dict[str, Tensor]:
+def tensors_of(trained: TrainedModel) -> dict[str, Tensor]:
+    """All of its weights by name, as `model.json` has them: copies, on the processor."""
     parts = {**trained.model.state_dict()}
     parts |= {f"{GAINS}{name}": value for name, value in trained.exposures.state_dict().items()}
     return {name: value.detach().cpu().contiguous().clone() for name, value in parts.items()}

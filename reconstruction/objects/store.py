@@ -1,0 +1,332 @@
+"""A scene of objects on the disk: a folder with `gsscene.json`, and a file for each component and auxiliary part.
+
+Files are named after their content and written first; `gsscene.json`, which names them with their checksums, is
+replaced last, in one step. So a folder that had a scene has a whole one at every moment. A component can be read
+without the others, and an element without the rest of its component.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import re
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from safetensors import SafetensorError, safe_open
+from safetensors.numpy import save
+
+from planning.errors import InputError
+from planning.folders import make_folder
+from planning.frames import Vec3
+from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.progress import QUIET, Monitor
+from planning.site import Origin
+from reconstruction.objects.gs_scene import (
+    Array,
+    GsAuxiliary,
+    GsComponent,
+    GsElement,
+    GsGaussian,
+    GsScene,
+    Kind,
+)
+
+FORMAT = "reflight-gsscene/1"
+DESCRIPTION = "gsscene.json"
+
+PLACES = "places"
+"""Beside what splats have, in a component's file."""
+
+SUFFIX = ".safetensors"
+
+LARGEST = 200_000_000
+"""Gaussians of a component: more than any graphics card holds."""
+
+COLUMNS: dict[str, tuple[tuple[int, ...], ...]] = {
+    "means": ((3,),),
+    "quats": ((4,),),
+    "log_scales": ((2,), (3,)),
+    "opacity_logits": ((),),
+    "sh": ((16, 3),),
+    "reflectivity_logits": ((),),
+    "f0_logits": ((3,),),
+}
+"""What every component has, and the shapes that one row may have."""
+
+WIDEST = 4096
+"""Numbers of one row of what a method's shading adds."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A file.
+
+    Parameters
+    ----------
+    n_bytes
+        Its length.
+    """
+
+    name: str
+    file: str
+    sha256: str
+    n_bytes: int
+
+    def __post_init__(self) -> None:
+        if Path(self.file).name != self.file or not self.file.endswith(SUFFIX):
+            raise ValueError(f"file: expected the name of a {SUFFIX} file beside this one, got '{self.file[:80]}'")
+
+
+@dataclass(frozen=True, slots=True)
+class _Component(_Part):
+    kind: Kind
+    global_id: str
+    n_gaussians: int
+    min_enu_m: Vec3 | None
+    max_enu_m: Vec3 | None
+    elements: tuple[GsElement, ...]
+
+    def __post_init__(self) -> None:
+        # Zero-argument super() has no class to look at in a dataclass with slots.
+        _Part.__post_init__(self)
+        if not 0 <= self.n_gaussians <= LARGEST:
+            raise ValueError(f"n_gaussians: expected 0 to {LARGEST}, got {self.n_gaussians}")
+
+
+@dataclass(frozen=True, slots=True)
+class _Scene:
+    name: str
+    global_id: str
+    origin: Origin | None
+    origin_enu_m: Vec3
+    components: tuple[_Component, ...]
+    auxiliary: tuple[_Part, ...]
+    training: dict[str, Any]
+
+    def __post_init__(self) -> None:
+        if not self.components:
+            raise ValueError("components: expected at least one")
+        if not all(map(math.isfinite, self.origin_enu_m)):
+            raise ValueError("origin_enu_m: expected finite numbers")
+        elements = [element for component in self.components for element in component.elements]
+        for name, found in (
+            ("components", [component.name for component in self.components]),
+            ("auxiliary", [part.name for part in self.auxiliary]),
+            ("elements", [element.global_id for element in elements]),
+            ("elements", [element.panel for element in elements]),
+        ):
+            if len(set(found)) != len(found):
+                raise ValueError(f"{name}: expected different ones, found one twice")
+
+
+def write_scene(scene: GsScene, folder: Path, monitor: Monitor = QUIET) -> None:
+    """Write a whole scene; one that was there stays whole until this one is. Records beside it are left alone.
+
+    Raises
+    ------
+    ValueError
+        Components are missing.
+    InputError
+        It cannot be written.
+    """
+    if not scene.is_whole:
+        raise ValueError("scene: expected all of its components")
+    make_folder(folder)
+    n_parts = len(scene.components) + len(scene.auxiliary)
+    components: list[_Component] = []
+    for number, component in enumerate(scene.components):
+        monitor.report("writing components", number, n_parts)
+        table = component.gaussians
+        part = _written(folder, component.name, {**table.values, PLACES: table.places})
+        lowest, highest = _bounds(scene, component)
+        components.append(
+            _Component(
+                **asdict(part),
+                kind=component.kind,
+                global_id=component.global_id,
+                n_gaussians=len(table),
+                min_enu_m=lowest,
+                max_enu_m=highest,
+                elements=component.elements,
+            )
+        )
+    auxiliary = []
+    for number, found in enumerate(scene.auxiliary, len(components)):
+        monitor.report("writing components", number, n_parts)
+        auxiliary.append(_written(folder, found.name, found.tensors))
+    record = _Scene(
+        scene.name,
+        scene.global_id,
+        scene.origin,
+        scene.origin_enu_m,
+        tuple(components),
+        tuple(auxiliary),
+        dict(scene.training),
+    )
+    content = {"format": FORMAT, **asdict(record)}
+    write_atomically(folder / DESCRIPTION, json.dumps(content, indent=1, allow_nan=False).encode())
+    named = {part.file for part in (*components, *auxiliary)}
+    for old in folder.glob(f"*{SUFFIX}"):
+        if old.name not in named and re.search(rf"-[0-9a-f]{{12}}\{SUFFIX}$", old.name):
+            old.unlink(missing_ok=True)
+
+
+class StoredScene:
+    """A scene in a folder, of which parts are read as they are asked for.
+
+    Raises
+    ------
+    InputError
+        There is none, or its description is damaged. So do all methods where a file is.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self._path = folder, folder / DESCRIPTION
+        if not self._path.is_file():
+            raise InputError(f"{folder}: holds no scene of objects ({DESCRIPTION}); make one with `organise`")
+        content = read_json(self._path)
+        expect_format(content, FORMAT, self._path)
+        self._scene = to_record(content, _Scene, self._path)
+
+    @property
+    def component_names(self) -> tuple[str, ...]:
+        """Facades first, the background last."""
+        return tuple(component.name for component in self._scene.components)
+
+    @property
+    def n_gaussians(self) -> int:
+        """Of all components."""
+        return sum(component.n_gaussians for component in self._scene.components)
+
+    def read(self, components: Collection[str] | None = None, monitor: Monitor = QUIET) -> GsScene:
+        """Read the scene, each file checked against its checksum.
+
+        Parameters
+        ----------
+        components
+            Names of those that are wanted; None for all.
+        """
+        unknown = set(components or ()) - set(self.component_names)
+        if unknown:
+            known = ", ".join(self.component_names)
+            raise InputError(f"{self._path}: has no component '{min(unknown)}'; it has {known}")
+        wanted = [each for each in self._scene.components if components is None or each.name in components]
+        found = []
+        for number, component in enumerate(wanted):
+            monitor.report("reading components", number, len(wanted))
+            found.append(self._component(component))
+        scene = self._scene
+        return GsScene(
+            scene.global_id,
+            scene.name,
+            scene.origin,
+            scene.origin_enu_m,
+            tuple(found),
+            tuple(GsAuxiliary(part.name, self._checked(part)) for part in scene.auxiliary),
+            scene.training,
+            self.n_gaussians,
+        )
+
+    def components(self) -> Iterator[GsComponent]:
+        """One after the other, so that only one need be in memory."""
+        return (self._component(component) for component in self._scene.components)
+
+    def element(self, global_id: str) -> tuple[GsElement, GsGaussian]:
+        """An element with its Gaussians; nothing else of the file is read, so its checksum is not looked at."""
+        for component in self._scene.components:
+            for element in component.elements:
+                if element.global_id == global_id:
+                    values = self._rows(component, element.start, element.stop)
+                    return element, self._table(component, values, element.n_gaussians)
+        raise InputError(f"{self._path}: has no element with the GlobalId '{global_id[:40]}'")
+
+    def _component(self, component: _Component) -> GsComponent:
+        table = self._table(component, self._checked(component), component.n_gaussians)
+        name, kind, global_id = component.name, component.kind, component.global_id
+        try:
+            return GsComponent(global_id, name, kind, component.elements, table)
+        except ValueError as error:
+            raise InputError(f"{self._path}: component '{name}': {error}") from error
+
+    def _table(self, component: _Component, values: dict[str, Array], n: int) -> GsGaussian:
+        path = self.folder / component.file
+        places = values.pop(PLACES, None)
+        if places is None or places.dtype != np.int32 or places.shape != (n,):
+            raise InputError(f"{path}: {PLACES}: expected {n} of int32; it is damaged, or of another program")
+        missing = COLUMNS.keys() - values.keys()
+        if missing:
+            raise InputError(f"{path}: has no '{min(missing)}' of Gaussians; it is damaged, or of another program")
+        for name, value in values.items():
+            shapes = COLUMNS.get(name)
+            is_known = value.shape[1:] in shapes if shapes is not None else math.prod(value.shape[1:]) <= WIDEST
+            if value.dtype != np.float32 or len(value) != n or not is_known:
+                raise InputError(
+                    f"{path}: {name}: expected {n} rows of float32, found {value.dtype} of shape {value.shape}"
+                )
+            if not np.isfinite(value).all():
+                raise InputError(f"{path}: {name}: holds numbers that are not finite; train again")
+        return GsGaussian(values, places)
+
+    def _checked(self, part: _Part) -> dict[str, Array]:
+        """All that a file has, if it is the one that was written."""
+        path = self.folder / part.file
+        try:
+            # A file of another length is not read to its end: it may be a very long one.
+            is_same = path.stat().st_size == part.n_bytes
+            if is_same:
+                with path.open("rb") as stream:
+                    is_same = hashlib.file_digest(stream, "sha256").hexdigest() == part.sha256
+        except OSError as error:
+            raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+        if not is_same:
+            raise InputError(f"{path}: is not the file that {DESCRIPTION} was written with; was it changed or cut off?")
+        return self._opened(part, lambda file: {name: file.get_tensor(name) for name in file.keys()})  # noqa: SIM118
+
+    def _rows(self, part: _Part, start: int, stop: int) -> dict[str, Array]:
+        return self._opened(part, lambda file: {name: file.get_slice(name)[start:stop] for name in file.keys()})  # noqa: SIM118
+
+    def _opened(self, part: _Part, read: Any) -> dict[str, Array]:
+        path = self.folder / part.file
+        try:
+            with safe_open(path, framework="numpy") as file:
+                found: dict[str, Array] = read(file)
+        except (OSError, SafetensorError, KeyError, ValueError, TypeError, IndexError) as error:
+            raise InputError(f"{path}: is no safetensors file, or damaged: {error}") from error
+        return found
+
+
+def read_scene(folder: Path, components: Collection[str] | None = None, monitor: Monitor = QUIET) -> GsScene:
+    """Read a scene, or some of its components by name.
+
+    Raises
+    ------
+    InputError
+        There is none, a file is missing or damaged, or a component is not known.
+    """
+    return StoredScene(folder).read(components, monitor)
+
+
+def _written(folder: Path, name: str, tensors: Mapping[str, Array]) -> _Part:
+    content = save({key: np.ascontiguousarray(value) for key, value in tensors.items()})
+    digest = hashlib.sha256(content).hexdigest()
+    # Names of facades are a user's own: of them only what every file system has goes into a file's name.
+    plain = re.sub(r"[^A-Za-z0-9]+", "-", name).strip("-")[:40] or "part"
+    file = f"{plain}-{digest[:12]}{SUFFIX}"
+    write_atomically(folder / file, content)
+    return _Part(name, file, digest, len(content))
+
+
+def _bounds(scene: GsScene, component: GsComponent) -> tuple[Vec3 | None, Vec3 | None]:
+    """Of the means, ENU."""
+    means = component.gaussians.values["means"]
+    if not len(means):
+        return None, None
+    origin = np.array(scene.origin_enu_m)
+    low_x, low_y, low_z = (float(value) for value in means.min(axis=0) + origin)
+    high_x, high_y, high_z = (float(value) for value in means.max(axis=0) + origin)
+    return (low_x, low_y, low_z), (high_x, high_y, high_z)

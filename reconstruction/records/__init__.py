@@ -1,0 +1,4 @@
+"""Records of a building's parts: attributes, inspections, defects, maintenance and documents, in a SQLite file.
+
+`records.sqlite` lies beside the model. Objects are known by their IFC GlobalId alone (docs/records.md).
+"""

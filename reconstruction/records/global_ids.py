@@ -1,0 +1,57 @@
+"""IFC GlobalIds: 128 bits in 22 characters, the keys of objects and records."""
+
+from __future__ import annotations
+
+import uuid
+
+from planning.errors import InputError
+
+ALPHABET = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_$"
+"""Digits of the base 64 that IFC has of its own (buildingSMART, implementation guide on GUIDs)."""
+
+LENGTH = 22
+
+_NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "urn:reflight:objects")
+
+
+def is_global_id(text: str) -> bool:
+    """Whether a text is an IFC GlobalId: 22 characters of the alphabet, the first of 0 to 3 (132 bits hold 128)."""
+    return len(text) == LENGTH and text[0] in "0123" and all(character in ALPHABET for character in text)
+
+
+def check_global_id(text: str, field: str) -> None:
+    """Refuse what is no GlobalId.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    if not is_global_id(text):
+        raise InputError(f"{field}: expected an IFC GlobalId ({LENGTH} characters), got '{text[:40]}'")
+
+
+def compressed(number: uuid.UUID) -> str:
+    """GlobalId of a UUID."""
+    value, digits = number.int, []
+    for _ in range(LENGTH):
+        value, digit = divmod(value, 64)
+        digits.append(ALPHABET[digit])
+    return "".join(reversed(digits))
+
+
+def global_id_of(site_name: str, name: str) -> str:
+    """GlobalId of an object that has none of its own: the same for the same two names, always.
+
+    Parameters
+    ----------
+    name
+        Of the object, unique on the site.
+    """
+    # The length keeps ("a", "bc") and ("ab", "c") apart.
+    return compressed(uuid.uuid5(_NAMESPACE, f"{len(site_name)}:{site_name}{name}"))
+
+
+def new_global_id() -> str:
+    """GlobalId that is random."""
+    return compressed(uuid.uuid4())
