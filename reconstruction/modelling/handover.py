@@ -11,11 +11,10 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from reconstruction.reflections.harmonics import harmonics, n_harmonics
 from reconstruction.reflections.photo_set import PanelPlanes
 from reconstruction.reflections.reflective_panels import ReflectivePanels
 from reconstruction.reflections.shading import display_from_linear, reflected_directions
-from reconstruction.splatting.harmonic_colour import MIDDLE
+from reconstruction.splatting.harmonic_colour import fitted_harmonics
 from reconstruction.splatting.splats import Splats
 
 Array = NDArray[np.float64]
@@ -25,9 +24,6 @@ MOST_DIRECTIONS = 96
 
 DEGREE = 2
 """Of the harmonics that are fitted: cameras see a pane from one side only, which tells no more."""
-
-RIDGE = 1e-3
-"""Weight of harmonics' squares, against the mean square over the directions: holds those that no camera tells apart."""
 
 
 @torch.no_grad()
@@ -72,12 +68,4 @@ def _fitted(panels: ReflectivePanels, points: Tensor, omega_o: Array, planes: Pa
     colours = panels.diffuse(
         points.repeat_interleave(k, dim=0), mirrored.repeat(n, 1), torch.full((n * k,), panel, dtype=torch.long)
     )
-    wanted = (display_from_linear(colours) - MIDDLE).reshape(n, k, 3).double()
-    basis = harmonics(directions)[:, : n_harmonics(DEGREE)].double()
-    penalty = RIDGE * torch.eye(basis.shape[1], dtype=torch.float64)
-    # The mean is not held back, only what changes with direction.
-    penalty[0, 0] = 0.0
-    solution = torch.linalg.solve(basis.T @ basis / k + penalty, basis.T / k)
-    found = torch.zeros(n, 16, 3)
-    found[:, : basis.shape[1]] = torch.einsum("bk,nkc->nbc", solution, wanted).float()
-    return found
+    return fitted_harmonics(directions, display_from_linear(colours).reshape(n, k, 3), DEGREE)

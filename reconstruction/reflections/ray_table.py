@@ -150,6 +150,20 @@ class RayTable:
         )  # fmt: skip
         return Met(*(torch.from_numpy(part) for part in found))
 
+    def arriving(self, points_m: Tensor, directions: Tensor, panels: Tensor) -> Met:
+        """Rays that come from no camera, but arrive at places of panels from infinitely far away.
+
+        Parameters
+        ----------
+        points_m
+            ENU less `middle_m`, shape (n, 3), float64.
+        directions
+            Of the rays, unit, shape (n, 3), float64.
+        """
+        cosines = -(directions * self.normals[panels]).sum(dim=1)
+        shares = _shares(points_m, self.corners_m[panels])
+        return Met(points_m, directions, cosines, shares, torch.full_like(cosines, torch.inf))
+
     def inside(self, met: Met, panels: Tensor) -> Tensor:
         """Whether rays meet the fronts of their panels, which are convex, inside their edges, shape (n,), bool."""
         corners, normals = self.corners_m[panels], self.normals[panels]

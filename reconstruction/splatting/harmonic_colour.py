@@ -32,6 +32,10 @@ FLAT = math.sqrt(1.0 / (4.0 * math.pi))
 AT_ONCE = 16_384
 """Splats of one piece of work: about a millisecond."""
 
+RIDGE = 1e-3
+"""Weight of fitted harmonics' squares, against the mean square over the directions: holds those that these do not tell
+apart."""
+
 NEAREST_M = 1e-6
 """A camera this near to a splat's middle sees it from nowhere in particular."""
 
@@ -83,6 +87,29 @@ def flat_harmonics(display: Tensor) -> Tensor:
     sh = torch.zeros(len(display), N_HARMONICS, 3, dtype=display.dtype, device=display.device)
     sh[:, 0] = (display - MIDDLE) / FLAT
     return sh
+
+
+def fitted_harmonics(directions: Tensor, display: Tensor, degree: int) -> Tensor:
+    """Coefficients, shape (n, 16, 3), float32, whose colours come nearest to display values in some directions.
+
+    Parameters
+    ----------
+    directions
+        From the camera, unit, shape (k, 3).
+    display
+        Shape (n, k, 3).
+    degree
+        Of the harmonics that are fitted, 0 to 3; the others' coefficients are 0.
+    """
+    k = len(directions)
+    basis = harmonics(directions)[:, : n_harmonics(degree)].double()
+    penalty = RIDGE * torch.eye(basis.shape[1], dtype=torch.float64)
+    # The mean is not held back, only what changes with direction.
+    penalty[0, 0] = 0.0
+    solution = torch.linalg.solve(basis.T @ basis / k + penalty, basis.T / k)
+    found = torch.zeros(len(display), N_HARMONICS, 3)
+    found[:, : basis.shape[1]] = torch.einsum("bk,nkc->nbc", solution, display.double() - MIDDLE).float()
+    return found
 
 
 class _DisplayColours(torch.autograd.Function):
