@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from groundstation.services import model_training
-from planning.errors import OperationCancelled
+from groundstation.services.model_objects import scene_of
+from planning.errors import InputError, OperationCancelled
 from reconstruction.modelling.layer_names import LAYERS
 from tests.reconstruction.modelling.made_data_set import write_data_set
 
@@ -213,3 +214,57 @@ def test_settings_are_turned_one_at_a_time_and_written(reflight, glass, tmp_path
     wrong = reflight("tradeoff", "train", glass / "data", "-o", out, *more, "--vary", "splats=1")
     assert "splats: no such setting" in wrong.error
     assert "--vary n_splats" in reflight("tradeoff", "train", glass / "data", "-o", out, "--vary", "n_splats").error
+
+
+def test_a_model_is_organised_as_facades_and_panels(reflight, glass, tmp_path):
+    out = tmp_path / "glass.gsscene"
+    done = reflight("organise", glass / "model", "-o", out, "--json")
+    assert done.status == 0, done.err
+    n_panels = len(json.loads((glass / "data" / "dataset.json").read_text())["panels"])
+    assert done.json["elements"] == n_panels
+    assert done.json["given_ids"] == 0
+    assert done.json["gaussians"] == json.loads((glass / "model" / "model.json").read_text())["n_splats"]
+    assert scene_of(out).n_gaussians == scene_of(glass / "model").n_gaussians == done.json["gaussians"]
+    text = reflight("organise", glass / "model", "-o", out)
+    assert f"{n_panels} panels" in text.out
+    assert not text.err
+
+
+def test_a_site_tells_the_global_ids_of_panels(reflight, glass, tmp_path):
+    data = json.loads((glass / "data" / "dataset.json").read_text())
+    panels = [
+        {
+            "id": panel.get("id", ""),
+            "corners_enu_m": panel["corners_enu_m"],
+            "source_id": f"2O2Fr$t4X7Zf8NOew3FL0{number}",
+        }
+        for number, panel in enumerate(data["panels"])
+    ]
+    shutil.copytree(glass / "model", tmp_path / "model")
+    content = json.loads((tmp_path / "model" / "model.json").read_text())
+    for number, panel in enumerate(content["site"]["panels"]):
+        panel["id"] = panels[number]["id"] = f"A-{number:04d}"
+    (tmp_path / "model" / "model.json").write_text(json.dumps(content))
+    site = {
+        "format": "reflight-site/1",
+        "name": "glass",
+        "origin": {"lat_deg": 48.0, "lon_deg": 11.0, "ellipsoid_height_m": 500.0},
+        "facades": [{"id": "A", "panels": panels}],
+        "airspace": {"min_enu_m": [-99, -99, 0], "max_enu_m": [99, 99, 50], "ground_z_m": 0.0},
+        "home_enu_m": [0, -50, 0],
+    }
+    (tmp_path / "site.json").write_text(json.dumps(site))
+    done = reflight("organise", tmp_path / "model", "-o", tmp_path / "scene", "--site", tmp_path / "site.json")
+    assert done.status == 0, done.err
+    assert f"{len(panels)} panels with the GlobalId of the building model" in done.out
+    found = {element.name: element.global_id for _, element in scene_of(tmp_path / "scene").elements}
+    assert found == {panel["id"]: panel["source_id"] for panel in panels}
+
+
+def test_what_is_no_model_is_not_organised(reflight, glass, tmp_path):
+    done = reflight("organise", glass / "data", "-o", tmp_path / "scene")
+    assert done.status == 1
+    assert "holds no finished model" in done.err
+    assert not (tmp_path / "scene").exists()
+    with pytest.raises(InputError, match="make one with `organise`"):
+        scene_of(tmp_path)

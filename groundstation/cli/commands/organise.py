@@ -1,0 +1,48 @@
+"""`organise`: a trained model as facades and panels."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+EPILOG = """examples:
+  organise tower.model -o tower.gsscene
+  organise tower.model -o tower.gsscene --site tower.json
+"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "organise",
+        help="organise a trained model as facades and panels",
+        description="Write a trained model as objects: the scene, its facades and the background, their panels, and "
+        "the\nGaussians of each. Each object has an IFC GlobalId, by which records and other formats know it.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    add = parser.add_argument
+    add("model", type=Path, metavar="MODEL", help="folder of a model")
+    add("-o", "--out", type=Path, required=True, metavar="SCENE", help="folder to write")
+    add("--site", type=Path, metavar="SITE", help="site file that knows the building model's GlobalIds of panels")
+    add("--json", action="store_true", help="print one JSON object instead of text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Organise and print; returns the exit status."""
+    from groundstation.cli.console import counted, print_json, run_job
+    from groundstation.services.model_objects import organise_files
+
+    done = run_job("organise", lambda context: organise_files(options.model, options.out, options.site, context))
+    if options.json:
+        print_json(done.summary())
+        return 0
+    facades = counted(done.n_components - 1, "facade")
+    print(f"{done.folder}: {facades}, {counted(done.n_elements, 'panel')}, {counted(done.n_gaussians, 'Gaussian')}")
+    if done.n_given_ids:
+        print(f"{counted(done.n_given_ids, 'panel')} with the GlobalId of the building model")
+    if done.n_empty:
+        print(f"{counted(done.n_empty, 'panel')} without Gaussians: no photo showed them")
+    return 0

@@ -1,0 +1,100 @@
+"""Use cases of a model's objects: a trained model becomes a scene of facades and panels, and is found again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from planning.progress import QUIET, Monitor
+from planning.site_file import read_site
+
+if TYPE_CHECKING:
+    from reconstruction.objects.gs_scene import GsScene
+
+
+@dataclass(frozen=True, slots=True)
+class Organised:
+    """A scene that was written.
+
+    Parameters
+    ----------
+    n_given_ids
+        Panels whose GlobalId is that of a building model.
+    n_empty
+        Panels without Gaussians.
+    """
+
+    folder: Path
+    n_components: int
+    n_elements: int
+    n_gaussians: int
+    n_given_ids: int
+    n_empty: int
+
+    def summary(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "folder": str(self.folder),
+            "components": self.n_components,
+            "elements": self.n_elements,
+            "gaussians": self.n_gaussians,
+            "given_ids": self.n_given_ids,
+            "empty": self.n_empty,
+        }
+
+
+def organise_files(model: Path, out: Path, site: Path | None = None, monitor: Monitor = QUIET) -> Organised:
+    """Write a trained model as a scene of objects.
+
+    Parameters
+    ----------
+    site
+        Site file that tells which object of a building model each panel is; None: what the model knows of that.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read or written.
+    """
+    from reconstruction.modelling.saved import read_model
+    from reconstruction.objects.organise import PanelGlobalIds, organised
+    from reconstruction.objects.store import write_scene
+
+    trained = read_model(model)
+    source_ids = None if site is None else _source_ids(site)
+    scene = organised(trained, source_ids)
+    write_scene(scene, out, monitor)
+    elements = [element for _, element in scene.elements]
+    return Organised(
+        out,
+        len(scene.components),
+        len(elements),
+        scene.n_gaussians,
+        len(PanelGlobalIds.of(trained.record, source_ids).source_ids),
+        sum(element.n_gaussians == 0 for element in elements),
+    )
+
+
+def scene_of(folder: Path, monitor: Monitor = QUIET) -> GsScene:
+    """The whole scene of a folder, be it one of objects or of a trained model.
+
+    Raises
+    ------
+    InputError
+        It holds neither, or a file is damaged.
+    """
+    from reconstruction.modelling.saved import DESCRIPTION as MODEL
+    from reconstruction.modelling.saved import read_model
+    from reconstruction.objects.organise import organised
+    from reconstruction.objects.store import DESCRIPTION as SCENE
+    from reconstruction.objects.store import read_scene
+
+    if not (folder / SCENE).is_file() and (folder / MODEL).is_file():
+        return organised(read_model(folder))
+    return read_scene(folder, None, monitor)
+
+
+def _source_ids(site: Path) -> dict[str, str]:
+    panels = read_site(site).site.panels
+    return {panel.id: panel.source_id for panel in panels if panel.source_id is not None}
