@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,22 +15,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.reconstruct_colours import coloured
-from groundstation.services.reconstruct_messages import Look, PhotoError, Seen, Subject, WatchErrors
+from groundstation.services.reconstruct_messages import (
+    Look,
+    PhotoError,
+    Probe,
+    Probed,
+    Seen,
+    Subject,
+    WatchErrors,
+)
+from groundstation.services.shown_models import ShownModel, ShownModels, probed, shown_of, tinted
 from planning.errors import GroundStationError
 from reconstruction.modelling.layer_names import PICTURE
 
 if TYPE_CHECKING:
     from planning.effects import Decision
-    from reconstruction.cameras import PosedPhoto
-    from reconstruction.modelling.model import SceneModel
     from reconstruction.modelling.photo_errors import PhotoErrors
     from reconstruction.modelling.saved import TrainedModel
     from reconstruction.modelling.watching import Visit
     from reconstruction.reflections.photo_set import PhotoSet
-    from reconstruction.splatting.raster import RasterSettings
-
-MOST_MODELS = 2
-"""Finished ones that are kept: the two that are compared."""
 
 MOST_PHOTOS = 8
 """Decoded ones that are kept."""
@@ -40,27 +42,6 @@ JUDGING_SHARE = 0.03
 """Of a training's time, for looking at photos one by one."""
 
 NO_MODEL = "there is no model yet: it is being prepared"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Shown:
-    """A model, and what its pictures are made with."""
-
-    model: SceneModel
-    gains: Mapping[str, Any]
-    settings: RasterSettings
-    version: object
-    learned: tuple[str, ...]
-    moves: tuple[Any, ...]
-
-    def photos(self, source: PhotoSet) -> tuple[PosedPhoto, ...]:
-        """All of a data set, those that were learned from where learning light found them to be."""
-        from reconstruction.modelling.photo_moves import moved
-
-        if not self.moves:
-            return source.photos
-        found = {photo.name: photo for photo in moved(source.named(self.learned), self.moves)}
-        return tuple(found.get(photo.name, photo) for photo in source.photos)
 
 
 class Darkroom:
@@ -74,8 +55,8 @@ class Darkroom:
 
     def __init__(self, tell: Callable[[Any], None]) -> None:
         self._tell = tell
-        self._training: _Shown | None = None
-        self._models: OrderedDict[tuple[Path, int], _Shown] = OrderedDict()
+        self._training: ShownModel | None = None
+        self._models = ShownModels()
         self._photos: OrderedDict[tuple[Path, str], NDArray[np.uint8]] = OrderedDict()
         self._sources: dict[Path, PhotoSet] = {}
         self._errors: tuple[WatchErrors, object, PhotoErrors] | None = None
@@ -94,11 +75,11 @@ class Darkroom:
         """The model in training, as it is now."""
         learned, moves = visit.record.get("learned", ()), visit.record.get("moves", ())
         gains = {name: visit.exposures(number) for number, name in enumerate(learned)}
-        self._training = _Shown(visit.model, gains, visit.settings, visit.model, tuple(learned), tuple(moves))
+        self._training = ShownModel(visit.model, gains, visit.settings, visit.model, tuple(learned), tuple(moves))
 
     def keep_trained(self, trained: TrainedModel) -> None:
         """The model that a training ended with."""
-        self._training = _shown(trained)
+        self._training = shown_of(trained)
 
     def chosen(self, visit: Visit) -> tuple[str, tuple[Decision, ...]]:
         """The model of mirrored light of a training, and the decisions about it."""
@@ -108,22 +89,13 @@ class Darkroom:
         decisions = tuple(Decision(**each) for each in visit.record.get("decisions", ()))
         return ("" if light is None else str(light["name"])), decisions
 
-    def _subject(self, subject: Subject) -> _Shown:
+    def _subject(self, subject: Subject) -> ShownModel:
         if subject.kind == "training":
             if self._training is None:
                 raise GroundStationError(NO_MODEL)
             return self._training
-        from reconstruction.modelling.saved import DESCRIPTION, read_model
-
         assert subject.folder is not None
-        path = subject.folder / DESCRIPTION
-        key = subject.folder, path.stat().st_mtime_ns if path.is_file() else 0
-        if key not in self._models:
-            self._models[key] = _shown(read_model(subject.folder))
-        self._models.move_to_end(key)
-        while len(self._models) > MOST_MODELS:
-            self._models.popitem(last=False)
-        return self._models[key]
+        return self._models.of(subject.folder)
 
     # Pictures
 
@@ -139,19 +111,32 @@ class Darkroom:
         except (MemoryError, RuntimeError) as error:
             return Seen(look, None, problem=f"the picture could not be rendered ({error}); make the window smaller")
 
-    def _rendered(self, look: Look, shown: _Shown, begun_s: float) -> Seen:
+    def _rendered(self, look: Look, shown: ShownModel, begun_s: float) -> Seen:
         from reconstruction.modelling.render import render_view
         from reconstruction.splatting.views import View
 
         gain = shown.gains.get(look.exposed_as, 1.0)
         wanted = ("depth",) if look.layer == PICTURE else (*dict.fromkeys(("depth", look.layer)),)
-        found = render_view(shown.model, View.of(look.camera, shown.model.origin_enu_m), wanted, gain, shown.settings)
+        model = self._models.cut(shown, look.section)
+        found = render_view(model, View.of(look.camera, model.origin_enu_m), wanted, gain, shown.settings)
         values = found.display if look.layer == PICTURE else found.layers[look.layer]
         picture, scale = coloured(look.layer, values)
         depth = found.layers["depth"]
+        if look.tints and shown.quads is not None:
+            picture = tinted(picture, shown.quads, look, depth)
         middle = float(depth[depth.shape[0] // 2, depth.shape[1] // 2])
         seconds = time.perf_counter() - begun_s
         return Seen(look, picture, scale, middle if np.isfinite(middle) and middle > 0.0 else None, seconds)
+
+    def probed(self, probe: Probe) -> Probed:
+        """Answer a probe."""
+        try:
+            shown = self._subject(probe.subject)
+            return probed(probe, shown, self._models.cut(shown, probe.section))
+        except GroundStationError as error:
+            return Probed(probe, None, None, str(error))
+        except (MemoryError, RuntimeError) as error:
+            return Probed(probe, None, None, f"the place could not be looked at ({error})")
 
     def _photo(self, look: Look) -> NDArray[np.uint8]:
         import cv2
@@ -213,7 +198,7 @@ class Darkroom:
             self._tell(PhotoError(wanted.subject, *found))
         return True
 
-    def _turn_to(self, wanted: WatchErrors, shown: _Shown) -> None:
+    def _turn_to(self, wanted: WatchErrors, shown: ShownModel) -> None:
         from reconstruction.modelling.photo_errors import PhotoErrors
 
         if self._errors is not None and self._errors[0] == wanted and self._errors[1] is shown.version:
@@ -228,13 +213,6 @@ class Darkroom:
         if self._errors is not None:
             self._errors[2].close()
             self._errors = None
-
-
-def _shown(trained: TrainedModel) -> _Shown:
-    record = trained.record
-    gains = {name: trained.exposures(number) for number, name in enumerate(record.learned)}
-    settings = replace(record.config.raster, threads=0)
-    return _Shown(trained.model, gains, settings, trained, record.learned, record.moves)
 
 
 def _decoded(source: PhotoSet, name: str) -> NDArray[np.uint8]:

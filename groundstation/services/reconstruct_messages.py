@@ -41,6 +41,29 @@ class Subject:
     name: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A plane that cuts a model: what lies beyond it is not shown.
+
+    Parameters
+    ----------
+    axis
+        0: towards the east, 1: the north, 2: upwards.
+    at_m
+        Where on that axis, ENU.
+    is_above
+        Whether what is further along the axis is left out; else what is before.
+    """
+
+    axis: int
+    at_m: float
+    is_above: bool = True
+
+
+Tints = tuple[tuple[int, tuple[int, int, int]], ...]
+"""Colours of panels, red, green, blue, by their numbers."""
+
+
 # To the process
 
 
@@ -95,6 +118,10 @@ class Look:
         `picture`, or one of `LAYERS`.
     exposed_as
         Name of a photo whose exposure the picture shall have; "" for that of no photo.
+    tints
+        Of panels of a finished model.
+    section
+        That cuts a finished model.
     """
 
     place: str
@@ -103,6 +130,26 @@ class Look:
     camera: PosedPhoto
     layer: str = "picture"
     exposed_as: str = ""
+    tints: Tints = ()
+    section: Section | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Probe:
+    """What is at a place in a picture of a finished model; of two with one `place`, the newer alone is answered.
+
+    Parameters
+    ----------
+    at_px
+        Column and row, continuous, in the picture of `camera`.
+    """
+
+    place: str
+    number: int
+    subject: Subject
+    camera: PosedPhoto
+    at_px: tuple[float, float]
+    section: Section | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,6 +228,24 @@ class Seen:
     scale: tuple[float, float] | None = None
     depth_m: float | None = None
     seconds: float = 0.0
+    problem: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Probed:
+    """The answer to a probe.
+
+    Parameters
+    ----------
+    panel
+        Its number in the model; None where there is none.
+    point_enu_m
+        None where nothing is.
+    """
+
+    probe: Probe
+    panel: int | None
+    point_enu_m: tuple[float, float, float] | None
     problem: str = ""
 
 

@@ -28,6 +28,7 @@ from groundstation.services.reconstruct_messages import (
     Measured,
     Pause,
     Phase,
+    Probe,
     Stage,
     Stepped,
     Stop,
@@ -56,7 +57,7 @@ class _Wishes:
         """None: there is something to look at, or the window has gone."""
         self.pause, self.stop, self.cancel, self.gone = (threading.Event() for _ in range(4))
         self.errors: WatchErrors | None = None
-        self._looks: dict[str, Look] = {}
+        self._looks: dict[tuple[type, str], Look | Probe] = {}
         self._lock = threading.Lock()
 
     def read(self, source: IO[bytes]) -> None:
@@ -71,17 +72,17 @@ class _Wishes:
         time.sleep(LAST_S)
         os._exit(0)
 
-    def next_look(self) -> Look | None:
-        """The look that was asked for first, of those that no newer one has replaced."""
+    def next_look(self) -> Look | Probe | None:
+        """The look or probe that was asked for first, of those that no newer one has replaced."""
         with self._lock:
             place = next(iter(self._looks), None)
             return None if place is None else self._looks.pop(place)
 
     def _take(self, message: Any) -> None:
         match message:
-            case Look():
+            case Look() | Probe():
                 with self._lock:
-                    self._looks[message.place] = message
+                    self._looks[type(message), message.place] = message
                 self.orders.put(None)
             case WatchErrors():
                 self.errors = message
@@ -204,8 +205,11 @@ class _Server:
     def _look(self) -> bool:
         """Answer one look; whether there was one."""
         look = self._wishes.next_look()
-        if look is not None:
-            self._tell(self._darkroom.seen(look))
+        match look:
+            case Look():
+                self._tell(self._darkroom.seen(look))
+            case Probe():
+                self._tell(self._darkroom.probed(look))
         return look is not None
 
     def _tell(self, message: Any) -> None:

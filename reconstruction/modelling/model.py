@@ -219,6 +219,29 @@ class SceneModel(nn.Module):
             self.light.finish(config)
         self.eval()
 
+    def with_splats(self, rows: Tensor) -> SceneModel:
+        """A model of some of its splats, which shares all else with it.
+
+        Parameters
+        ----------
+        rows
+            Shape (n,), bool.
+        """
+        values = {name: getattr(self.splats, name).detach()[rows] for name in self.splats.names}
+        found = SceneModel(
+            Splats(values, self.splats.panels[rows]),
+            self.sky,
+            self.light,
+            self.planes,
+            self.origin_enu_m,
+            self.corner_square,
+            self.geometry,
+            self.precision,
+            self.shader,
+        )
+        found.corner_loss = self.corner_loss
+        return found.train(self.training)
+
     def empty_places(self) -> Tensor | None:
         """Of a radiance grid, where rays may leap: found out from its weights now and then, so part of its state."""
         if self.light is None or not isinstance(self.light.light, RadianceGrid):

@@ -6,11 +6,13 @@ A panel is met on either side: somebody who flies around a model may look at it 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.cameras import PosedPhoto
+from reconstruction.dataset.panel_images import draw_panels
 
 Array = NDArray[np.float64]
 
@@ -116,6 +118,24 @@ def picked(quads: Quads, camera: PosedPhoto, places_px: Array, depths_m: Array |
     numbers, distances = quads.met(camera.pose.position_enu_m, rays)
     if depths_m is None:
         return numbers
-    depths = distances * (rays @ camera.pose.forward_enu)
-    hidden = np.isfinite(depths_m) & (depths_m < depths * (1.0 - BEFORE_SHARE) - BEFORE_M)
-    return np.where(hidden, -1, numbers)
+    return np.where(_is_before(depths_m, distances * (rays @ camera.pose.forward_enu)), -1, numbers)
+
+
+def panel_map(quads: Quads, camera: PosedPhoto, depths_m: NDArray[np.float32]) -> NDArray[np.int32]:
+    """Numbers of the panels at all pixels of a picture, shape (h, w); -1 for none.
+
+    The same as `picked` of all pixels' middles, but for those on panels' edges, in a fraction of the time.
+
+    Parameters
+    ----------
+    depths_m
+        Of the picture, along the optical axis, shape (h, w); infinite where nothing is.
+    """
+    drawn = draw_panels(camera, quads.corners_enu_m)
+    return np.where(_is_before(depths_m, drawn.depth_m), -1, drawn.index.astype(np.int32) - 1)
+
+
+def _is_before(depths_m: NDArray[Any], panels_m: NDArray[Any]) -> NDArray[np.bool_]:
+    """Whether what a picture shows stands before the panels there."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.isfinite(depths_m) & (depths_m < panels_m * (1.0 - BEFORE_SHARE) - BEFORE_M))
