@@ -6,11 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.services.scene_records import keep_objects
 from planning.progress import QUIET, Monitor
 from planning.site_file import read_site
 
 if TYPE_CHECKING:
     from reconstruction.objects.gs_scene import GsScene
+
+SUFFIX = ".gsscene"
+"""Of folders of scenes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +48,17 @@ class Organised:
         }
 
 
-def organise_files(model: Path, out: Path, site: Path | None = None, monitor: Monitor = QUIET) -> Organised:
-    """Write a trained model as a scene of objects.
+def organise_files(
+    model: Path, out: Path, site: Path | None = None, monitor: Monitor = QUIET, who: str = "organise"
+) -> Organised:
+    """Write a trained model as a scene of objects; records that lie there are told of them.
 
     Parameters
     ----------
     site
         Site file that tells which object of a building model each panel is; None: what the model knows of that.
+    who
+        Named in the history of the records.
 
     Raises
     ------
@@ -65,6 +73,7 @@ def organise_files(model: Path, out: Path, site: Path | None = None, monitor: Mo
     source_ids = None if site is None else _source_ids(site)
     scene = organised(trained, source_ids)
     write_scene(scene, out, monitor)
+    keep_objects(out, who)
     elements = [element for _, element in scene.elements]
     return Organised(
         out,
@@ -74,6 +83,24 @@ def organise_files(model: Path, out: Path, site: Path | None = None, monitor: Mo
         len(PanelGlobalIds.of(trained.record, source_ids).source_ids),
         sum(element.n_gaussians == 0 for element in elements),
     )
+
+
+def organised_beside(folder: Path, monitor: Monitor = QUIET) -> Path:
+    """The folder itself where it holds a scene; else its model is organised into one beside it.
+
+    Raises
+    ------
+    InputError
+        It holds neither, or a file cannot be read or written.
+    """
+    from reconstruction.modelling.saved import DESCRIPTION as MODEL
+    from reconstruction.objects.store import DESCRIPTION as SCENE
+
+    model, out = folder / MODEL, folder.with_name(folder.name.removesuffix(".model") + SUFFIX)
+    if (folder / SCENE).is_file() or not model.is_file():
+        return folder
+    is_newer = (out / SCENE).is_file() and (out / SCENE).stat().st_mtime >= model.stat().st_mtime
+    return out if is_newer else organise_files(folder, out, None, monitor).folder
 
 
 def scene_of(folder: Path, monitor: Monitor = QUIET) -> GsScene:

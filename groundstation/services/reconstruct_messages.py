@@ -153,6 +153,13 @@ class Probe:
 
 
 @dataclass(frozen=True, slots=True)
+class Organise:
+    """Make a scene of objects of the trained model in a folder, beside it, where there is none yet or an older one."""
+
+    folder: Path
+
+
+@dataclass(frozen=True, slots=True)
 class WatchErrors:
     """Tell how well a model shows each photo of a data set, in turn; None: tell no more."""
 
@@ -246,6 +253,15 @@ class Probed:
     probe: Probe
     panel: int | None
     point_enu_m: tuple[float, float, float] | None
+    problem: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneMade:
+    """The answer to `Organise`: where the scene is; or a problem."""
+
+    asked: Organise
+    folder: Path | None
     problem: str = ""
 
 

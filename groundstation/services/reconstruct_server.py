@@ -26,9 +26,11 @@ from groundstation.services.reconstruct_messages import (
     Ended,
     Look,
     Measured,
+    Organise,
     Pause,
     Phase,
     Probe,
+    SceneMade,
     Stage,
     Stepped,
     Stop,
@@ -36,7 +38,7 @@ from groundstation.services.reconstruct_messages import (
     WatchErrors,
 )
 from groundstation.services.reconstruct_places import note_training
-from planning.errors import OperationCancelled
+from planning.errors import GroundStationError, OperationCancelled
 from planning.progress import Trace
 
 if TYPE_CHECKING:
@@ -53,7 +55,7 @@ class _Wishes:
     """What the window wants now; written by the thread that reads, asked by the one that works."""
 
     def __init__(self) -> None:
-        self.orders: queue.SimpleQueue[Train | AskScene | None] = queue.SimpleQueue()
+        self.orders: queue.SimpleQueue[Train | AskScene | Organise | None] = queue.SimpleQueue()
         """None: there is something to look at, or the window has gone."""
         self.pause, self.stop, self.cancel, self.gone = (threading.Event() for _ in range(4))
         self.errors: WatchErrors | None = None
@@ -91,6 +93,8 @@ class _Wishes:
                 for event in (self.pause, self.stop, self.cancel):
                     event.clear()
                 self.orders.put(message)
+            case Organise():
+                self.orders.put(message)
             case Pause(is_on):
                 (self.pause.set if is_on else self.pause.clear)()
             case Stop():
@@ -127,6 +131,8 @@ class _Server:
                     self._train(order)
                 case AskScene():
                     self._ask(order)
+                case Organise():
+                    self._organise(order)
 
     # Work
 
@@ -173,6 +179,14 @@ class _Server:
             self._tell(Ended("failed", _sendable(error)))
         else:
             self._tell(Ended("done"))
+
+    def _organise(self, order: Organise) -> None:
+        from groundstation.services.model_objects import organised_beside
+
+        try:
+            self._tell(SceneMade(order, organised_beside(order.folder)))
+        except GroundStationError as error:
+            self._tell(SceneMade(order, None, str(error)))
 
     def report(self, stage: str, done: float, total: float) -> None:
         """Monitor of a training: looks at photos and finished models come between, its own model only in visits."""

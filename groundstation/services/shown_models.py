@@ -123,6 +123,9 @@ def tinted(picture: NDArray[np.uint8], quads: Quads, look: Look, depth_m: NDArra
         if 0 <= panel < len(quads.normals):
             colours[panel], shares[panel] = colour, TINT_SHARE
     panels = panel_map(quads, look.camera, depth_m)
+    if look.section is not None:
+        # What a section has taken away has left its panels empty.
+        panels[~np.isfinite(depth_m)] = -1
     mixed = picture * (1.0 - shares[panels]) + colours[panels] * shares[panels]
     return np.asarray(np.round(mixed), np.uint8)
 
@@ -147,7 +150,7 @@ def probed(probe: Probe, shown: ShownModel, model: SceneModel) -> Probed:
     ray, origin = rays_of(camera, place)[0], camera.pose.position_enu_m
     if shown.quads is not None:
         panel = int(picked(shown.quads, camera, place, np.array([depth_m]))[0])
-        if panel >= 0:
+        if panel >= 0 and (probe.section is None or np.isfinite(depth_m)):
             _, distances = shown.quads.met(origin, ray[None])
             return Probed(probe, panel, _point(origin + distances[0] * ray))
     if not np.isfinite(depth_m) or depth_m <= 0.0:

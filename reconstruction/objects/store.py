@@ -63,7 +63,7 @@ WIDEST = 4096
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
+class StoredPart:
     """A file.
 
     Parameters
@@ -83,7 +83,15 @@ class _Part:
 
 
 @dataclass(frozen=True, slots=True)
-class _Component(_Part):
+class StoredComponent(StoredPart):
+    """A component's file, and all of the component but its Gaussians.
+
+    Parameters
+    ----------
+    min_enu_m, max_enu_m
+        Of the means; None where it has none.
+    """
+
     kind: Kind
     global_id: str
     n_gaussians: int
@@ -93,7 +101,7 @@ class _Component(_Part):
 
     def __post_init__(self) -> None:
         # Zero-argument super() has no class to look at in a dataclass with slots.
-        _Part.__post_init__(self)
+        StoredPart.__post_init__(self)
         if not 0 <= self.n_gaussians <= LARGEST:
             raise ValueError(f"n_gaussians: expected 0 to {LARGEST}, got {self.n_gaussians}")
 
@@ -104,8 +112,8 @@ class _Scene:
     global_id: str
     origin: Origin | None
     origin_enu_m: Vec3
-    components: tuple[_Component, ...]
-    auxiliary: tuple[_Part, ...]
+    components: tuple[StoredComponent, ...]
+    auxiliary: tuple[StoredPart, ...]
     training: dict[str, Any]
 
     def __post_init__(self) -> None:
@@ -138,14 +146,14 @@ def write_scene(scene: GsScene, folder: Path, monitor: Monitor = QUIET) -> None:
         raise ValueError("scene: expected all of its components")
     make_folder(folder)
     n_parts = len(scene.components) + len(scene.auxiliary)
-    components: list[_Component] = []
+    components: list[StoredComponent] = []
     for number, component in enumerate(scene.components):
         monitor.report("writing components", number, n_parts)
         table = component.gaussians
         part = _written(folder, component.name, {**table.values, PLACES: table.places})
         lowest, highest = _bounds(scene, component)
         components.append(
-            _Component(
+            StoredComponent(
                 **asdict(part),
                 kind=component.kind,
                 global_id=component.global_id,
@@ -199,6 +207,26 @@ class StoredScene:
         return tuple(component.name for component in self._scene.components)
 
     @property
+    def name(self) -> str:
+        """Of the site."""
+        return self._scene.name
+
+    @property
+    def global_id(self) -> str:
+        """Of the scene."""
+        return self._scene.global_id
+
+    @property
+    def origin(self) -> Origin | None:
+        """Of the site's ENU frame on Earth, where it is known."""
+        return self._scene.origin
+
+    @property
+    def heads(self) -> tuple[StoredComponent, ...]:
+        """Components with their elements, without a Gaussian being read."""
+        return self._scene.components
+
+    @property
     def n_gaussians(self) -> int:
         """Of all components."""
         return sum(component.n_gaussians for component in self._scene.components)
@@ -245,7 +273,7 @@ class StoredScene:
                     return element, self._table(component, values, element.n_gaussians)
         raise InputError(f"{self._path}: has no element with the GlobalId '{global_id[:40]}'")
 
-    def _component(self, component: _Component) -> GsComponent:
+    def _component(self, component: StoredComponent) -> GsComponent:
         table = self._table(component, self._checked(component), component.n_gaussians)
         name, kind, global_id = component.name, component.kind, component.global_id
         try:
@@ -253,7 +281,7 @@ class StoredScene:
         except ValueError as error:
             raise InputError(f"{self._path}: component '{name}': {error}") from error
 
-    def _table(self, component: _Component, values: dict[str, Array], n: int) -> GsGaussian:
+    def _table(self, component: StoredComponent, values: dict[str, Array], n: int) -> GsGaussian:
         path = self.folder / component.file
         places = values.pop(PLACES, None)
         if places is None or places.dtype != np.int32 or places.shape != (n,):
@@ -272,7 +300,7 @@ class StoredScene:
                 raise InputError(f"{path}: {name}: holds numbers that are not finite; train again")
         return GsGaussian(values, places)
 
-    def _checked(self, part: _Part) -> dict[str, Array]:
+    def _checked(self, part: StoredPart) -> dict[str, Array]:
         """All that a file has, if it is the one that was written."""
         path = self.folder / part.file
         try:
@@ -287,10 +315,10 @@ class StoredScene:
             raise InputError(f"{path}: is not the file that {DESCRIPTION} was written with; was it changed or cut off?")
         return self._opened(part, lambda file: {name: file.get_tensor(name) for name in file.keys()})  # noqa: SIM118
 
-    def _rows(self, part: _Part, start: int, stop: int) -> dict[str, Array]:
+    def _rows(self, part: StoredPart, start: int, stop: int) -> dict[str, Array]:
         return self._opened(part, lambda file: {name: file.get_slice(name)[start:stop] for name in file.keys()})  # noqa: SIM118
 
-    def _opened(self, part: _Part, read: Any) -> dict[str, Array]:
+    def _opened(self, part: StoredPart, read: Any) -> dict[str, Array]:
         path = self.folder / part.file
         try:
             with safe_open(path, framework="numpy") as file:
@@ -311,14 +339,14 @@ def read_scene(folder: Path, components: Collection[str] | None = None, monitor:
     return StoredScene(folder).read(components, monitor)
 
 
-def _written(folder: Path, name: str, tensors: Mapping[str, Array]) -> _Part:
+def _written(folder: Path, name: str, tensors: Mapping[str, Array]) -> StoredPart:
     content = save({key: np.ascontiguousarray(value) for key, value in tensors.items()})
     digest = hashlib.sha256(content).hexdigest()
     # Names of facades are a user's own: of them only what every file system has goes into a file's name.
     plain = re.sub(r"[^A-Za-z0-9]+", "-", name).strip("-")[:40] or "part"
     file = f"{plain}-{digest[:12]}{SUFFIX}"
     write_atomically(folder / file, content)
-    return _Part(name, file, digest, len(content))
+    return StoredPart(name, file, digest, len(content))
 
 
 def _bounds(scene: GsScene, component: GsComponent) -> tuple[Vec3 | None, Vec3 | None]:

@@ -120,8 +120,19 @@ def _variants(node):
     return [[None]]
 
 
+SQL = re.compile(
+    r"^\s*\(?(INSERT|UPDATE|DELETE|SELECT|WHERE|BEGIN|CREATE|EXISTS|NOT EXISTS|AND)\b|= \?|\bOR \?|lower\(\?\)|IS NULL"
+    r"|\b(DESC|JOIN|REFERENCES)\b|^[oe]\.\w+,|^\w+ = (OFF|ON|EXTRA)$|^\(layer, "
+)
+"""What a database is told."""
+
+
 def _is_sentence(text):
-    return " " in text.strip() and re.search(r"[^\W\d_]{2}", re.sub(r"\{\d\}", "", text)) is not None
+    return (
+        not SQL.search(text)
+        and " " in text.strip()
+        and re.search(r"[^\W\d_]{2}", re.sub(r"\{\d\}", "", text)) is not None
+    )
 
 
 def _name(node):

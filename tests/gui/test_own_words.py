@@ -21,6 +21,7 @@ from groundstation.gui.sentences import (
     plan,
     project,
     reconstruct,
+    records,
     refine,
     report,
     scenes,
@@ -57,6 +58,7 @@ FROM_SOURCES = (
         plan,
         project,
         reconstruct,
+        records,
         refine,
         report,
         scenes,
@@ -117,7 +119,7 @@ NOT_SHOWN = {
 """Files that the window imports, but whose sentences nobody reads there, and why."""
 
 FROM_MODEL_PROCESS = {
-    *(f"groundstation/services/{name}.py" for name in ("model_training", "reconstruct_looks")),
+    *(f"groundstation/services/{name}.py" for name in ("model_training", "reconstruct_looks", "shown_models")),
     *(
         f"reconstruction/modelling/{name}.py"
         for name in ("checkpoints", "photo_stream", "saved", "start", "train", "trainer", "training_state")
@@ -135,6 +137,8 @@ NO_SENTENCE = {
         *("covered at least {0} times", "finest pixel", "coarsest pixel", "finest pixel on the worst panel"),
         *("smallest clearance", "findings: {0}"),
     ),
+    "what the history of records says": ("objects of the model", "{0} put", "{0} removed", "undone: {0}"),
+    "names that GlobalIds follow from": ("facade {0}",),
     "keys and comments of files of models": (
         *("site: {0}", "site origin, WGS 84 lat lon ellipsoid height: {0}", "empty places"),
     ),

@@ -16,7 +16,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
 from groundstation.services.reconstruct_camera import sized
-from groundstation.services.reconstruct_messages import Look, Seen, Subject
+from groundstation.services.reconstruct_messages import Look, Section, Seen, Subject, Tints
 from reconstruction.cameras import PosedPhoto
 
 QUICK_S = 0.12
@@ -51,14 +51,18 @@ class View:
     layer
         `picture`, or one of `LAYERS`.
     exposed_as
-        Name of a photo.
+        Name of a photo; "" for none.
+    tints, section
+        See `Look`.
     """
 
     camera: PosedPhoto
     left: Subject | None
     right: Subject | None
     layer: str
-    exposed_as: str
+    exposed_as: str = ""
+    tints: Tints = ()
+    section: Section | None = None
 
 
 class Looks(QObject):
@@ -184,7 +188,7 @@ class Looks(QObject):
         self._on_way[place] = number
         self._shown[place] = (self._version, is_fine)
         layer = "picture" if subject.kind == "photo" else view.layer
-        self._send(Look(place, number, subject, camera, layer, view.exposed_as))
+        self._send(Look(place, number, subject, camera, layer, view.exposed_as, view.tints, view.section))
 
     def _fine_px(self) -> float:
         width, height = self._size_px()

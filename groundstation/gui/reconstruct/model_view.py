@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
@@ -11,6 +13,7 @@ from PySide6.QtGui import (
     QPainter,
     QPaintEvent,
     QPen,
+    QPolygonF,
     QResizeEvent,
     QWheelEvent,
 )
@@ -31,6 +34,31 @@ GRAB_PX = 10.0
 
 PAD_PX = 6.0
 
+CLICK_PX = 4.0
+"""That the mouse may move between being pressed and let go."""
+
+MARK_PX = 2.5
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A line or outline drawn over the picture.
+
+    Parameters
+    ----------
+    points
+        In shares of the picture's width and height, from its upper left corner.
+    colour
+        As Qt has it.
+    text
+        Beside its middle; "" for none.
+    """
+
+    points: tuple[tuple[float, float], ...]
+    colour: str
+    is_closed: bool = True
+    text: str = ""
+
 
 class ModelView(QWidget):
     """Shows one picture, or two that are divided by an upright line.
@@ -45,6 +73,8 @@ class ModelView(QWidget):
         Back to where the photo was taken.
     valueChanged(float)
         Where the line is, 0 at the left, 1 at the right.
+    clicked(float, float), pointed(float, float)
+        A place in the picture was clicked, or the mouse is there: shares of its width and height.
     resized()
     """
 
@@ -53,6 +83,8 @@ class ModelView(QWidget):
     moved = Signal(float, float, float)
     homeAsked = Signal()  # noqa: N815  (Qt's own way of naming)
     valueChanged = Signal(float)  # noqa: N815
+    clicked = Signal(float, float)
+    pointed = Signal(float, float)
     resized = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -61,6 +93,8 @@ class ModelView(QWidget):
         self._right: QImage | None = None
         self._words, self._note = ("", ""), ""
         self._line, self._grabbed, self._holds_line = 0.5, QPointF(), False
+        self._pressed: QPointF | None = None
+        self._marks: tuple[Mark, ...] = ()
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)
         self.setMinimumSize(QSize(240, 160))
@@ -87,6 +121,16 @@ class ModelView(QWidget):
         if note != self._note:
             self._note = note
             self.update()
+
+    def set_marks(self, marks: tuple[Mark, ...]) -> None:
+        """Draw lines over the picture, in the place of those that were there."""
+        if marks != self._marks:
+            self._marks = marks
+            self.update()
+
+    def marks(self) -> tuple[Mark, ...]:
+        """What is drawn over the picture."""
+        return self._marks
 
     def note(self) -> str:
         """What is said."""
@@ -130,6 +174,8 @@ class ModelView(QWidget):
                 painter.setClipRect(QRectF(at, room.top(), room.right() - at, room.height()))
             painter.drawImage(room, right)
             painter.restore()
+        if left is not None:
+            self._paint_marks(painter, room)
         if left is not None and right is not None:
             painter.setPen(QPen(QColor("#000000"), 5.0))
             painter.drawLine(QPointF(at, room.top()), QPointF(at, room.bottom()))
@@ -145,6 +191,33 @@ class ModelView(QWidget):
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
         painter.end()
+
+    def _paint_marks(self, painter: QPainter, room: QRectF) -> None:
+        painter.save()
+        painter.setClipRect(room)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for mark in self._marks:
+            points = [QPointF(room.left() + x * room.width(), room.top() + y * room.height()) for x, y in mark.points]
+            for pen in (QPen(QColor(0, 0, 0, 170), 2.0 * MARK_PX), QPen(QColor(mark.colour), MARK_PX)):
+                painter.setPen(pen)
+                if mark.is_closed:
+                    painter.drawPolygon(QPolygonF(points))
+                else:
+                    painter.drawPolyline(QPolygonF(points))
+                    for point in points:
+                        painter.drawEllipse(point, MARK_PX, MARK_PX)
+            if mark.text:
+                middle = QPointF(sum(at.x() for at in points) / len(points), sum(at.y() for at in points) / len(points))
+                self._paint_box(painter, middle, mark.text)
+        painter.restore()
+
+    def _paint_box(self, painter: QPainter, at: QPointF, text: str) -> None:
+        box = QRectF(painter.fontMetrics().boundingRect(text)).adjusted(-PAD_PX, -3.0, PAD_PX, 3.0)
+        box.moveCenter(at)
+        painter.fillRect(box, QColor(0, 0, 0, 160))
+        painter.setPen(QColor("#ffffff"))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def _paint_words(self, painter: QPainter, room: QRectF, words: str, side: Qt.AlignmentFlag) -> None:
         if not words:
@@ -187,6 +260,7 @@ class ModelView(QWidget):
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Take hold of the line, or of the scene."""
         self._grabbed = event.position()
+        self._pressed = event.position() if event.button() is Qt.MouseButton.LeftButton else None
         self._holds_line = self._is_at_line(event.position()) and event.button() is Qt.MouseButton.LeftButton
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
@@ -195,7 +269,11 @@ class ModelView(QWidget):
         if buttons is Qt.MouseButton.NoButton or not buttons:
             is_line = self._is_at_line(at)
             self.setCursor(Qt.CursorShape.SplitHCursor if is_line else Qt.CursorShape.ArrowCursor)
+            self.pointed.emit(*self._shares(at))
             return
+        if self._pressed is not None and (at - self._pressed).manhattanLength() <= CLICK_PX:
+            return  # a hand that clicks is not quite still
+        self._pressed = None
         step, self._grabbed = at - self._grabbed, at
         if self._holds_line:
             room = self.room()
@@ -208,9 +286,16 @@ class ModelView(QWidget):
         else:
             self.orbited.emit(-TURN_RAD_PX * step.x(), TURN_RAD_PX * step.y())
 
-    def mouseReleaseEvent(self, _event: QMouseEvent) -> None:  # noqa: N802
-        """Let go."""
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
+        """Let go; where nothing was dragged, it was a click."""
+        pressed, self._pressed = self._pressed, None
+        if pressed is not None and not self._holds_line and self._left is not None:
+            self.clicked.emit(*self._shares(event.position()))
         self._holds_line = False
+
+    def _shares(self, at: QPointF) -> tuple[float, float]:
+        room = self.room()
+        return (at.x() - room.left()) / max(room.width(), 1.0), (at.y() - room.top()) / max(room.height(), 1.0)
 
     def mouseDoubleClickEvent(self, _event: QMouseEvent) -> None:  # noqa: N802
         """Back to the photo's own place."""

@@ -1,27 +1,22 @@
-"""The Model tab: its place in the window; what it will do is not built yet, and it says so."""
+"""The Model tab: a finished model seen from anywhere, its panels, and the record of each."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication
-
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.prepared_tab import PreparedTab
+    from groundstation.gui.model.model_page import ModelPage
     from groundstation.gui.stage import Stage
     from groundstation.gui.workspace import Workspace
 
 
-def make(_workspace: Workspace, _stage: Stage) -> PreparedTab:
-    """Page that says what to do meanwhile."""
-    from groundstation.gui.prepared_tab import PreparedTab
+def make(workspace: Workspace, stage: Stage) -> ModelPage:
+    """Panels, the view of the model, and records."""
+    from groundstation.gui.model.model_page import ModelPage
 
-    return PreparedTab(
-        QCoreApplication.translate("Tabs", "Viewing models in this window is not built yet."),
-        QCoreApplication.translate("Tabs", "Panels of the site can be looked at on the Site tab."),
-    )
+    return ModelPage(workspace, stage)
 
 
 TAB = TabSpec(
@@ -31,4 +26,5 @@ TAB = TabSpec(
     tip=QT_TRANSLATE_NOOP("Tabs", "Look at the model and the record of each panel"),
     place=Place.WHOLE_PAGE,
     make=make,
+    implementation="groundstation.gui.model.model_page",
 )

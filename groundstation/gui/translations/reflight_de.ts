@@ -2772,6 +2772,64 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
+    <name>ModelDesk</name>
+    <message>
+        <source>Open the model</source>
+        <translation>Modell öffnen</translation>
+    </message>
+    <message>
+        <source>The process that shows models has ended (exit status {0}); it starts anew.</source>
+        <translation>Der Prozess, der Modelle zeigt, ist beendet (Status {0}); er startet neu.</translation>
+    </message>
+</context>
+<context>
+    <name>ModelPage</name>
+    <message>
+        <source>Folder of a model</source>
+        <translation>Ordner eines Modells</translation>
+    </message>
+    <message>
+        <source>Save the picture</source>
+        <translation>Das Bild sichern</translation>
+    </message>
+    <message>
+        <source>Pictures (*.png)</source>
+        <translation>Bilder (*.png)</translation>
+    </message>
+    <message>
+        <source>The picture is written: {0}</source>
+        <translation>Das Bild ist geschrieben: {0}</translation>
+    </message>
+    <message>
+        <source>{0} cannot be written; choose another place</source>
+        <translation>{0} lässt sich nicht schreiben; einen anderen Ort wählen</translation>
+    </message>
+    <message>
+        <source>Save the report</source>
+        <translation>Den Bericht sichern</translation>
+    </message>
+    <message>
+        <source>Documents (*.pdf)</source>
+        <translation>Dokumente (*.pdf)</translation>
+    </message>
+    <message>
+        <source>The report is written: {0}</source>
+        <translation>Der Bericht ist geschrieben: {0}</translation>
+    </message>
+    <message>
+        <source>The model is being opened ...</source>
+        <translation>Das Modell wird geöffnet ...</translation>
+    </message>
+    <message>
+        <source>No model is open.</source>
+        <translation>Kein Modell geöffnet.</translation>
+    </message>
+    <message>
+        <source>{0}: {1} panels, {2} Gaussians</source>
+        <translation>{0}: {1} Scheiben, {2} Gauß-Splats</translation>
+    </message>
+</context>
+<context>
     <name>ModelView</name>
     <message>
         <source>Picture of the model</source>
@@ -2987,6 +3045,49 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Found in photos: corners ± {0:.3g} {1}, confidence {2:.0f} %</source>
         <translation>In Fotos gefunden: Ecken ± {0:.3g} {1}, Sicherheit {2:.0f} %</translation>
+    </message>
+</context>
+<context>
+    <name>PanelSide</name>
+    <message>
+        <source>Open a model ...</source>
+        <translation>Modell öffnen ...</translation>
+    </message>
+    <message>
+        <source>Several can be marked, with Ctrl or Shift, for a report</source>
+        <translation>Mit Strg oder Umschalt lassen sich mehrere für einen Bericht markieren</translation>
+    </message>
+    <message>
+        <source>Panels</source>
+        <translation>Scheiben</translation>
+    </message>
+    <message>
+        <source>Search panels and records</source>
+        <translation>Scheiben und Einträge suchen</translation>
+    </message>
+    <message>
+        <source>Colour panels by</source>
+        <translation>Scheiben einfärben nach</translation>
+    </message>
+    <message>
+        <source>nothing</source>
+        <translation>nichts</translation>
+    </message>
+    <message>
+        <source>last inspection</source>
+        <translation>letzter Prüfung</translation>
+    </message>
+    <message>
+        <source>worst open defect</source>
+        <translation>schwerstem offenen Schaden</translation>
+    </message>
+    <message>
+        <source>facade</source>
+        <translation>Fassade</translation>
+    </message>
+    <message>
+        <source>{0} without a value</source>
+        <translation>{0} ohne Wert</translation>
     </message>
 </context>
 <context>
@@ -4370,6 +4471,310 @@ Take it over?</source>
     </message>
 </context>
 <context>
+    <name>RecordDialog</name>
+    <message>
+        <source>Choose ...</source>
+        <translation>Wählen ...</translation>
+    </message>
+    <message>
+        <source>picture</source>
+        <translation>Bild</translation>
+    </message>
+    <message>
+        <source>or a file</source>
+        <translation>oder eine Datei</translation>
+    </message>
+    <message>
+        <source>Pictures (*.png *.jpg *.jpeg *.webp)</source>
+        <translation>Bilder (*.png *.jpg *.jpeg *.webp)</translation>
+    </message>
+    <message>
+        <source>Files (*)</source>
+        <translation>Dateien (*)</translation>
+    </message>
+</context>
+<context>
+    <name>RecordSide</name>
+    <message>
+        <source>Properties</source>
+        <translation>Eigenschaften</translation>
+    </message>
+    <message>
+        <source>Inspections</source>
+        <translation>Prüfungen</translation>
+    </message>
+    <message>
+        <source>Defects</source>
+        <translation>Schäden</translation>
+    </message>
+    <message>
+        <source>Maintenance</source>
+        <translation>Wartung</translation>
+    </message>
+    <message>
+        <source>Documents</source>
+        <translation>Dokumente</translation>
+    </message>
+    <message>
+        <source>Add ...</source>
+        <translation>Neu ...</translation>
+    </message>
+    <message>
+        <source>Change ...</source>
+        <translation>Ändern ...</translation>
+    </message>
+    <message>
+        <source>Take out</source>
+        <translation>Herausnehmen</translation>
+    </message>
+    <message>
+        <source>Undo</source>
+        <translation>Rückgängig</translation>
+    </message>
+    <message>
+        <source>Report as PDF ...</source>
+        <translation>Bericht als PDF ...</translation>
+    </message>
+    <message>
+        <source>No panel is chosen. Click one in the picture, or in the list.</source>
+        <translation>Keine Scheibe gewählt. Im Bild oder in der Liste eine anklicken.</translation>
+    </message>
+    <message>
+        <source>{0} x {1}, {2}</source>
+        <translation>{0} x {1}, {2}</translation>
+    </message>
+    <message>
+        <source>Records of the panel</source>
+        <translation>Einträge zur Scheibe</translation>
+    </message>
+    <message>
+        <source>Facade</source>
+        <translation>Fassade</translation>
+    </message>
+    <message>
+        <source>Size</source>
+        <translation>Größe</translation>
+    </message>
+    <message>
+        <source>GlobalId</source>
+        <translation>GlobalId</translation>
+    </message>
+    <message>
+        <source>Take the last change of records back</source>
+        <translation>Die letzte Änderung der Einträge zurücknehmen</translation>
+    </message>
+</context>
+<context>
+    <name>Records</name>
+    <message>
+        <source>2026-03-31</source>
+        <translation>2026-03-31</translation>
+    </message>
+    <message>
+        <source>Property</source>
+        <translation>Eigenschaft</translation>
+    </message>
+    <message>
+        <source>Inspection</source>
+        <translation>Prüfung</translation>
+    </message>
+    <message>
+        <source>Defect</source>
+        <translation>Schaden</translation>
+    </message>
+    <message>
+        <source>Maintenance</source>
+        <translation>Wartung</translation>
+    </message>
+    <message>
+        <source>Document</source>
+        <translation>Dokument</translation>
+    </message>
+    <message>
+        <source>name</source>
+        <translation>Name</translation>
+    </message>
+    <message>
+        <source>value</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>type</source>
+        <translation>Art des Wertes</translation>
+    </message>
+    <message>
+        <source>unit</source>
+        <translation>Einheit</translation>
+    </message>
+    <message>
+        <source>date</source>
+        <translation>Datum</translation>
+    </message>
+    <message>
+        <source>inspector</source>
+        <translation>Prüfer</translation>
+    </message>
+    <message>
+        <source>method</source>
+        <translation>Verfahren</translation>
+    </message>
+    <message>
+        <source>result</source>
+        <translation>Ergebnis</translation>
+    </message>
+    <message>
+        <source>note</source>
+        <translation>Bemerkung</translation>
+    </message>
+    <message>
+        <source>kind</source>
+        <translation>Art</translation>
+    </message>
+    <message>
+        <source>severity</source>
+        <translation>Schwere</translation>
+    </message>
+    <message>
+        <source>found on</source>
+        <translation>gefunden am</translation>
+    </message>
+    <message>
+        <source>from the left, 0 to 1</source>
+        <translation>von links, 0 bis 1</translation>
+    </message>
+    <message>
+        <source>from below, 0 to 1</source>
+        <translation>von unten, 0 bis 1</translation>
+    </message>
+    <message>
+        <source>state</source>
+        <translation>Zustand</translation>
+    </message>
+    <message>
+        <source>repaired on</source>
+        <translation>behoben am</translation>
+    </message>
+    <message>
+        <source>work</source>
+        <translation>Arbeit</translation>
+    </message>
+    <message>
+        <source>done by</source>
+        <translation>ausgeführt von</translation>
+    </message>
+    <message>
+        <source>cost</source>
+        <translation>Kosten</translation>
+    </message>
+    <message>
+        <source>currency</source>
+        <translation>Währung</translation>
+    </message>
+    <message>
+        <source>next due</source>
+        <translation>wieder fällig</translation>
+    </message>
+    <message>
+        <source>title</source>
+        <translation>Titel</translation>
+    </message>
+    <message>
+        <source>address or file</source>
+        <translation>Adresse oder Datei</translation>
+    </message>
+    <message>
+        <source>material</source>
+        <translation>Werkstoff</translation>
+    </message>
+    <message>
+        <source>maker</source>
+        <translation>Hersteller</translation>
+    </message>
+    <message>
+        <source>product</source>
+        <translation>Produkt</translation>
+    </message>
+    <message>
+        <source>coating</source>
+        <translation>Beschichtung</translation>
+    </message>
+    <message>
+        <source>thickness</source>
+        <translation>Dicke</translation>
+    </message>
+    <message>
+        <source>installed on</source>
+        <translation>eingebaut am</translation>
+    </message>
+    <message>
+        <source>warranty until</source>
+        <translation>Gewährleistung bis</translation>
+    </message>
+    <message>
+        <source>width</source>
+        <translation>Breite</translation>
+    </message>
+    <message>
+        <source>height</source>
+        <translation>Höhe</translation>
+    </message>
+    <message>
+        <source>open</source>
+        <translation>offen</translation>
+    </message>
+    <message>
+        <source>repaired</source>
+        <translation>behoben</translation>
+    </message>
+    <message>
+        <source>text</source>
+        <translation>Text</translation>
+    </message>
+    <message>
+        <source>number</source>
+        <translation>Zahl</translation>
+    </message>
+    <message>
+        <source>yes or no</source>
+        <translation>ja oder nein</translation>
+    </message>
+    <message>
+        <source>yes</source>
+        <translation>ja</translation>
+    </message>
+    <message>
+        <source>no</source>
+        <translation>nein</translation>
+    </message>
+</context>
+<context>
+    <name>ReportMaker</name>
+    <message>
+        <source>the process that shows models has ended; try again</source>
+        <translation>der Prozess, der Modelle zeigt, ist beendet; noch einmal versuchen</translation>
+    </message>
+    <message>
+        <source>Panels of {0}</source>
+        <translation>Scheiben von {0}</translation>
+    </message>
+    <message>
+        <source>Model of {0}</source>
+        <translation>Modell vom {0}</translation>
+    </message>
+    <message>
+        <source>Facade</source>
+        <translation>Fassade</translation>
+    </message>
+    <message>
+        <source>Size</source>
+        <translation>Größe</translation>
+    </message>
+    <message>
+        <source>GlobalId</source>
+        <translation>GlobalId</translation>
+    </message>
+</context>
+<context>
     <name>ReportView</name>
     <message>
         <source>Views of the flight</source>
@@ -4486,6 +4891,93 @@ Take it over?</source>
     <message>
         <source>place not known</source>
         <translation>Ort unbekannt</translation>
+    </message>
+</context>
+<context>
+    <name>ScenePane</name>
+    <message>
+        <source>Facade</source>
+        <translation>Fassade</translation>
+    </message>
+    <message>
+        <source>Measure</source>
+        <translation>Messen</translation>
+    </message>
+    <message>
+        <source>Panel</source>
+        <translation>Scheibe</translation>
+    </message>
+    <message>
+        <source>Save ...</source>
+        <translation>Sichern ...</translation>
+    </message>
+    <message>
+        <source>nothing</source>
+        <translation>nichts</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>keiner</translation>
+    </message>
+    <message>
+        <source>height</source>
+        <translation>Höhe</translation>
+    </message>
+    <message>
+        <source>east</source>
+        <translation>Ost</translation>
+    </message>
+    <message>
+        <source>north</source>
+        <translation>Nord</translation>
+    </message>
+    <message>
+        <source>Where the section is</source>
+        <translation>Wo der Schnitt liegt</translation>
+    </message>
+    <message>
+        <source>other side</source>
+        <translation>andere Seite</translation>
+    </message>
+    <message>
+        <source>Click two places: how far they are apart</source>
+        <translation>Zwei Stellen anklicken: wie weit sie auseinander sind</translation>
+    </message>
+    <message>
+        <source>See the largest facade from the front (0)</source>
+        <translation>Die größte Fassade von vorn sehen (0)</translation>
+    </message>
+    <message>
+        <source>Save the picture as a file</source>
+        <translation>Das Bild als Datei sichern</translation>
+    </message>
+    <message>
+        <source>See the chosen panel from the front</source>
+        <translation>Die gewählte Scheibe von vorn sehen</translation>
+    </message>
+    <message>
+        <source>Layer</source>
+        <translation>Ebene</translation>
+    </message>
+    <message>
+        <source>Beside it</source>
+        <translation>Daneben</translation>
+    </message>
+    <message>
+        <source>Section</source>
+        <translation>Schnitt</translation>
+    </message>
+    <message>
+        <source>Open a model: a folder that &apos;train&apos; or &apos;organise&apos; has made.</source>
+        <translation>Ein Modell öffnen: einen Ordner, den &apos;train&apos; oder &apos;organise&apos; angelegt hat.</translation>
+    </message>
+    <message>
+        <source>Click two places.</source>
+        <translation>Zwei Stellen anklicken.</translation>
+    </message>
+    <message>
+        <source>{0}; {1} along the ground, {2} in height</source>
+        <translation>{0}; {1} am Boden, {2} in der Höhe</translation>
     </message>
 </context>
 <context>
@@ -9953,6 +10445,326 @@ Take it over?</source>
         <source>the panes show {0}: harmonics alone {1} dB</source>
         <translation>die Scheiben zeigen {0}: Kugelfunktionen allein {1} dB</translation>
     </message>
+    <message>
+        <source>writing components</source>
+        <translation>Bauteile werden geschrieben</translation>
+    </message>
+    <message>
+        <source>holds no scene of objects ({0}); make one with `organise`</source>
+        <translation>enthält keine Szene aus Objekten ({0}); mit `organise` eine anlegen</translation>
+    </message>
+    <message>
+        <source>has no component &apos;{0}&apos;; it has {1}</source>
+        <translation>hat kein Bauteil „{0}“; vorhanden sind {1}</translation>
+    </message>
+    <message>
+        <source>reading components</source>
+        <translation>Bauteile werden gelesen</translation>
+    </message>
+    <message>
+        <source>has no element with the GlobalId &apos;{0}&apos;</source>
+        <translation>hat kein Element mit der GlobalId „{0}“</translation>
+    </message>
+    <message>
+        <source>component &apos;{0}&apos;: {1}</source>
+        <translation>Bauteil „{0}“: {1}</translation>
+    </message>
+    <message>
+        <source>expected {0} of int32; it is damaged, or of another program</source>
+        <translation>erwartet werden {0} vom Typ int32; die Datei ist beschädigt oder von einem anderen Programm</translation>
+    </message>
+    <message>
+        <source>has no &apos;{0}&apos; of Gaussians; it is damaged, or of another program</source>
+        <translation>hat kein „{0}“ der Gauß-Splats; die Datei ist beschädigt oder von einem anderen Programm</translation>
+    </message>
+    <message>
+        <source>expected {0} rows of float32, found {1} of shape {2}</source>
+        <translation>erwartet werden {0} Zeilen float32, gefunden {1} der Form {2}</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos;: {1} and {2} have this name; give the GlobalId</source>
+        <translation>„{0}“: {1} und {2} heißen so; die GlobalId angeben</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos;: there is no such object; give its name or its GlobalId</source>
+        <translation>„{0}“: ein solches Objekt gibt es nicht; Namen oder GlobalId angeben</translation>
+    </message>
+    <message>
+        <source>facts: origin: {0}; the file is damaged</source>
+        <translation>facts: origin: {0}; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>there is no {0} with the key &apos;{1}&apos;</source>
+        <translation>es gibt keinen Eintrag der Art {0} mit dem Schlüssel „{1}“</translation>
+    </message>
+    <message>
+        <source>key: the {0} {1} belongs to another object, {2}</source>
+        <translation>key: der Eintrag {1} ({0}) gehört zu einem anderen Objekt, {2}</translation>
+    </message>
+    <message>
+        <source>the inspection of {0} has {1} defects; take these out first</source>
+        <translation>zur Prüfung vom {0} gehören {1} Schäden; diese zuerst herausnehmen</translation>
+    </message>
+    <message>
+        <source>the model has no object {0}</source>
+        <translation>das Modell hat kein Objekt {0}</translation>
+    </message>
+    <message>
+        <source>the object has an attribute &apos;{0}&apos; with another key</source>
+        <translation>das Objekt hat eine Eigenschaft „{0}“ mit einem anderen Schlüssel</translation>
+    </message>
+    <message>
+        <source>inspection: the object has no inspection with the key {0}</source>
+        <translation>inspection: das Objekt hat keine Prüfung mit dem Schlüssel {0}</translation>
+    </message>
+    <message>
+        <source>the records have the older version {0}; opening them for writing, as &apos;records FOLDER make&apos; does, brings them up to date</source>
+        <translation>die Einträge haben die ältere Version {0}; wer sie zum Schreiben öffnet, etwa mit &apos;records FOLDER make&apos;, bringt sie auf den neuen Stand</translation>
+    </message>
+    <message>
+        <source>the records are open for reading only</source>
+        <translation>die Einträge sind nur zum Lesen geöffnet</translation>
+    </message>
+    <message>
+        <source>the file is damaged ({0}); take a copy of it back</source>
+        <translation>die Datei ist beschädigt ({0}); eine Sicherung zurückholen</translation>
+    </message>
+    <message>
+        <source>{0} rows refer to rows that are not there; take a copy back</source>
+        <translation>{0} Zeilen verweisen auf Zeilen, die fehlen; eine Sicherung zurückholen</translation>
+    </message>
+    <message>
+        <source>is there already; nothing is written over it</source>
+        <translation>ist schon da; nichts wird überschrieben</translation>
+    </message>
+    <message>
+        <source>is a folder; expected a file with records</source>
+        <translation>ist ein Ordner; erwartet wird eine Datei mit Einträgen</translation>
+    </message>
+    <message>
+        <source>there are no records yet; make them with &apos;records FOLDER make&apos;</source>
+        <translation>es gibt noch keine Einträge; mit &apos;records FOLDER make&apos; anlegen</translation>
+    </message>
+    <message>
+        <source>expected a file with records, found a device or a pipe</source>
+        <translation>erwartet wird eine Datei mit Einträgen, gefunden wurde ein Gerät oder eine Pipe</translation>
+    </message>
+    <message>
+        <source>the file is empty; take a copy of it back</source>
+        <translation>die Datei ist leer; eine Sicherung zurückholen</translation>
+    </message>
+    <message>
+        <source>expected records (a SQLite file), found something else</source>
+        <translation>erwartet werden Einträge (eine SQLite-Datei), gefunden wurde etwas anderes</translation>
+    </message>
+    <message>
+        <source>the file is cut off or too large; take a copy of it back</source>
+        <translation>die Datei ist abgeschnitten oder zu groß; eine Sicherung zurückholen</translation>
+    </message>
+    <message>
+        <source>is a SQLite file of another program, not records of ours</source>
+        <translation>ist eine SQLite-Datei eines anderen Programms, keine unserer Einträge</translation>
+    </message>
+    <message>
+        <source>the file is cut off ({0} of {1} bytes); take a copy of it back</source>
+        <translation>die Datei ist abgeschnitten ({0} von {1} Bytes); eine Sicherung zurückholen</translation>
+    </message>
+    <message>
+        <source>the file is write-protected</source>
+        <translation>die Datei ist schreibgeschützt</translation>
+    </message>
+    <message>
+        <source>another program is writing the records; waited {0} s; try again</source>
+        <translation>ein anderes Programm schreibt gerade in die Einträge; {0} s gewartet; noch einmal versuchen</translation>
+    </message>
+    <message>
+        <source>the disk is full; nothing was changed</source>
+        <translation>der Datenträger ist voll; nichts wurde geändert</translation>
+    </message>
+    <message>
+        <source>the file or its folder is write-protected, or a write was interrupted here; make the folder writable and open it for writing</source>
+        <translation>die Datei oder ihr Ordner ist schreibgeschützt, oder ein Schreiben wurde hier unterbrochen; den Ordner beschreibbar machen und zum Schreiben öffnen</translation>
+    </message>
+    <message>
+        <source>cannot be opened; is its folder there, and may it be written?</source>
+        <translation>lässt sich nicht öffnen; ist der Ordner da, und darf darin geschrieben werden?</translation>
+    </message>
+    <message>
+        <source>the file is damaged; take a copy of it back</source>
+        <translation>die Datei ist beschädigt; eine Sicherung zurückholen</translation>
+    </message>
+    <message>
+        <source>the disk does not answer as it should; nothing was changed</source>
+        <translation>der Datenträger antwortet nicht wie erwartet; nichts wurde geändert</translation>
+    </message>
+    <message>
+        <source>a value is too large</source>
+        <translation>ein Wert ist zu groß</translation>
+    </message>
+    <message>
+        <source>cannot be used ({0})</source>
+        <translation>ist nicht zu gebrauchen ({0})</translation>
+    </message>
+    <message>
+        <source>expected a name without brackets, quotes and blanks around it, got &apos;{0}&apos;</source>
+        <translation>erwartet wird ein Name ohne Klammern, Anführungszeichen und Leerzeichen am Rand, angegeben ist „{0}“</translation>
+    </message>
+    <message>
+        <source>name: &apos;{0}&apos; stands for the object itself; use another name</source>
+        <translation>name: „{0}“ steht für das Objekt selbst; einen anderen Namen wählen</translation>
+    </message>
+    <message>
+        <source>follows from the corners of the pane and is not set</source>
+        <translation>ergibt sich aus den Ecken der Scheibe und wird nicht eingetragen</translation>
+    </message>
+    <message>
+        <source>{0} in {1}</source>
+        <translation>{0} in {1}</translation>
+    </message>
+    <message>
+        <source>expected a {0} in {1}, got a {2}</source>
+        <translation>erwartet wird {0} in {1}, angegeben ist {2}</translation>
+    </message>
+    <message>
+        <source>expected a {0}, got a {1}</source>
+        <translation>erwartet wird {0}, angegeben ist {1}</translation>
+    </message>
+    <message>
+        <source>expected yes or no, got {0}</source>
+        <translation>erwartet wird ja oder nein, angegeben ist {0}</translation>
+    </message>
+    <message>
+        <source>expected none while the defect is open, got {0}</source>
+        <translation>erwartet wird keines, solange der Schaden offen ist, angegeben ist {0}</translation>
+    </message>
+    <message>
+        <source>u, v: expected both or neither</source>
+        <translation>u, v: erwartet werden beide oder keines</translation>
+    </message>
+    <message>
+        <source>outline: expected none or 3 to {0} places, got {1}</source>
+        <translation>outline: erwartet werden keine oder 3 bis {0} Stellen, angegeben sind {1}</translation>
+    </message>
+    <message>
+        <source>currency: expected three letters such as EUR with every cost, got &apos;{0}&apos;</source>
+        <translation>Währung: zu jedem Betrag werden drei Buchstaben wie EUR erwartet, angegeben ist „{0}“</translation>
+    </message>
+    <message>
+        <source>sha256: expected 64 hexadecimal digits in lower case, got &apos;{0}&apos;</source>
+        <translation>sha256: erwartet werden 64 Hexadezimalziffern in Kleinbuchstaben, angegeben ist „{0}“</translation>
+    </message>
+    <message>
+        <source>expected an address (http, https) or the name of a file beside the records, got &apos;{0}&apos;</source>
+        <translation>erwartet wird eine Adresse (http, https) oder der Name einer Datei neben den Einträgen, angegeben ist „{0}“</translation>
+    </message>
+    <message>
+        <source>expected two numbers, got {0}</source>
+        <translation>erwartet werden zwei Zahlen, angegeben ist {0}</translation>
+    </message>
+    <message>
+        <source>expected an IFC GlobalId ({0} characters), got &apos;{1}&apos;</source>
+        <translation>erwartet wird eine IFC-GlobalId ({0} Zeichen), angegeben ist „{1}“</translation>
+    </message>
+    <message>
+        <source>expected text, got {0}</source>
+        <translation>erwartet wird Text, angegeben ist {0}</translation>
+    </message>
+    <message>
+        <source>expected a text, got none</source>
+        <translation>erwartet wird ein Text, angegeben ist keiner</translation>
+    </message>
+    <message>
+        <source>expected at most {0} characters, got {1}</source>
+        <translation>erwartet werden höchstens {0} Zeichen, angegeben sind {1}</translation>
+    </message>
+    <message>
+        <source>character {0} is a control character (U+{1})</source>
+        <translation>Zeichen {0} ist ein Steuerzeichen (U+{1})</translation>
+    </message>
+    <message>
+        <source>expected a date such as 2026-03-31, got {0}</source>
+        <translation>erwartet wird ein Datum wie 2026-03-31, angegeben ist {0}</translation>
+    </message>
+    <message>
+        <source>expected a number from {0} to {1}, got {2}</source>
+        <translation>erwartet wird eine Zahl von {0} bis {1}, angegeben ist {2}</translation>
+    </message>
+    <message>
+        <source>expected four points of an element, &apos;{0}&apos; has others</source>
+        <translation>erwartet werden vier Punkte eines Elements, „{0}“ hat andere</translation>
+    </message>
+    <message>
+        <source>expected at most {0} objects, got {1}</source>
+        <translation>erwartet werden höchstens {0} Objekte, vorhanden sind {1}</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos;: another object has its GlobalId {1} already</source>
+        <translation>„{0}“: ein anderes Objekt hat schon die GlobalId {1}</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos;: its parent {1} is no object of the layer above &apos;{2}&apos;</source>
+        <translation>„{0}“: das übergeordnete {1} ist kein Objekt der Ebene über „{2}“</translation>
+    </message>
+    <message>
+        <source>the search index is damaged; take a copy of the file back</source>
+        <translation>das Suchverzeichnis ist beschädigt; eine Sicherung der Datei zurückholen</translation>
+    </message>
+    <message>
+        <source>{0}, row {1}: {2}; the file is damaged</source>
+        <translation>{0}, Zeile {1}: {2}; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>objects, row {0}: {1}; the file is damaged</source>
+        <translation>objects, Zeile {0}: {1}; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>changes: holds no {0}; the file is damaged</source>
+        <translation>changes: enthält keinen Eintrag der Art {0}; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>the records have version {0}, this program knows up to {1}; open them with a newer program</source>
+        <translation>die Einträge haben Version {0}, dieses Programm kennt bis {1}; mit einem neueren Programm öffnen</translation>
+    </message>
+    <message>
+        <source>holds the {0} &apos;{1}&apos;, which is none of ours; such a file is not opened</source>
+        <translation>enthält {0} „{1}“, das nicht von uns ist; eine solche Datei wird nicht geöffnet</translation>
+    </message>
+    <message>
+        <source>lacks the {0} &apos;{1}&apos;; the file is damaged or no file of ours</source>
+        <translation>ohne {0} „{1}“; die Datei ist beschädigt oder keine von uns</translation>
+    </message>
+    <message>
+        <source>its {0} &apos;{1}&apos; is not as ours are; such a file is not opened</source>
+        <translation>{0} „{1}“ ist nicht wie bei uns; eine solche Datei wird nicht geöffnet</translation>
+    </message>
+    <message>
+        <source>the picture</source>
+        <translation>das Bild</translation>
+    </message>
+    <message>
+        <source>has {0} bytes; pictures may have {1}</source>
+        <translation>hat {0} Bytes; Bilder dürfen {1} haben</translation>
+    </message>
+    <message>
+        <source>expected a PNG, JPEG or WebP picture, found other content</source>
+        <translation>erwartet wird ein Bild (PNG, JPEG oder WebP), gefunden wurde anderer Inhalt</translation>
+    </message>
+    <message>
+        <source>the file is missing; copy it back beside the records</source>
+        <translation>die Datei fehlt; sie wieder neben die Einträge legen</translation>
+    </message>
+    <message>
+        <source>is not the file that was stored; copy it back</source>
+        <translation>ist nicht die Datei, die abgelegt wurde; sie zurückholen</translation>
+    </message>
+    <message>
+        <source>has more than {0} MiB</source>
+        <translation>hat mehr als {0} MiB</translation>
+    </message>
+    <message>
+        <source>the place could not be looked at ({0})</source>
+        <translation>die Stelle ließ sich nicht ansehen ({0})</translation>
+    </message>
 </context>
 <context>
     <name>SettingsPage</name>
@@ -10523,14 +11335,6 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Waypoints, checks, mission files and the flight brief</source>
         <translation>Wegpunkte, Prüfungen, Missionsdateien und Flugbriefing</translation>
-    </message>
-    <message>
-        <source>Viewing models in this window is not built yet.</source>
-        <translation>Modelle ansehen gibt es in diesem Fenster noch nicht.</translation>
-    </message>
-    <message>
-        <source>Panels of the site can be looked at on the Site tab.</source>
-        <translation>Die Scheiben des Standorts sind im Reiter Standort zu sehen.</translation>
     </message>
     <message>
         <source>Model</source>

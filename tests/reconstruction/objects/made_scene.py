@@ -40,7 +40,7 @@ def made_scene(sizes=((3, 0, 5), (2,)), n_background=4, seed=0, name="made") -> 
         elements, start = [], 0
         for column, size in enumerate(facade):
             named = f"{'ABCDEFGH'[number]}-{column:04d}"
-            corners = pane(column, 0)
+            corners = pane(column, number)
             elements.append(GsElement(global_id_of(name, named), named, panel, corners, start, start + size))
             start, panel = start + size, panel + 1
         table = gaussians(start, rng, places[first : first + start])

@@ -1,0 +1,1 @@
+"""The Model tab: a finished model, its panels and their records."""

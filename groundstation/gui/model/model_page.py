@@ -1,0 +1,209 @@
+"""The Model tab's widgets put together: signals go to the desk, what it knows comes back here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Qt, QTimer
+from PySide6.QtGui import QAction, QCloseEvent
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QSplitter, QWidget
+
+from groundstation.gui.main_window import MainWindow
+from groundstation.gui.model.model_desk import ModelDesk
+from groundstation.gui.model.panel_side import PanelSide
+from groundstation.gui.model.record_side import KIND_TITLES, RecordSide
+from groundstation.gui.model.report_maker import ReportMaker
+from groundstation.gui.model.scene_pane import ScenePane
+from groundstation.gui.questions import Questions
+from groundstation.gui.stage import Stage
+from groundstation.gui.workspace import Workspace
+from groundstation.services.scene_card import PanelRow
+from groundstation.services.units import UnitSystem
+from planning.findings import Severity
+
+SIDE_PX, DETAIL_PX, LEAST_PX = 230, 330, 200
+"""Widths beside the view, at 1280 pixels."""
+
+SEARCH_MS = 200
+"""After the last letter."""
+
+
+class ModelPage(QObject):
+    """The tab."""
+
+    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+        super().__init__(stage)
+        self._workspace, self._stage = workspace, stage
+        self.desk, self.questions = ModelDesk.of(workspace), Questions()
+        self.side, self.pane = PanelSide(), ScenePane(workspace, self.desk)
+        self.records, self.report = RecordSide(workspace.words), ReportMaker(self.desk, self)
+        self.left = self._make_page()
+        self.right: QWidget | None = None
+        self.bottom: QWidget | None = None
+        self._search = QTimer(self)
+        self._search.setSingleShot(True)
+        self._search.setInterval(SEARCH_MS)
+        self._connect()
+        self._units_changed(workspace.units)
+        self._show_scene()
+
+    # A tab
+
+    def shown(self) -> None:
+        """Nothing is read before it is asked for."""
+
+    def hidden(self) -> None:
+        """Pictures stay."""
+
+    def actions(self) -> tuple[QAction, ...]:
+        """There are none."""
+        return ()
+
+    # How it is put together
+
+    def _make_page(self) -> QWidget:
+        page = QWidget()
+        layout = QHBoxLayout(page)
+        layout.setContentsMargins(6, 6, 6, 6)
+        self.splitter = QSplitter(Qt.Orientation.Horizontal)
+        for part in (self.side, self.pane, self.records):
+            part.setMinimumWidth(LEAST_PX)
+            self.splitter.addWidget(part)
+        self.splitter.setStretchFactor(1, 1)
+        self.splitter.setSizes([SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX])
+        self.splitter.setChildrenCollapsible(False)
+        layout.addWidget(self.splitter)
+        return page
+
+    def _connect(self) -> None:
+        desk, side, records = self.desk, self.side, self.records
+        side.open.clicked.connect(self._open)
+        side.chosen.connect(desk.select)
+        side.colourChanged.connect(desk.colour)
+        side.searched.connect(self._search_later)
+        self._search.timeout.connect(self._show_panels)
+        records.putAsked.connect(desk.put)
+        records.removeAsked.connect(desk.remove)
+        records.undoAsked.connect(desk.undo)
+        records.reportAsked.connect(self._make_report)
+        self.report.done.connect(self._report_done)
+        self.report.failed.connect(self._report_failed)
+        self.pane.saveAsked.connect(self._save_picture)
+        desk.sceneChanged.connect(self._show_scene)
+        desk.selectionChanged.connect(self._show_selection)
+        desk.recordsChanged.connect(self._show_records)
+        desk.coloursChanged.connect(self._show_colours)
+        self._workspace.unitsChanged.connect(self._units_changed)
+        window = self._stage.window()
+        if isinstance(window, MainWindow):
+            window.closing.connect(self._window_closing)
+
+    # What the user does
+
+    def _open(self) -> None:
+        folder = self.questions.folder(self._stage.window(), self.tr("Folder of a model"))
+        if folder is not None:
+            self.desk.open(folder)
+
+    def _search_later(self, _words: str) -> None:
+        self._search.start()
+
+    def _save_picture(self) -> None:
+        name, _ = QFileDialog.getSaveFileName(
+            self._stage.window(), self.tr("Save the picture"), "", self.tr("Pictures (*.png)")
+        )
+        if name:
+            self.save_picture(Path(name))
+
+    def save_picture(self, path: Path) -> None:
+        """Keep what is shown, with what is drawn over it."""
+        path = path if path.suffix else path.with_suffix(".png")
+        if self.pane.picture().save(str(path)):
+            self._workspace.say(Severity.NOTE, self.tr("The picture is written: {0}").format(path))
+        else:
+            self._workspace.say(Severity.ERROR, self.tr("{0} cannot be written; choose another place").format(path))
+
+    def _make_report(self) -> None:
+        name, _ = QFileDialog.getSaveFileName(
+            self._stage.window(), self.tr("Save the report"), "", self.tr("Documents (*.pdf)")
+        )
+        if name:
+            self.make_report(Path(name))
+
+    def make_report(self, path: Path) -> None:
+        """Write a report of the panels that are marked in the list, or of the one that is chosen."""
+        card = self.desk.card
+        if card is None:
+            return
+        chosen = card.by_global_id.get(self.desk.selected)
+        panels = self.side.marked()
+        if len(panels) < 2:
+            panels = () if chosen is None else (chosen,)
+        is_letter = self._workspace.units is UnitSystem.IMPERIAL
+        self.report.make(panels, path if path.suffix else path.with_suffix(".pdf"), self._workspace.units, is_letter)
+
+    def _report_done(self, path: Path) -> None:
+        self._workspace.say(Severity.NOTE, self.tr("The report is written: {0}").format(path))
+
+    def _report_failed(self, problem: str) -> None:
+        self._workspace.say(Severity.ERROR, self._workspace.words(problem))
+
+    def _window_closing(self, event: QCloseEvent) -> None:
+        if event.isAccepted():
+            self.desk.close()
+
+    # What is shown
+
+    def _show_scene(self) -> None:
+        card = self.desk.card
+        self.side.open.setEnabled(not self.desk.is_reading)
+        if self.desk.is_reading:
+            self.side.title.setText(self.tr("The model is being opened ..."))
+        elif card is None:
+            self.side.title.setText(self.tr("No model is open."))
+        else:
+            words = self.tr("{0}: {1} panels, {2} Gaussians").format(
+                card.folder.name, len(card.panels), card.n_gaussians
+            )
+            self.side.title.setText(words)
+            self.side.title.setToolTip(str(card.folder))
+        self.side.search.clear()
+        self.pane.set_scene()
+        self._show_panels()
+        self._show_selection()
+        self._show_records()
+
+    def _show_panels(self) -> None:
+        """Those whose names or records have what is searched for."""
+        card, words = self.desk.card, self.side.search.text().strip()
+        panels: tuple[PanelRow, ...] = () if card is None else card.panels
+        notes: dict[str, str] = {}
+        if words and card is not None:
+            notes = {hit.global_id: hit.text for hit in reversed(self.desk.search(words)) if hit.kind != "object"}
+            folded = words.casefold()
+            panels = tuple(
+                panel for panel in panels if folded in panel.name.casefold() or panel.global_id in {*notes, words}
+            )
+        self.side.set_panels(panels, notes, self.desk.selected)
+        self.side.show_colours(self.desk.colouring)
+
+    def _show_selection(self) -> None:
+        card = self.desk.card
+        panel = None if card is None else card.by_global_id.get(self.desk.selected)
+        self.side.select(self.desk.selected)
+        self.records.show_panel(panel, self._workspace.units)
+        self._show_entries()
+
+    def _show_records(self) -> None:
+        self.side.set_attributes(self.desk.attribute_names())
+        self._show_entries()
+
+    def _show_entries(self) -> None:
+        self.records.show_entries({kind: self.desk.entries(kind) for kind in KIND_TITLES})
+
+    def _show_colours(self) -> None:
+        self.side.show_colours(self.desk.colouring)
+
+    def _units_changed(self, units: UnitSystem) -> None:
+        self.pane.set_units(units)
+        self._show_selection()

@@ -1,0 +1,199 @@
+"""The right side: the panel that is chosen, and its records by kind, to be read, added, changed and taken out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtCore import QCoreApplication, QLocale, Qt, Signal
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import (
+    QDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QPushButton,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from groundstation.gui.model.record_dialog import RecordDialog
+from groundstation.gui.model.record_words import choice_words, field_words, kind_words
+from groundstation.services.scene_card import PanelRow
+from groundstation.services.units import UnitSystem, area_unit, length_unit
+from reconstruction.records.entries import Attribute, Defect, Document, Entry, Inspection, Maintenance
+
+ENTRY = Qt.ItemDataRole.UserRole
+
+KIND_TITLES: dict[type[Any], Callable[[], str]] = {
+    Attribute: lambda: QCoreApplication.translate("RecordSide", "Properties"),
+    Inspection: lambda: QCoreApplication.translate("RecordSide", "Inspections"),
+    Defect: lambda: QCoreApplication.translate("RecordSide", "Defects"),
+    Maintenance: lambda: QCoreApplication.translate("RecordSide", "Maintenance"),
+    Document: lambda: QCoreApplication.translate("RecordSide", "Documents"),
+}
+
+
+class RecordSide(QWidget):
+    """Shows a panel and its records.
+
+    Signals
+    -------
+    putAsked(Entry, Path or None), removeAsked(Entry)
+    undoAsked(), reportAsked()
+    """
+
+    putAsked = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
+    removeAsked = Signal(object)  # noqa: N815
+    undoAsked = Signal()  # noqa: N815
+    reportAsked = Signal()  # noqa: N815
+
+    def __init__(self, words: Callable[[str], str], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._words = words
+        self._panel: PanelRow | None = None
+        self._units = UnitSystem.METRIC
+        self.title, self.facade, self.size, self.global_id = (QLabel() for _ in range(4))
+        self.tree, self.kinds = QTreeWidget(), QMenu(self)
+        self._groups: dict[type[Any], QTreeWidgetItem] = {}
+        self.add, self.change = QPushButton(self.tr("Add ...")), QPushButton(self.tr("Change ..."))
+        self.remove, self.undo = QPushButton(self.tr("Take out")), QPushButton(self.tr("Undo"))
+        self.report = QPushButton(self.tr("Report as PDF ..."))
+        self._make()
+        self.show_panel(None, UnitSystem.METRIC)
+
+    def show_panel(self, panel: PanelRow | None, units: UnitSystem) -> None:
+        """Say which panel is chosen."""
+        self._panel, self._units = panel, units
+        if panel is None:
+            self.title.setText(self.tr("No panel is chosen. Click one in the picture, or in the list."))
+        else:
+            self.title.setText(panel.name)
+        width_m, height_m = (0.0, 0.0) if panel is None else panel.size_m
+        self.facade.setText("" if panel is None else panel.facade)
+        self.global_id.setText("" if panel is None else panel.global_id)
+        unit, area = length_unit(units), area_unit(units)
+        size = self.tr("{0} x {1}, {2}").format(unit.text(width_m), unit.text(height_m), area.text(width_m * height_m))
+        self.size.setText("" if panel is None else size)
+        self._enable()
+
+    def show_entries(self, found: dict[type[Any], tuple[Any, ...]]) -> None:
+        """Show records by kind."""
+        for kind, group in self._groups.items():
+            entries = found.get(kind, ())
+            group.takeChildren()
+            for entry in entries:
+                item = QTreeWidgetItem([line_of(entry)])
+                item.setData(0, ENTRY, entry)
+                item.setToolTip(0, line_of(entry))
+                group.addChild(item)
+            group.setText(0, f"{KIND_TITLES[kind]()} ({len(entries)})" if entries else KIND_TITLES[kind]())
+            group.setExpanded(True)
+        self._enable()
+
+    def entry(self) -> Entry | None:
+        """The record that is chosen."""
+        item = self.tree.currentItem()
+        return None if item is None else item.data(0, ENTRY)  # type: ignore[no-any-return]
+
+    def put_asked_of(self, kind: type[Any], entry: Entry | None = None) -> None:
+        """Ask for a new record of a kind, or for what is to be changed."""
+        if self._panel is None:
+            return
+        dialog = RecordDialog(kind, self._panel.global_id, entry, self._words, self)
+        if dialog.exec() == QDialog.DialogCode.Accepted:
+            self.putAsked.emit(dialog.found, dialog.file)
+        dialog.deleteLater()
+
+    def _make(self) -> None:
+        self.title.setProperty("role", "heading")
+        self.title.setWordWrap(True)
+        self.global_id.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.tree.setHeaderHidden(True)
+        self.tree.setWordWrap(True)
+        self.tree.setRootIsDecorated(False)
+        self.tree.setIndentation(12)
+        self.tree.setAccessibleName(self.tr("Records of the panel"))
+        for kind, title in KIND_TITLES.items():
+            group = QTreeWidgetItem([title()])
+            font = group.font(0)
+            font.setBold(True)
+            group.setFont(0, font)
+            self.tree.addTopLevelItem(group)
+            self._groups[kind] = group
+            self.kinds.addAction(f"{kind_words(kind)} ...").setData(kind)
+        self.tree.currentItemChanged.connect(self._enable)
+        self.tree.itemActivated.connect(self._change)
+        facts = QFormLayout()
+        for name, label in (
+            (self.tr("Facade"), self.facade),
+            (self.tr("Size"), self.size),
+            (self.tr("GlobalId"), self.global_id),
+        ):
+            facts.addRow(name, label)
+        buttons = QHBoxLayout()
+        for button in (self.add, self.change, self.remove, self.undo):
+            buttons.addWidget(button)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(6, 0, 0, 0)
+        layout.addWidget(self.title)
+        layout.addLayout(facts)
+        layout.addWidget(self.tree, 1)
+        layout.addLayout(buttons)
+        layout.addWidget(self.report)
+        self.undo.setToolTip(self.tr("Take the last change of records back"))
+        self.add.setMenu(self.kinds)
+        self.kinds.triggered.connect(self._add)
+        self.change.clicked.connect(self._change)
+        self.remove.clicked.connect(self._remove)
+        self.undo.clicked.connect(self.undoAsked)
+        self.report.clicked.connect(self.reportAsked)
+
+    def _enable(self) -> None:
+        has_panel = self._panel is not None
+        has_entry = has_panel and self.entry() is not None
+        for button, is_on in ((self.add, has_panel), (self.change, has_entry), (self.remove, has_entry)):
+            button.setEnabled(is_on)
+        self.report.setEnabled(has_panel)
+
+    def _add(self, action: QAction) -> None:
+        self.put_asked_of(action.data())
+
+    def _change(self) -> None:
+        entry = self.entry()
+        if entry is not None:
+            self.put_asked_of(type(entry), entry)
+
+    def _remove(self) -> None:
+        entry = self.entry()
+        if entry is not None:
+            self.removeAsked.emit(entry)
+
+
+def line_of(entry: Entry) -> str:
+    """A record in a line or two."""
+    if isinstance(entry, Attribute):
+        value = choice_words(str(entry.value)) if isinstance(entry.value, bool) else _value(entry.value)
+        return f"{field_words(entry.name)}: {value} {entry.unit}".strip()
+    if isinstance(entry, Inspection):
+        parts = [entry.method, entry.result, entry.inspector, entry.note]
+        return f"{entry.date}: {_joined(parts)}"
+    if isinstance(entry, Defect):
+        severity = f"{field_words('severity')} {entry.severity}"
+        return f"{entry.found_on}: {_joined([entry.kind, severity, choice_words(entry.status), entry.note])}"
+    if isinstance(entry, Maintenance):
+        cost = "" if entry.cost is None else f"{QLocale().toString(entry.cost, 'f', 2)} {entry.currency}"
+        due = "" if entry.next_due is None else f"{field_words('next_due')} {entry.next_due}"
+        return f"{entry.date}: {_joined([entry.work, entry.done_by, cost, due, entry.note])}"
+    return _joined([entry.title, entry.kind, entry.place])
+
+
+def _joined(parts: list[str]) -> str:
+    return ", ".join(part for part in parts if part)
+
+
+def _value(value: object) -> str:
+    return QLocale().toString(value) if isinstance(value, float) else str(value)

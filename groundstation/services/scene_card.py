@@ -1,0 +1,164 @@
+"""A scene of objects as the window knows it: facades, panels and a first view, without a Gaussian being read."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from groundstation.services.reconstruct_places import MODEL
+from planning.json_file import expect_format, read_json
+from planning.site import Origin
+from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
+from reconstruction.objects.gs_scene import GsElement
+from reconstruction.objects.picking import Quads
+from reconstruction.objects.store import DESCRIPTION, FORMAT, StoredScene
+
+SIZE_PX = 1280, 960
+FIELD_RAD = math.radians(60.0)
+"""Across, of the first view."""
+
+ROOM = 1.15
+"""Around what the first view shows."""
+
+LEAST_DISTANCE_M = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class PanelRow:
+    """A panel of the scene, and its facade."""
+
+    element: GsElement
+    facade: str
+
+    @property
+    def global_id(self) -> str:
+        """IFC GlobalId."""
+        return self.element.global_id
+
+    @property
+    def name(self) -> str:
+        """In the site."""
+        return self.element.name
+
+    @property
+    def size_m(self) -> tuple[float, float]:
+        """Width and height: means of opposite edges."""
+        corners = np.array(self.element.corners_enu_m)
+        edges = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+        return float(edges[0] + edges[2]) / 2.0, float(edges[1] + edges[3]) / 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class SceneCard:
+    """What is known of a scene.
+
+    Parameters
+    ----------
+    panels
+        In their order of facades.
+    written_at
+        When its description was written.
+    """
+
+    folder: Path
+    name: str
+    global_id: str
+    origin: Origin | None
+    panels: tuple[PanelRow, ...]
+    n_gaussians: int
+    written_at: datetime
+
+    @cached_property
+    def by_global_id(self) -> dict[str, PanelRow]:
+        """Panels by their GlobalIds."""
+        return {panel.global_id: panel for panel in self.panels}
+
+    @cached_property
+    def by_number(self) -> dict[int, PanelRow]:
+        """Panels by their numbers in the model."""
+        return {panel.element.panel: panel for panel in self.panels}
+
+    @cached_property
+    def quads(self) -> Quads:
+        """Of the panels, in the order of `panels`."""
+        return Quads.of(np.array([panel.element.corners_enu_m for panel in self.panels]))
+
+    @cached_property
+    def first_view(self) -> PosedPhoto:
+        """From in front of the facade that has most panels, so that all of it is seen."""
+        names = [panel.facade for panel in self.panels]
+        largest = max(dict.fromkeys(names), key=names.count) if names else ""
+        return view_of(tuple(panel for panel in self.panels if panel.facade == largest))
+
+
+def is_scene(folder: Path) -> bool:
+    """Whether a folder holds a scene of objects."""
+    return (folder / DESCRIPTION).is_file()
+
+
+def is_model(folder: Path) -> bool:
+    """Whether a folder holds a trained model."""
+    return (folder / MODEL).is_file()
+
+
+def read_card(folder: Path) -> SceneCard:
+    """Look at a scene of objects.
+
+    Raises
+    ------
+    InputError
+        There is none, or its description is damaged.
+    """
+    stored = StoredScene(folder)
+    panels = tuple(PanelRow(element, head.name) for head in stored.heads for element in head.elements)
+    at = datetime.fromtimestamp((folder / DESCRIPTION).stat().st_mtime, UTC)
+    return SceneCard(folder, stored.name, stored.global_id, stored.origin, panels, stored.n_gaussians, at)
+
+
+def scenes_beside(folder: Path) -> tuple[Path, ...]:
+    """Folders beside a scene's that hold scenes too: the same building at another time, or of another flight."""
+    found = []
+    for path in sorted(folder.resolve().parent.glob(f"*/{DESCRIPTION}")):
+        if path.parent != folder.resolve():
+            try:
+                expect_format(read_json(path), FORMAT, path)
+            except Exception:
+                continue
+            found.append(path.parent)
+    return tuple(found)
+
+
+def view_of(panels: tuple[PanelRow, ...]) -> PosedPhoto:
+    """A camera straight in front of panels, on their mean normal, that sees all of them; upright, but for roofs."""
+    corners = np.array([panel.element.corners_enu_m for panel in panels]).reshape(-1, 4, 3)
+    width, height = SIZE_PX
+    focal_px = 0.5 * width / math.tan(0.5 * FIELD_RAD)
+    lens = Intrinsics(width, height, focal_px, focal_px, 0.5 * width, 0.5 * height)
+    if not len(corners):
+        return PosedPhoto("", Path(), lens, Pose(np.zeros(3), _rotation(np.array([0.0, 1.0, 0.0]))))
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
+    length = float(np.linalg.norm(normal))
+    # Panels all around a building have no side in common: look at them from the south.
+    forward = -normal / length if length > 1e-9 else np.array([0.0, 1.0, 0.0])
+    rotation = _rotation(forward)
+    points = corners.reshape(-1, 3)
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    inside = (points - middle) @ rotation.T
+    tangents = np.array([0.5 * width / focal_px, 0.5 * height / focal_px]) / ROOM
+    distance_m = max(LEAST_DISTANCE_M, float((np.abs(inside[:, :2]) / tangents - inside[:, 2:]).max()))
+    return PosedPhoto("", Path(), lens, Pose(middle - distance_m * forward, rotation))
+
+
+def _rotation(
+    forward: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Camera axes (right, down, forward) as rows; north is up where it looks straight down."""
+    up = np.array([0.0, 0.0, 1.0]) if abs(forward[2]) < 0.999 else np.array([0.0, 1.0, 0.0])
+    right = np.cross(forward, up)
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(forward, right), forward])

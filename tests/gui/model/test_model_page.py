@@ -1,0 +1,339 @@
+"""The Model tab: panels are chosen, coloured, searched and measured, and their records are kept."""
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
+from PySide6.QtGui import QMouseEvent
+
+from groundstation.gui.model.record_dialog import RecordDialog
+from groundstation.gui.reconstruct.model_view import Mark
+from groundstation.services.panel_colours import Computed
+from groundstation.services.reconstruct_messages import Look, Lost, Organise, Probe, Probed, SceneMade, Section, Seen
+from groundstation.services.units import UnitSystem
+from reconstruction.objects.store import write_scene
+from reconstruction.records.book import FILE
+from reconstruction.records.entries import Attribute, Defect, Document, Inspection, Maintenance
+from tests.gui.driving import turn_until
+from tests.reconstruction.objects.made_scene import made_scene
+
+
+def looks(page):
+    return page.told.of(Look)
+
+
+def answer(page, look, value=90):
+    """The process's answer to a look."""
+    lens = look.camera.intrinsics
+    picture = np.full((lens.height_px, lens.width_px, 3), value, np.uint8)
+    page.desk._take(Seen(look, picture, depth_m=12.0))
+
+
+def probe(page, x=0.5, y=0.5):
+    page.pane.view.clicked.emit(x, y)
+    return page.told.of(Probe)[-1]
+
+
+def names(page):
+    return [panel.name for panel in page.side.rows.panels]
+
+
+def test_without_a_model_it_says_what_to_open(page):
+    assert "organise" in page.pane.view.note()
+    assert not page.records.add.isEnabled()
+    assert not page.pane.save.isEnabled()
+    page.pane.view.clicked.emit(0.5, 0.5)
+    assert page.told.messages == []
+
+
+def test_a_scene_shows_its_panels_and_asks_for_its_picture(opened):
+    assert names(opened) == ["A-0000", "A-0001", "B-0000", "B-0001"]
+    assert "4 panels, 12 Gaussians" in opened.side.title.text()
+    look = looks(opened)[0]
+    assert look.subject.folder == opened.desk.card.folder
+    answer(opened, look)
+    assert opened.pane.view.pictures()[0] is not None
+
+
+def test_a_trained_model_is_organised_by_the_process_and_then_opened(application, page, scene, tmp_path):
+    model = tmp_path / "made.model"
+    model.mkdir()
+    (model / "model.json").write_text("{}")
+    page.desk.open(model)
+    asked = page.told.of(Organise)[0]
+    assert asked.folder == model
+    assert not page.side.open.isEnabled()
+    page.desk._take(SceneMade(asked, None, f"{model}: holds no finished model"))
+    assert "holds no finished model" in page.messages[-1].text
+    assert page.side.open.isEnabled()
+    page.desk.open(model)
+    page.desk._take(SceneMade(asked, scene))
+    turn_until(application, lambda: page.desk.card is not None)
+    assert page.desk.card.folder == scene
+
+
+def test_what_is_no_model_is_refused_in_words(application, page, tmp_path):
+    page.desk.open(tmp_path)
+    turn_until(application, lambda: bool(page.messages))
+    assert "no scene of objects" in page.messages[-1].text
+    assert page.desk.card is None
+    assert page.side.open.isEnabled()
+
+
+def test_a_click_chooses_the_panel_that_the_process_finds(opened):
+    asked = probe(opened)
+    panel = opened.desk.card.panels[2]
+    opened.desk._take(Probed(asked, panel.element.panel, (1.0, 0.0, 1.0)))
+    assert opened.desk.selected == panel.global_id
+    assert opened.records.title.text() == "B-0000"
+    assert opened.side.list.currentIndex().row() == 2
+    assert any(mark.is_closed for mark in opened.pane.view.marks())
+    late = probe(opened)
+    probe(opened)
+    opened.desk._take(Probed(late, 0, (0.0, 0.0, 0.0)))
+    assert opened.desk.selected == panel.global_id
+    opened.desk._take(Probed(opened.told.of(Probe)[-1], None, None))
+    assert opened.desk.selected == ""
+
+
+def test_the_list_chooses_too_and_the_camera_turns_to_the_panel(opened):
+    opened.side.list.setCurrentIndex(opened.side.rows.index(1))
+    panel = opened.desk.card.panels[1]
+    assert opened.desk.selected == panel.global_id
+    opened.pane.front.click()
+    camera = opened.pane.camera()
+    middle = np.mean(panel.element.corners_enu_m, axis=0)
+    np.testing.assert_allclose(camera.pose.points_cam(middle[None])[0, :2], 0.0, atol=1e-9)
+    opened.pane.home.click()
+    assert opened.pane.camera() is opened.desk.card.first_view
+
+
+def test_records_are_kept_found_and_taken_back(opened):
+    opened.desk.select(opened.desk.card.panels[0].global_id)
+    global_id = opened.desk.selected
+    assert not opened.desk.has_records
+    opened.records.putAsked.emit(Defect(global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note="lower left"), None)
+    opened.records.putAsked.emit(Inspection(global_id, "2026-05-04", "M. Weber", "drone photos"), None)
+    assert (opened.desk.card.folder / FILE).is_file()
+    texts = tree_texts(opened)
+    assert "2026-05-04: crack, severity 4, open, lower left" in texts
+    assert "Defects (1)" in texts
+    opened.side.search.setText("weber")
+    opened._search.timeout.emit()
+    assert names(opened) == ["A-0000"]
+    opened.side.search.setText("b-00")
+    opened._search.timeout.emit()
+    assert names(opened) == ["B-0000", "B-0001"]
+    opened.records.undo.click()
+    assert "2026-05-04: drone photos, M. Weber" not in tree_texts(opened)
+    entry = opened.desk.entries(Defect)[0]
+    opened.records.removeAsked.emit(entry)
+    assert opened.desk.entries(Defect) == ()
+
+
+def tree_texts(page):
+    tree = page.records.tree
+    groups = [tree.topLevelItem(row) for row in range(tree.topLevelItemCount())]
+    return [item.text(0) for group in groups for item in [group, *(group.child(k) for k in range(group.childCount()))]]
+
+
+def test_panels_are_coloured_by_what_their_records_say(opened):
+    first, second, *_ = (panel.global_id for panel in opened.desk.card.panels)
+    opened.desk.put(Defect(first, "crack", 5, "2026-05-04"))
+    opened.desk.put(Attribute(second, "maker", "Glas Nord"))
+    assert opened.side.colour.findData("maker") >= 0
+    opened.side.colour.setCurrentIndex(opened.side.colour.findData(str(Computed.DEFECTS)))
+    assert dict(opened.desk.tints) == {0: (128, 0, 38)}
+    opened.pane.looks.forget()
+    opened.pane.show_view()
+    assert looks(opened)[-1].tints == opened.desk.tints
+    assert opened.side.without.text() == "3 without a value"
+    opened.side.colour.setCurrentIndex(opened.side.colour.findData("maker"))
+    assert dict(opened.desk.tints) == {1: (0, 114, 178)}
+    opened.side.colour.setCurrentIndex(0)
+    assert opened.desk.tints == ()
+
+
+def test_a_section_is_asked_for_with_the_picture(opened):
+    opened.pane.axis.setCurrentIndex(1)
+    opened.pane.cut.setValue(500)
+    assert opened.pane.section() == Section(2, pytest.approx(1.9), True)
+    opened.pane.looks.forget()
+    opened.pane.turn_over.click()
+    assert looks(opened)[-1].section == Section(2, pytest.approx(1.9), False)
+    assert probe(opened).section == opened.pane.section()
+
+
+def test_two_clicks_measure_and_a_third_begins_anew(opened):
+    opened.pane.measure.click()
+    for at in ((0.0, 0.0, 1.0), (3.0, 0.0, 5.0)):
+        opened.desk._take(Probed(probe(opened), 0, at))
+    assert opened.pane.view.note() == "5.0 m; 3.0 m along the ground, 4.0 m in height"
+    assert any(mark.text == "5.0 m" for mark in opened.pane.view.marks())
+    opened.pane.set_units(UnitSystem.IMPERIAL)
+    assert "ft" in opened.pane.view.note()
+    opened.pane.set_units(UnitSystem.METRIC)
+    opened.desk._take(Probed(probe(opened), 0, (1.0, 0.0, 0.0)))
+    assert opened.pane.view.note() == "Click two places."
+    assert opened.desk.selected == ""
+
+
+def test_another_scene_of_the_building_is_shown_beside_it(application, page, scene, tmp_path):
+    write_scene(made_scene(((3, 2), (2, 1)), seed=1), tmp_path / "later.gsscene")
+    page.desk.open(scene)
+    turn_until(application, lambda: page.desk.card is not None)
+    assert page.pane.compare.findText("later.gsscene") == 1
+    page.pane.compare.setCurrentIndex(1)
+    right = [look for look in looks(page) if look.place == "right"]
+    assert right[-1].subject.folder.name == "later.gsscene"
+    answer(page, right[-1])
+    assert page.pane.view.pictures()[1] is not None
+
+
+def test_the_picture_is_saved_with_its_marks(opened, tmp_path):
+    answer(opened, looks(opened)[0])
+    opened.save_picture(tmp_path / "seen")
+    assert (tmp_path / "seen.png").read_bytes().startswith(b"\x89PNG")
+    opened.save_picture(tmp_path / "nowhere" / "seen.png")
+    assert "cannot be written" in opened.messages[-1].text
+
+
+def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application, opened, tmp_path):
+    panels = opened.desk.card.panels[:2]
+    note = "<script>alert(1)</script>"
+    opened.desk.put(Defect(panels[0].global_id, "crack", 2, "2026-05-04", 0.5, 0.5, note=note))
+    opened.side.list.setCurrentIndex(opened.side.rows.index(0))
+    opened.side.list.selectAll()
+    opened.make_report(tmp_path / "panels")
+    for _ in range(4):
+        answer(opened, looks(opened)[-1])
+    assert not opened.report.is_busy
+    html = opened.report.html()
+    assert "&lt;script&gt;" in html
+    assert "<script>" not in html
+    content = (tmp_path / "panels.pdf").read_bytes()
+    assert content.startswith(b"%PDF")
+    assert content.count(b"/Type /Page\n") + content.count(b"/Type /Page ") >= 4
+    assert "The report is written" in opened.messages[-1].text
+    opened.make_report(tmp_path / "nowhere" / "panels.pdf")
+    for _ in range(4):
+        answer(opened, looks(opened)[-1])
+    assert "cannot be written" in opened.messages[-1].text
+
+
+def test_a_lost_process_is_told_and_asked_anew(opened):
+    opened.make_report(opened.desk.card.folder / "r.pdf")
+    opened.desk._take(Lost(-9))
+    assert "has ended" in opened.messages[-1].text
+    before = len(looks(opened))
+    opened.pane.show_view()
+    assert len(looks(opened)) > before
+
+
+def test_damaged_records_are_told_and_the_model_is_still_there(opened):
+    (opened.desk.card.folder / FILE).write_bytes(b"no records")
+    opened.desk.select(opened.desk.card.panels[0].global_id)
+    assert "SQLite" in opened.messages[-1].text
+    assert opened.records.title.text() == "A-0000"
+
+
+@pytest.mark.parametrize(
+    ("kind", "texts", "problem"),
+    [
+        (Inspection, {"date": "yesterday"}, "date"),
+        (Defect, {"kind": "crack", "u": "0.5"}, "both or neither"),
+        (Defect, {"kind": "crack", "u": "a", "v": "0.5"}, "number"),
+        (Maintenance, {"work": "sealed", "cost": "12"}, "currency"),
+        (Document, {"title": "Data sheet", "place": "../etc/passwd"}, "address"),
+        (Attribute, {"value": "x"}, "name"),
+    ],
+)
+def test_a_form_says_what_is_wrong_and_stays(opened, kind, texts, problem):
+    dialog = RecordDialog(kind, opened.desk.card.panels[0].global_id, None, str, opened.left)
+    for name, text in texts.items():
+        dialog.boxes[name].setText(text)
+    dialog.accept()
+    assert dialog.found is None
+    assert problem in dialog.problem.text()
+    dialog.deleteLater()
+
+
+def test_forms_make_records_and_change_them(opened):
+    global_id = opened.desk.card.panels[0].global_id
+    dialog = RecordDialog(Defect, global_id, None, str, opened.left)
+    dialog.boxes["kind"].setText("crack")
+    dialog.boxes["u"].setText("0,25")
+    dialog.boxes["v"].setText("0.5")
+    dialog.boxes["severity"].setCurrentIndex(2)
+    dialog.accept()
+    made = dialog.found
+    assert (made.kind, made.severity, made.u, made.v, made.status) == ("crack", 3, 0.25, 0.5, "open")
+    opened.desk.put(made)
+    kept = RecordDialog(Defect, global_id, None, str, opened.left)
+    before = opened.desk.entries_of(Defect, global_id)[0]
+    kept = RecordDialog(Defect, global_id, before, str, opened.left)
+    kept.boxes["note"].setPlainText("grows")
+    kept.accept()
+    opened.desk.put(kept.found)
+    after = opened.desk.entries_of(Defect, global_id)
+    assert [(entry.key, entry.note) for entry in after] == [(before.key, "grows")]
+    named = RecordDialog(Attribute, global_id, None, str, opened.left)
+    named.boxes["name"].setCurrentText("thickness")
+    named.boxes["value"].setText("8,5")
+    named.accept()
+    assert named.found == Attribute(global_id, "thickness", 8.5, "number", "mm")
+
+
+def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_path):
+    global_id = opened.desk.card.panels[0].global_id
+    (tmp_path / "crack.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(40))
+    (tmp_path / "sheet.pdf").write_bytes(b"%PDF-1.7")
+    opened.desk.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "crack.png")
+    dialog = RecordDialog(Document, global_id, None, str, opened.left)
+    dialog.boxes["title"].setText("Data sheet")
+    dialog.take_file(tmp_path / "sheet.pdf")
+    dialog.accept()
+    opened.desk.put(dialog.found, dialog.file)
+    assert opened.desk.entries_of(Defect, global_id)[0].picture.endswith(".png")
+    assert len(opened.desk.entries_of(Document, global_id)[0].sha256) == 64
+    (tmp_path / "no.png").write_bytes(b"text")
+    opened.desk.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "no.png")
+    assert "picture" in opened.messages[-1].text
+    assert len(opened.desk.entries_of(Defect, global_id)) == 1
+
+
+def test_a_click_is_no_drag_and_a_drag_no_click(opened):
+    answer(opened, looks(opened)[0])
+    view, clicks, drags = opened.pane.view, [], []
+    view.clicked.connect(lambda x, y: clicks.append((x, y)))
+    view.orbited.connect(lambda x, y: drags.append((x, y)))
+    middle = view.room().center()
+    for steps in ([QPointF(2.0, 1.0)], [QPointF(30.0, 0.0), QPointF(60.0, 0.0)]):
+        mouse(view, QEvent.Type.MouseButtonPress, middle)
+        for step in steps:
+            mouse(view, QEvent.Type.MouseMove, middle + step)
+        mouse(view, QEvent.Type.MouseButtonRelease, middle + steps[-1])
+    assert len(clicks) == 1
+    assert clicks[0] == pytest.approx((0.5, 0.5), abs=0.02)
+    assert len(drags) == 2
+
+
+def mouse(view, kind, at):
+    button = Qt.MouseButton.NoButton if kind is QEvent.Type.MouseMove else Qt.MouseButton.LeftButton
+    buttons = Qt.MouseButton.NoButton if kind is QEvent.Type.MouseButtonRelease else Qt.MouseButton.LeftButton
+    event = QMouseEvent(kind, at, view.mapToGlobal(at), button, buttons, Qt.KeyboardModifier.NoModifier)
+    QCoreApplication.sendEvent(view, event)
+
+
+def test_the_panel_under_the_mouse_is_named(opened):
+    panel = opened.desk.card.panels[0]
+    camera = opened.pane.camera()
+    middle = camera.pose.points_cam(np.mean(panel.element.corners_enu_m, axis=0)[None])[0]
+    lens = camera.intrinsics
+    x = (lens.cx_px + lens.fx_px * middle[0] / middle[2]) / lens.width_px
+    y = (lens.cy_px + lens.fy_px * middle[1] / middle[2]) / lens.height_px
+    opened.pane.view.pointed.emit(x, y)
+    marks = opened.pane.view.marks()
+    assert [mark.text for mark in marks] == ["A-0000"]
+    assert isinstance(marks[0], Mark)
+    opened.pane.view.pointed.emit(-1.0, 0.5)
+    assert opened.pane.view.marks() == ()
