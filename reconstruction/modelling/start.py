@@ -193,6 +193,7 @@ def _learned_light(
             monitor=monitor,
             keeping=keeping,
             device=config.device,
+            clock=watch.clock,
         )
     except ValueError as error:
         if begun is None:

@@ -21,30 +21,32 @@ class Stopwatch:
 
     Attributes
     ----------
+    clock
+        That it goes by; parts of the work that have times of their own go by it, too.
     lasted_s
         How long parts of it, by name, took when they were done last.
     """
 
     def __init__(self, clock: Clock = time.perf_counter, begun_s: float | None = None, before_s: float = 0.0) -> None:
-        self._clock = clock
+        self.clock = clock
         self._begun_s = clock() if begun_s is None else begun_s
         self.before_s = before_s
         self.lasted_s: dict[str, float] = {}
 
     def __call__(self) -> float:
         """Seconds."""
-        return self.before_s + self._clock() - self._begun_s
+        return self.before_s + self.clock() - self._begun_s
 
     @contextmanager
     def timing(self, part: str) -> Iterator[None]:
         """Note how long a part takes, which is done in the block."""
-        begun_s = self._clock()
+        begun_s = self.clock()
         yield
-        self.lasted_s[part] = self._clock() - begun_s
+        self.lasted_s[part] = self.clock() - begun_s
 
     @contextmanager
     def paused(self) -> Iterator[None]:
         """Do not count what is done in the block."""
-        begun_s = self._clock()
+        begun_s = self.clock()
         yield
-        self._begun_s += self._clock() - begun_s
+        self._begun_s += self.clock() - begun_s

@@ -111,6 +111,21 @@ def test_light_has_its_share_of_the_time_that_is_left_and_what_went_before_count
     assert late.n_steps == 0
 
 
+def test_its_time_is_that_of_the_training_s_own_clock(data_set, tmp_path):
+    ticks = iter(range(10**6))
+    config = config_of("mlp", time_limit_s=60.0, light_share=0.5, reflections=replace(TINY, steps=10**6))
+    reports = []
+
+    class Counting:
+        def report(self, stage, done, total):
+            if stage == "learning reflections":
+                reports.append(done)
+
+    # Every look at this clock takes a second: 30 of them are up after a few steps, and none of the world's.
+    train_model(data_set, config, Watching(Counting()), watch=Stopwatch(lambda: float(next(ticks))))
+    assert 5 < max(reports) < 40
+
+
 def test_poses_that_were_learned_with_light_are_those_of_the_joint_training(data_set, monkeypatch):
     trainers = []
     true = train.Trainer
