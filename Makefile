@@ -90,6 +90,7 @@ pictures: setup
 	cp pictures/1280x720/photos-grid.png docs/window-photos.png
 	cp pictures/1280x720/photos-coverage.png docs/window-photos-coverage.png
 	cp pictures/1280x720/reconstruct-compare.png docs/window-reconstruct.png
+	cp pictures/1280x720/model-inspections.png docs/window-model.png
 
 format: setup
 	$(PY) -m ruff format .

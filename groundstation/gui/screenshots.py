@@ -323,7 +323,10 @@ class _Photographer(QObject):
     def _reconstruct(self) -> None:
         from groundstation.gui.screenshots_reconstruct import reconstruct_states
 
-        reconstruct_states(self._desk, self._scratch, self._take, self._wait_for)
+        model = reconstruct_states(self._desk, self._scratch, self._take, self._wait_for)
+        from groundstation.gui.screenshots_model import model_states
+
+        model_states(self._desk, model, self._take, self._wait_for)
 
     def _take(self, name: str, widget: QWidget | None = None, rest_ms: int = SETTLE_MS) -> None:
         self._rest(rest_ms)

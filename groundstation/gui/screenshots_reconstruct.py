@@ -25,8 +25,8 @@ Take = Callable[[str], None]
 WaitFor = Callable[[Callable[[], bool]], None]
 
 
-def reconstruct_states(desk: Desk, scratch: Path, take: Take, wait_for: WaitFor) -> None:
-    """Drive the Reconstruct tab through its states.
+def reconstruct_states(desk: Desk, scratch: Path, take: Take, wait_for: WaitFor) -> Path:
+    """Drive the Reconstruct tab through its states; returns the folder of the model that was trained.
 
     Parameters
     ----------
@@ -76,6 +76,7 @@ def reconstruct_states(desk: Desk, scratch: Path, take: Take, wait_for: WaitFor)
     page().details.setCurrentIndex(2)
     rest()
     take("reconstruct-done")
+    return out
 
 
 def _render(photos: Path) -> None:

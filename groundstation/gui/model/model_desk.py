@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import getpass
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,7 @@ from planning.errors import GroundStationError
 from planning.findings import Severity
 
 if TYPE_CHECKING:
+    from reconstruction.records.book import RecordBook
     from reconstruction.records.entries import Entry
     from reconstruction.records.queries import Hit
 
@@ -210,6 +212,16 @@ class ModelDesk(QObject):
         """
         return self._write(lambda book: book.put(with_file(book, entry, file)))
 
+    def put_all(self, entries: Sequence[Entry]) -> bool:
+        """Add several in one step that is taken back as one."""
+
+        def change(book: RecordBook) -> None:
+            with book.changing("several records") as changes:
+                for entry in entries:
+                    changes.put(entry)
+
+        return self._write(change)
+
     def remove(self, entry: Entry) -> bool:
         """Take an entry out; the history keeps it."""
         return self._write(lambda book: book.remove(entry))
@@ -232,7 +244,7 @@ class ModelDesk(QObject):
 
         return RecordBook(self._book_path) if self.has_records else nullcontext(None)
 
-    def _write(self, change: Any) -> bool:
+    def _write(self, change: Callable[[RecordBook], object]) -> bool:
         if self.card is None:
             return False
         try:

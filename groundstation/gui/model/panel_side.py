@@ -166,6 +166,7 @@ class PanelSide(QWidget):
                 text.setText(_words(found.legend[number], found.unit))
         self.without.setText(self.tr("{0} without a value").format(found.n_without))
         self.without.setVisible(bool(self.value()) and found.n_without > 0)
+        self.list.scrollTo(self.list.currentIndex())
 
     def _row_chosen(self, current: QModelIndex) -> None:
         if current.isValid() and not self._is_told:

@@ -10,7 +10,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QDialog,
     QFormLayout,
-    QHBoxLayout,
+    QGridLayout,
     QLabel,
     QMenu,
     QPushButton,
@@ -134,9 +134,9 @@ class RecordSide(QWidget):
             (self.tr("GlobalId"), self.global_id),
         ):
             facts.addRow(name, label)
-        buttons = QHBoxLayout()
-        for button in (self.add, self.change, self.remove, self.undo):
-            buttons.addWidget(button)
+        buttons = QGridLayout()
+        for number, button in enumerate((self.add, self.change, self.undo, self.remove)):
+            buttons.addWidget(button, number // 2, number % 2)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(6, 0, 0, 0)
         layout.addWidget(self.title)
