@@ -129,5 +129,6 @@ def outward_directions(normal: Tensor) -> Tensor:
     other = torch.eye(3, dtype=torch.float64)[int(normal.abs().argmin())]
     u = torch.nn.functional.normalize(torch.linalg.cross(normal, other), dim=0)
     v = torch.linalg.cross(normal, u)
-    found: Tensor = height[:, None] * normal + flat[:, None] * (torch.cos(turn)[:, None] * u + torch.sin(turn)[:, None] * v)
+    across = torch.cos(turn)[:, None] * u + torch.sin(turn)[:, None] * v
+    found: Tensor = height[:, None] * normal + flat[:, None] * across
     return found

@@ -1,0 +1,294 @@
+"""Use case of exporting a model: a scene of objects, or a trained model, into the formats of other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from planning.errors import InputError
+from planning.progress import QUIET, Monitor
+
+if TYPE_CHECKING:
+    from reconstruction.exports.compression import Compressed
+    from reconstruction.modelling.saved import TrainedModel
+    from reconstruction.objects.gs_scene import GsScene
+
+Preset = Literal["small", "balanced", "fine"]
+
+
+class ModelFormat(StrEnum):
+    """What a model can be written as."""
+
+    WEB = "web"
+    GLTF = "gltf"
+    TILES = "3d-tiles"
+    USD = "usd"
+    PLY = "ply"
+    PLY_2DGS = "ply-2dgs"
+    SPZ = "spz"
+    SOG = "sog"
+    MESH = "mesh"
+    CITYJSON = "cityjson"
+    IFC = "ifc"
+
+
+WITHOUT_COLOURS = frozenset({ModelFormat.CITYJSON, ModelFormat.IFC})
+"""Formats of panels alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelExport:
+    """What is wanted.
+
+    Parameters
+    ----------
+    baked
+        Whether what panels mirror is put into their Gaussians' colours, for programs that mirror nothing.
+    degree
+        Of the harmonics that are written, 0 to 3; None: as the format has it by itself.
+    preset
+        Of compressed formats.
+    components
+        Names of those that are wanted; None for all.
+    """
+
+    format: ModelFormat
+    baked: bool = True
+    degree: int | None = None
+    preset: Preset = "balanced"
+    components: tuple[str, ...] | None = None
+
+    def __post_init__(self) -> None:
+        if self.degree is not None and self.degree not in (0, 1, 2, 3):
+            raise ValueError(f"degree: expected 0 to 3, got {self.degree}")
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenModel:
+    """What was written, and what its reader should know."""
+
+    path: Path
+    n_bytes: int
+    notes: tuple[str, ...] = ()
+
+
+def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor = QUIET) -> WrittenModel:
+    """Write a model, with the records that lie beside it where the format has a place for them.
+
+    Raises
+    ------
+    InputError
+        The folder holds no model, or a file cannot be read or written.
+    """
+    if wanted.format is ModelFormat.IFC:
+        return _ifc(folder, out)
+    whole, trained = _read(folder, monitor)
+    scene, notes = _shown(whole, trained, wanted, monitor)
+    attributes, rows = _records(folder)
+    writer = WRITERS[wanted.format]
+    notes += writer(_Export(scene, trained, folder, out, wanted, attributes, rows, monitor))
+    return WrittenModel(out, _size(out), tuple(notes))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Export:
+    """What a writer needs."""
+
+    scene: GsScene
+    trained: TrainedModel
+    folder: Path
+    out: Path
+    wanted: ModelExport
+    attributes: Mapping[str, Mapping[str, Any]]
+    rows: tuple[Mapping[str, Any], ...]
+    monitor: Monitor
+
+    def degree(self, usual: int) -> int:
+        """That was wished for, else the format's own."""
+        return usual if self.wanted.degree is None else self.wanted.degree
+
+
+def _read(folder: Path, monitor: Monitor) -> tuple[GsScene, TrainedModel]:
+    from groundstation.services.model_objects import scene_of
+    from reconstruction.objects.organise import put_together
+
+    scene = scene_of(folder, monitor)
+    return scene, put_together(scene, folder)
+
+
+def _shown(whole: GsScene, trained: TrainedModel, wanted: ModelExport, monitor: Monitor) -> tuple[GsScene, list[str]]:
+    """The components that are wanted, with what panels show in their colours."""
+    from dataclasses import replace
+
+    from reconstruction.exports.baked import baked, needs_baking
+    from reconstruction.modelling.shader import Shader
+
+    scene, notes = whole, list[str]()
+    if wanted.components is not None:
+        known = [component.name for component in whole.components]
+        unknown = next((name for name in wanted.components if name not in known), None)
+        if unknown is not None:
+            raise InputError(f"--components: there is no component '{unknown}'; known are {', '.join(known)}")
+        chosen = tuple(component for component in whole.components if component.name in wanted.components)
+        scene = replace(whole, components=chosen)
+    if wanted.format in WITHOUT_COLOURS or wanted.format is ModelFormat.MESH:
+        return scene, notes
+    if not needs_baking(trained.model):
+        if type(trained.model.shader) is not Shader:
+            notes.append(
+                "what this method's shading adds is not in the file: its Gaussians have their own colours only"
+            )
+    elif wanted.baked:
+        scene = baked(scene, trained.model, monitor)
+        notes.append("mirrored light is in the colours, as harmonics of degree 3: blurred, and it stays on the panes")
+    else:
+        notes.append("panels show their own colour only, and mirror nothing")
+    return scene, notes
+
+
+def _records(folder: Path) -> tuple[dict[str, dict[str, Any]], tuple[Mapping[str, Any], ...]]:
+    """Attributes by object, and all records as plain rows; none where there is no book."""
+    from groundstation.services.facility_records import open_records, plain_records, records_path
+
+    if not records_path(folder).is_file():
+        return {}, ()
+    with open_records(folder) as book:
+        found = plain_records(book)
+    attributes = {
+        global_id: {row["name"]: row["value"] for row in rows if row["record"] == "attribute"}
+        for global_id, rows in found.items()
+    }
+    rows = tuple({"global_id": global_id, **row} for global_id, each in found.items() for row in each)
+    return {global_id: values for global_id, values in attributes.items() if values}, rows
+
+
+def _ifc(folder: Path, out: Path) -> WrittenModel:
+    from groundstation.services.facility_records import export_ifc, user_name
+    from groundstation.services.scene_records import book_of_scene
+
+    with book_of_scene(folder, user_name()) as book:
+        done = export_ifc(book, out)
+    return WrittenModel(out, _size(out), done.notes)
+
+
+def _web(export: _Export) -> list[str]:
+    from groundstation.services.facility_records import open_records, records_path
+    from reconstruction.exports.web import WebOptions, write_web
+    from reconstruction.exports.web_sky import sky_bytes
+    from reconstruction.records.stored_files import stored_path
+
+    def picture_of(name: str) -> bytes | None:
+        if not records_path(export.folder).is_file():
+            return None
+        with open_records(export.folder) as book:
+            path = stored_path(book, name)
+        return path.read_bytes() if path.is_file() else None
+
+    options = WebOptions(
+        degree=export.degree(2),
+        is_baked=export.wanted.baked,
+        sky=sky_bytes(export.trained.model.sky),
+        picture_of=picture_of,
+    )
+    page = write_web(export.scene, export.out, export.rows, options, export.monitor)
+    return [f"{page.n_strays} records of objects that the model lacks are left out"] if page.n_strays else []
+
+
+def _gltf(export: _Export) -> list[str]:
+    from reconstruction.exports.gltf import GltfOptions, write_gltf
+
+    options = GltfOptions(sh_degree=export.degree(3))
+    write_gltf(export.scene, export.out, options, export.attributes, export.monitor)
+    return []
+
+
+def _tiles(export: _Export) -> list[str]:
+    from reconstruction.exports.tiles3d import TilesOptions, write_tiles
+
+    place: Literal["earth", "local"] = "local" if export.scene.origin is None else "earth"
+    options = TilesOptions(sh_degree=export.degree(3), place=place)
+    write_tiles(export.scene, export.out, options, export.attributes, export.monitor)
+    return [] if place == "earth" else ["the place on Earth is not known: tiles stay in the site's own frame"]
+
+
+def _usd(export: _Export) -> list[str]:
+    from reconstruction.exports.usd import UsdOptions, write_usd
+
+    write_usd(export.scene, export.out, UsdOptions(sh_degree=export.degree(3)), export.attributes, export.monitor)
+    return []
+
+
+def _ply(export: _Export) -> list[str]:
+    from reconstruction.exports.ply_export import write_ply
+
+    kind: Literal["2dgs", "3dgs"] = "2dgs" if export.wanted.format is ModelFormat.PLY_2DGS else "3dgs"
+    done = write_ply(export.scene, export.out, kind, degree=export.degree(3), monitor=export.monitor)
+    return _left_out(done)
+
+
+def _spz(export: _Export) -> list[str]:
+    from reconstruction.exports.spz import write_spz
+
+    return _left_out(write_spz(export.scene, export.out, _compression(export), monitor=export.monitor))
+
+
+def _sog(export: _Export) -> list[str]:
+    from reconstruction.exports.sog import write_sog
+
+    return _left_out(write_sog(export.scene, export.out, _compression(export), monitor=export.monitor))
+
+
+def _mesh(export: _Export) -> list[str]:
+    from reconstruction.exports.mesh import write_mesh
+
+    write_mesh(export.scene, export.trained.model, export.out, attributes=export.attributes, monitor=export.monitor)
+    return ["each panel is a picture of its front: mirror images in it belong to that view alone"]
+
+
+def _cityjson(export: _Export) -> list[str]:
+    from reconstruction.exports.cityjson import write_cityjson
+
+    write_cityjson(export.scene, export.out, export.attributes, export.monitor)
+    return []
+
+
+WRITERS: dict[ModelFormat, Callable[[_Export], list[str]]] = {
+    ModelFormat.WEB: _web,
+    ModelFormat.GLTF: _gltf,
+    ModelFormat.TILES: _tiles,
+    ModelFormat.USD: _usd,
+    ModelFormat.PLY: _ply,
+    ModelFormat.PLY_2DGS: _ply,
+    ModelFormat.SPZ: _spz,
+    ModelFormat.SOG: _sog,
+    ModelFormat.MESH: _mesh,
+    ModelFormat.CITYJSON: _cityjson,
+}
+
+
+def _compression(export: _Export) -> Any:
+    from dataclasses import replace
+
+    from reconstruction.exports.compression import PRESETS
+
+    found = PRESETS[export.wanted.preset]
+    return replace(found, degree=export.degree(found.degree))
+
+
+def _left_out(done: Compressed) -> list[str]:
+    found = []
+    if done.n_left_out:
+        found.append(f"{done.n_left_out} Gaussians that nobody sees are left out")
+    if done.n_resized:
+        found.append(f"{done.n_resized} Gaussians are larger or smaller than the format has, and have its nearest size")
+    return found
+
+
+def _size(path: Path) -> int:
+    """Bytes of a file, or of all files of a folder."""
+    if path.is_file():
+        return path.stat().st_size
+    return sum(each.stat().st_size for each in path.rglob("*") if each.is_file())

@@ -1,0 +1,98 @@
+"""Gaussians of a component in blocks, and what every format of other programs asks of a scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of
+from reconstruction.objects.gs_scene import GsComponent, GsScene
+
+AT_ONCE = 65_536
+"""Gaussians of a block: 16 MB with harmonics of degree 3."""
+
+LARGEST_LOG = 20.0
+"""Of a size in metres: e^20 is further than the moon."""
+
+CUT_OFF = 3.0
+"""Standard deviations to which other programs draw a Gaussian."""
+
+
+def check_scene(scene: GsScene, path: Path) -> None:
+    """See to it that no number that is none gets into a file.
+
+    Parameters
+    ----------
+    path
+        That is to be written, for messages.
+
+    Raises
+    ------
+    InputError
+        A Gaussian, a corner or the origin is not finite, or a size cannot be.
+    """
+    if not all(map(math.isfinite, scene.origin_enu_m)):
+        raise InputError(f"{path}: the scene's origin is not finite: {scene.origin_enu_m}; organise the model again")
+    for component in scene.components:
+        for name, value in component.gaussians.values.items():
+            for start in range(0, len(value), AT_ONCE):
+                block = value[start : start + AT_ONCE]
+                is_good = np.isfinite(block).all() and (name != "log_scales" or block.max() <= LARGEST_LOG)
+                if not is_good:
+                    raise InputError(
+                        f"{path}: component '{component.name}': {name}: holds numbers that are not finite or cannot "
+                        "be; train again"
+                    )
+        for element in component.elements:
+            if not np.isfinite(element.corners_enu_m).all():
+                raise InputError(f"{path}: panel '{element.name}': its corners are not finite; import the site again")
+
+
+def part_of(component: GsComponent, start: int, stop: int) -> GsComponent:
+    """A component of the rows from `start` to before `stop` alone, with those elements that have some of them."""
+    elements = tuple(
+        replace(element, start=max(element.start, start) - start, stop=min(element.stop, stop) - start)
+        for element in component.elements
+        if element.start < stop and element.stop > start
+    )
+    gaussians = component.gaussians.part(start, stop)
+    return GsComponent(component.global_id, component.name, component.kind, elements, gaussians)
+
+
+def ellipsoid_blocks(component: GsComponent, at_once: int = AT_ONCE) -> Iterator[tuple[int, Ellipsoids]]:
+    """Its Gaussians in the order of its rows, each block with the row that it begins at."""
+    n = len(component.gaussians)
+    for start in range(0, n, at_once):
+        yield start, ellipsoids_of(part_of(component, start, min(start + at_once, n)))
+
+
+def element_numbers(component: GsComponent, start: int, stop: int) -> NDArray[np.int64]:
+    """Which of the component's elements each row is of, from 0, shape (stop - start,)."""
+    stops = np.array([element.stop for element in component.elements], np.int64)
+    return np.searchsorted(stops, np.arange(start, stop), side="right")
+
+
+def extents_m(ellipsoids: Ellipsoids) -> NDArray[np.float64]:
+    """Half the size of the boxes that Gaussians are drawn in, shape (n, 3): along the axes of the frame."""
+    w, x, y, z = ellipsoids.quats.astype(np.float64).T
+    rotations = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    lengths = np.linalg.norm(rotations * ellipsoids.scales_m.T.astype(np.float64), axis=1)
+    return np.asarray(CUT_OFF * lengths.T)
+
+
+def light_of(display: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Linear light of display colours, 0 to 1 (IEC 61966-2-1)."""
+    high = ((np.maximum(display, 0.0) + 0.055) / 1.055) ** 2.4
+    return np.where(display <= 0.04045, display / 12.92, high).astype(np.float32)

@@ -1,0 +1,140 @@
+// Order of Gaussians from far to near, by a counting sort of 16-bit keys in a worker.
+
+// Runs in the worker as text of its own: it uses nothing of the page.
+function sortWorker(scope) {
+  const capacity = 65537;
+  let means = new Float32Array(0);
+  let n = 0;
+  let depths = new Float32Array(0);
+  let keys = new Uint16Array(0);
+  const counts = new Uint32Array(capacity);
+
+  function add(part) {
+    if (3 * n + part.length > means.length) {
+      const grown = new Float32Array(Math.max(2 * means.length, 3 * n + part.length));
+      grown.set(means.subarray(0, 3 * n));
+      means = grown;
+      depths = new Float32Array(grown.length / 3 + 1);
+      keys = new Uint16Array(depths.length);
+    }
+    means.set(part, 3 * n);
+    n += part.length / 3;
+  }
+
+  // Keys are the upper bits of positive floats, which grow as the floats do: finer the nearer, over any range.
+  function order([fx, fy, fz], offset, near) {
+    const bits = new Uint32Array(depths.buffer);
+    let low = 0xffffffff;
+    let high = 0;
+    for (let i = 0, j = 0; i < n; i++, j += 3) {
+      const depth = fx * means[j] + fy * means[j + 1] + fz * means[j + 2] - offset;
+      depths[i] = depth > near ? depth : 0;
+      const key = bits[i];
+      if (key !== 0) {
+        if (key < low) low = key;
+        if (key > high) high = key;
+      }
+    }
+    if (high === 0) return new Uint32Array(0);
+    const shift = Math.max(0, 32 - Math.clz32(high - low) - 16);
+    counts.fill(0);
+    for (let i = 0; i < n; i++) {
+      if (bits[i] !== 0) counts[(keys[i] = (bits[i] - low) >>> shift)]++;
+    }
+    let total = 0;
+    for (let key = 65535; key >= 0; key--) {
+      const count = counts[key];
+      counts[key] = total;
+      total += count;
+    }
+    const found = new Uint32Array(total);
+    for (let i = 0; i < n; i++) if (bits[i] !== 0) found[counts[keys[i]]++] = i;
+    return found;
+  }
+
+  scope.onmessage = ({ data }) => {
+    if (data.means) return add(data.means);
+    const found = order(data.forward, data.offset, data.near);
+    return scope.postMessage(found, [found.buffer]);
+  };
+}
+
+const NEAR = 0.2;
+
+class Sorter {
+  // found: called with each order, an Uint32Array.
+  constructor(found) {
+    this.found = found;
+    this.parts = []; // until the worker has answered once
+    this.isBusy = false;
+    this.wanted = null;
+    this.done = "";
+    const text = `(${sortWorker})(self)`;
+    try {
+      const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
+      const policy = window.trustedTypes?.createPolicy("reflight", { createScriptURL: () => address });
+      this.worker = new Worker(policy ? policy.createScriptURL("") : address);
+    } catch {
+      this.worker = this.here();
+    }
+    this.worker.onmessage = ({ data }) => this.receive(data);
+    this.worker.onerror = () => this.fallBack();
+  }
+
+  // Some browsers refuse a worker only after it was made.
+  fallBack() {
+    if (this.parts === null) return;
+    this.worker = this.here();
+    this.worker.onmessage = ({ data }) => this.receive(data);
+    for (const means of this.parts) this.worker.postMessage({ means });
+    Object.assign(this, { isBusy: false, done: "" });
+    this.next();
+  }
+
+  // Where a browser allows a page from the disk no workers.
+  here() {
+    const side = {};
+    const scope = { postMessage: (data) => setTimeout(() => side.onmessage({ data })) };
+    sortWorker(scope);
+    side.postMessage = (data) => scope.onmessage({ data });
+    return side;
+  }
+
+  add(means) {
+    this.parts?.push(means.slice());
+    this.worker.postMessage({ means }, [means.buffer]);
+  }
+
+  // Sort anew, as there are more.
+  renew(camera) {
+    this.done = "";
+    this.want(camera);
+  }
+
+  // Asked for as often as one likes; while one is being made, only the last is remembered.
+  want(camera) {
+    const forward = camera.axes()[2];
+    this.wanted = { forward, offset: dot(forward, camera.eye), near: NEAR };
+    this.next();
+  }
+
+  next() {
+    if (this.isBusy || this.wanted === null) return;
+    const asked = JSON.stringify(this.wanted);
+    if (asked === this.done) return;
+    this.done = asked;
+    this.isBusy = true;
+    this.worker.postMessage(this.wanted);
+  }
+
+  receive(order) {
+    this.parts = null;
+    this.isBusy = false;
+    this.found(order);
+    this.next();
+  }
+
+  get isSettled() {
+    return !this.isBusy && JSON.stringify(this.wanted) === this.done;
+  }
+}

@@ -1,0 +1,84 @@
+"""Gaussians of a scene in blocks, so that memory does not grow to twice the scene, and in an order that compresses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from planning.progress import Monitor
+from reconstruction.exports.component_parts import ellipsoid_blocks
+from reconstruction.exports.ellipsoids import Ellipsoids
+from reconstruction.exports.turned_axes import Axes, turned
+from reconstruction.objects.gs_scene import GsScene
+from reconstruction.splatting.raster import FLAT
+
+SMALLEST_M = 1e-30
+"""A size of 0 has no logarithm."""
+
+MORTON_BITS = 21
+
+
+def blocks_of(scene: GsScene, axes: Axes, least_opacity: float, monitor: Monitor, stage: str) -> Iterator[Ellipsoids]:
+    """Gaussians of all components that are here, those of an opacity of at least `least_opacity`, in other axes."""
+    n, done = n_gaussians(scene), 0
+    for component in scene.components:
+        for start, found in ellipsoid_blocks(component):
+            monitor.report(stage, done + start, n)
+            is_seen = found.opacities >= least_opacity
+            yield turned(found if is_seen.all() else found.chosen(is_seen), axes)
+        done += len(component.gaussians)
+
+
+def n_gaussians(scene: GsScene) -> int:
+    """Of the components that are here."""
+    return sum(len(component.gaussians) for component in scene.components)
+
+
+def are_discs(scene: GsScene) -> bool:
+    """Whether Gaussians have two sizes."""
+    return all(component.gaussians.values["log_scales"].shape[1] == FLAT for component in scene.components)
+
+
+def log_scales(ellipsoids: Ellipsoids) -> NDArray[np.float32]:
+    """Natural logarithms of the sizes in metres, shape (n, 3)."""
+    return np.log(np.maximum(ellipsoids.scales_m, np.float32(SMALLEST_M)))
+
+
+def morton_order(means_m: NDArray[np.float32]) -> NDArray[np.int64]:
+    """Rows of means, shape (n, 3), along a Z-shaped curve through space: neighbours in the file are alike."""
+    low = means_m.min(axis=0).astype(np.float64)
+    span = float((means_m.max(axis=0) - low).max())
+    steps = (means_m - low) * (((1 << MORTON_BITS) - 1) / span if span > 0.0 else 0.0)
+    codes = np.zeros(len(means_m), np.uint64)
+    for axis in range(3):
+        codes |= _spread(steps[:, axis].astype(np.uint64)) << np.uint64(axis)
+    return np.argsort(codes, kind="stable")
+
+
+def _spread(values: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Bits of 21-bit numbers, two zeros after each."""
+    for shift, mask in (
+        (32, 0x1F00000000FFFF),
+        (16, 0x1F0000FF0000FF),
+        (8, 0x100F00F00F00F00F),
+        (4, 0x10C30C30C30C30C3),
+        (2, 0x1249249249249249),
+    ):
+        values = (values | values << np.uint64(shift)) & np.uint64(mask)
+    return values
+
+
+def expect_some(n: int, path: Path) -> None:
+    """Refuse to write a file that viewers take for a damaged one.
+
+    Raises
+    ------
+    InputError
+        There are no Gaussians.
+    """
+    if n == 0:
+        raise InputError(f"{path}: not written: there is no Gaussian that could be seen; choose other components")

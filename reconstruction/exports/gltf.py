@@ -1,0 +1,219 @@
+"""A scene as binary glTF 2.0 (.glb): Gaussians by facade, and its panels as quads to pick, with what is known of them.
+
+glTF is right-handed with y up. The root node turns east, north, up into that, and moves the model to its place in the
+site's frame, so that the numbers of vertices stay small: float32 is then exact to less than 0.1 mm within 1 km.
+Extensions: KHR_gaussian_splatting, EXT_mesh_features, EXT_structural_metadata, KHR_materials_unlit. No viewer needs to
+know any of them to open the file.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from itertools import accumulate
+from pathlib import Path
+from typing import Any
+
+from planning.frames import Vec3
+from planning.progress import QUIET, Monitor
+from reconstruction.exports.component_parts import check_scene
+from reconstruction.exports.glb import GlbBuffer, write_glb
+from reconstruction.exports.gltf_meshes import (
+    FEATURES,
+    N_OF_DEGREE,
+    panel_material,
+    put_gaussians,
+    put_panels,
+)
+from reconstruction.exports.gltf_tables import (
+    NO_ATTRIBUTES,
+    Attributes,
+    PanelTable,
+    attributes_of,
+    panel_table,
+    plain,
+)
+from reconstruction.objects.gs_scene import GsComponent, GsScene
+
+FORMAT = "reflight-gltf/1"
+
+METADATA, UNLIT = "EXT_structural_metadata", "KHR_materials_unlit"
+
+Y_UP_FROM_ENU = [-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]
+"""x, y, z, w: (x, y, z) becomes (x, z, -y)."""
+
+INVISIBLE = 0.001
+"""Opacity of quads that nobody sees: it changes 8-bit colours by a quarter of a step at most. With 0, viewers that pick
+by drawing (CesiumJS) would pass through them."""
+
+
+@dataclass(frozen=True, slots=True)
+class GltfOptions:
+    """What a file has.
+
+    Parameters
+    ----------
+    sh_degree
+        Of the colours' harmonics, 0 to 3: 64, 100, 160 or 244 bytes for each Gaussian.
+    panel_opacity
+        Of the panels' quads, over 0 to 1.
+    as_points
+        Only means and diffuse colours, 24 bytes each: for viewers that fail at Gaussians (CesiumJS 1.145, where they
+        are not compressed).
+    """
+
+    sh_degree: int = 3
+    panel_opacity: float = INVISIBLE
+    as_points: bool = False
+
+    def __post_init__(self) -> None:
+        if self.sh_degree not in N_OF_DEGREE:
+            raise ValueError(f"sh_degree: expected 0 to 3, got {self.sh_degree}")
+        if not 0.0 < self.panel_opacity <= 1.0:
+            raise ValueError(f"panel_opacity: expected more than 0, and 1 at most, got {self.panel_opacity}")
+
+
+DEFAULT = GltfOptions()
+
+
+def write_gltf(
+    scene: GsScene,
+    path: Path,
+    options: GltfOptions = DEFAULT,
+    attributes: Attributes = NO_ATTRIBUTES,
+    monitor: Monitor = QUIET,
+) -> None:
+    """Write a scene, or what of it is here, whole or not at all.
+
+    Parameters
+    ----------
+    attributes
+        Of panels, which become columns of the property table, and of facades, which go into the `extras` of nodes.
+
+    Raises
+    ------
+    InputError
+        Numbers are not finite, it is too large for one file, or it cannot be written.
+    """
+    check_scene(scene, path)
+    table = panel_table(scene, attributes, path)
+    made = Document(scene, scene.components, table, options, monitor)
+    children = []
+    for component in scene.components:
+        parts = made.gaussian_nodes(component) + made.panel_nodes(component)
+        extras = component_extras(component, attributes, path)
+        children.append(made.node({"name": plain(component.name), "extras": extras}, parts))
+    known = attributes_of(scene.global_id, attributes, path)
+    extras = {"layer": "scene", "global_id": scene.global_id, "attributes": known}
+    root = made.node({"name": plain(scene.name), **frame_of(scene.origin_enu_m), "extras": extras}, children)
+    write_glb(path, made.content([root]), made.buffer)
+
+
+def frame_of(origin_enu_m: Vec3) -> dict[str, Any]:
+    """Of a node whose children are in the model's frame."""
+    east, north, up = (float(value) for value in origin_enu_m)
+    # Adding zero makes zero of minus zero.
+    return {"rotation": Y_UP_FROM_ENU, "translation": [east + 0.0, up + 0.0, 0.0 - north]}
+
+
+def component_extras(component: GsComponent, attributes: Attributes, path: Path) -> dict[str, Any]:
+    """What a node says of a component."""
+    return {
+        "layer": "component",
+        "kind": component.kind,
+        "global_id": component.global_id,
+        "attributes": attributes_of(component.global_id, attributes, path),
+    }
+
+
+class Document:
+    """A file in the making: nodes and meshes, the table of its panels, and the buffer that their numbers go to.
+
+    Parameters
+    ----------
+    components
+        That the file has something of. All their panels are in one table: some readers look at one of a class only.
+    """
+
+    def __init__(
+        self,
+        scene: GsScene,
+        components: Sequence[GsComponent],
+        table: PanelTable,
+        options: GltfOptions,
+        monitor: Monitor,
+    ) -> None:
+        self.buffer = GlbBuffer()
+        self._scene, self._schema, self._options, self._monitor = scene, table.schema, options, monitor
+        self._nodes: list[dict[str, Any]] = []
+        self._meshes: list[dict[str, Any]] = []
+        self._used: set[str] = set()
+        elements = [element for component in components for element in component.elements]
+        self._tables = [table.put(elements, "panels", self.buffer)] if elements else []
+        starts = accumulate((len(component.elements) for component in components), initial=0)
+        self._first_row = {id(component): row for component, row in zip(components, starts, strict=False)}
+
+    def node(self, node: dict[str, Any], children: Sequence[int] = ()) -> int:
+        """Add a node; returns its number."""
+        self._nodes.append({**node, "children": list(children)} if children else node)
+        return len(self._nodes) - 1
+
+    def gaussian_nodes(self, component: GsComponent, more: dict[str, Any] | None = None) -> list[int]:
+        """A node with a component's Gaussians; none where it has no Gaussians.
+
+        Parameters
+        ----------
+        more
+            Of the node.
+        """
+        if not len(component.gaussians):
+            return []
+        row = self._first_row[id(component)]
+        degree = None if self._options.as_points else self._options.sh_degree
+        mesh = put_gaussians(component, degree, row, self.buffer, self._monitor)
+        self._used |= mesh["primitives"][0]["extensions"].keys()
+        return [self._mesh_node(mesh, more)]
+
+    def panel_nodes(self, component: GsComponent, more: dict[str, Any] | None = None) -> list[int]:
+        """A node with a component's panels; none where it has no panels."""
+        if not component.elements:
+            return []
+        self._used.add(UNLIT)
+        row = self._first_row[id(component)]
+        return [self._mesh_node(put_panels(component, self._scene.origin_enu_m, row, self.buffer), more)]
+
+    def content(self, roots: Sequence[int]) -> dict[str, Any]:
+        """The JSON, less what the buffer knows."""
+        found: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": "Reflight", "extras": scene_extras(self._scene)},
+            "scene": 0,
+            "scenes": [{"name": plain(self._scene.name), "nodes": list(roots)}],
+            "nodes": self._nodes,
+        }
+        if self._meshes:
+            found["meshes"] = self._meshes
+        if UNLIT in self._used:
+            found["materials"] = [panel_material(self._options.panel_opacity)]
+        if self._tables:
+            self._used |= {FEATURES, METADATA}
+            found["extensions"] = {METADATA: {"schema": self._schema, "propertyTables": self._tables}}
+        if self._used:
+            found["extensionsUsed"] = sorted(self._used)
+        return found
+
+    def _mesh_node(self, mesh: dict[str, Any], more: dict[str, Any] | None) -> int:
+        self._meshes.append({**mesh, "name": plain(mesh["name"])})
+        return self.node({"name": self._meshes[-1]["name"], "mesh": len(self._meshes) - 1, **(more or {})})
+
+
+def scene_extras(scene: GsScene) -> dict[str, Any]:
+    """What a file says of the scene."""
+    return {
+        "format": FORMAT,
+        "site": plain(scene.name),
+        "global_id": scene.global_id,
+        "origin_wgs84": None if scene.origin is None else asdict(scene.origin),
+        "origin_enu_m": [float(value) for value in scene.origin_enu_m],
+        "axes": "root node: x east, y north, z up, metres, counted from origin_enu_m in the site's frame",
+    }

@@ -1,0 +1,249 @@
+"""Panels as a mesh with pictures on them (.glb), for programs that know no Gaussians.
+
+Each panel is an object of its own with its GlobalId. Its picture is what the model shows straight in front of it from
+far away, mirrored light and all: the light that comes back the way it went. Seen from elsewhere it stays that picture.
+What stands before a panel is cut off; frames and walls between panels are in no mesh, and are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+from planning.progress import QUIET, Monitor
+from reconstruction.exports.component_parts import check_scene
+from reconstruction.exports.glb import FLOAT, INDICES, UINT16, VERTICES, GlbBuffer, limits_of, write_glb
+from reconstruction.exports.gltf import component_extras, frame_of, scene_extras
+from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, attributes_of, plain
+from reconstruction.exports.mesh_atlas import Atlas, pack
+from reconstruction.exports.mesh_views import PanelView, panel_view
+from reconstruction.modelling.model import SceneModel
+from reconstruction.modelling.render import render_view
+from reconstruction.objects.gs_scene import GsComponent, GsElement, GsScene
+from reconstruction.splatting.raster import RasterSettings
+
+TRIANGLES = 4
+
+LINEAR, LINEAR_BETWEEN_SIZES, TO_EDGE = 9729, 9987, 33071
+"""How textures are looked up."""
+
+UNLIT = "KHR_materials_unlit"
+
+
+@dataclass(frozen=True, slots=True)
+class MeshOptions:
+    """How fine pictures are.
+
+    Parameters
+    ----------
+    px_per_m
+        On the panels, 1 to 2000.
+    page_px
+        Largest side of a texture, 256 to 16 384; 4096 works everywhere.
+    most_pages
+        Textures in all: 4096 pixels square are 67 MB on a graphics card.
+    in_front_m
+        So far in front of a panel the model is still drawn: mullions and sills, but no crane.
+    """
+
+    px_per_m: float = 100.0
+    page_px: int = 4096
+    most_pages: int = 32
+    in_front_m: float = 0.3
+
+    def __post_init__(self) -> None:
+        if not 1.0 <= self.px_per_m <= 2000.0:
+            raise ValueError(f"px_per_m: expected 1 to 2000, got {self.px_per_m}")
+        if not 256 <= self.page_px <= 16_384:
+            raise ValueError(f"page_px: expected 256 to 16384, got {self.page_px}")
+        if not 1 <= self.most_pages <= 1024:
+            raise ValueError(f"most_pages: expected 1 to 1024, got {self.most_pages}")
+        if not 0.0 < self.in_front_m <= 100.0:
+            raise ValueError(f"in_front_m: expected more than 0, up to 100, got {self.in_front_m}")
+
+
+DEFAULT = MeshOptions()
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenMesh:
+    """What came of it."""
+
+    path: Path
+    n_bytes: int
+    n_panels: int
+    n_pages: int
+
+
+def write_mesh(
+    scene: GsScene,
+    model: SceneModel,
+    path: Path,
+    options: MeshOptions = DEFAULT,
+    attributes: Attributes = NO_ATTRIBUTES,
+    monitor: Monitor = QUIET,
+) -> WrittenMesh:
+    """Write the panels of a scene that are here, whole or not at all.
+
+    Parameters
+    ----------
+    model
+        That the scene is of; what it mirrors is rendered.
+    attributes
+        Of panels and facades by GlobalId; they go into the `extras` of nodes.
+
+    Raises
+    ------
+    InputError
+        There are no panels, one has no area, pictures would be too large, or the file cannot be written.
+    """
+    check_scene(scene, path)
+    elements = [element for _, element in scene.elements]
+    if not elements:
+        raise InputError(f"{path}: not written: there are no panels; choose other components")
+    views = [_view(scene, element, path, options) for element in elements]
+    atlas = _packed(elements, views, path, options)
+    buffer = GlbBuffer()
+    images = [
+        {"bufferView": buffer.add(content), "mimeType": "image/png", "name": f"panels {page + 1}"}
+        for page, content in enumerate(_pages(model, views, atlas, options, monitor))
+    ]
+    write_glb(path, _content(scene, views, atlas, images, attributes, buffer, path), buffer)
+    return WrittenMesh(path, path.stat().st_size, len(elements), len(atlas.pages))
+
+
+def _view(scene: GsScene, element: GsElement, path: Path, options: MeshOptions) -> PanelView:
+    corners_m = np.array(element.corners_enu_m, np.float64) - np.array(scene.origin_enu_m)
+    try:
+        return panel_view(corners_m, options.px_per_m)
+    except ValueError as error:
+        raise InputError(f"{path}: not written: panel '{element.name}' has no area; import the site again") from error
+
+
+def _packed(elements: Sequence[GsElement], views: Sequence[PanelView], path: Path, options: MeshOptions) -> Atlas:
+    for element, each in zip(elements, views, strict=True):
+        longest = max(each.view.width_px, each.view.height_px)
+        if longest > options.page_px:
+            fits = int(options.px_per_m * options.page_px / longest)
+            raise InputError(
+                f"{path}: not written: panel '{element.name}' would have {longest} pixels on a side, and textures have "
+                f"{options.page_px}; choose {fits} pixels per metre or fewer"
+            )
+    atlas = pack([(each.view.width_px, each.view.height_px) for each in views], options.page_px)
+    if len(atlas.pages) > options.most_pages:
+        fits = int(options.px_per_m * (options.most_pages / len(atlas.pages)) ** 0.5)
+        raise InputError(
+            f"{path}: not written: {len(atlas.pages)} textures of {options.page_px} pixels would be needed, and "
+            f"{options.most_pages} are the most; choose about {fits} pixels per metre, or single facades"
+        )
+    return atlas
+
+
+def _pages(
+    model: SceneModel, views: Sequence[PanelView], atlas: Atlas, options: MeshOptions, monitor: Monitor
+) -> list[bytes]:
+    """PNG files; one page at a time is in memory."""
+    found, done = [], 0
+    for page, (width, height) in enumerate(atlas.pages):
+        picture = np.zeros((height, width, 3), np.uint8)
+        for each, place in zip(views, atlas.places, strict=True):
+            if place.page == page:
+                monitor.report("rendering panels", done, len(views))
+                rows = slice(place.y_px, place.y_px + each.view.height_px)
+                columns = slice(place.x_px, place.x_px + each.view.width_px)
+                picture[rows, columns] = _picture(model, each, options)
+                done += 1
+        found.append(cv2.imencode(".png", picture[..., ::-1])[1].tobytes())
+    return found
+
+
+def _picture(model: SceneModel, each: PanelView, options: MeshOptions) -> NDArray[np.uint8]:
+    """Display values, shape (h, w, 3), red first."""
+    settings = RasterSettings(near_m=max(0.5 * each.distance_m, each.distance_m - options.in_front_m))
+    display = render_view(model, each.view, settings=settings).display
+    return np.asarray(np.rint(255.0 * np.nan_to_num(display)), np.uint8)
+
+
+def _content(
+    scene: GsScene,
+    views: Sequence[PanelView],
+    atlas: Atlas,
+    images: Sequence[dict[str, Any]],
+    attributes: Attributes,
+    buffer: GlbBuffer,
+    path: Path,
+) -> dict[str, Any]:
+    nodes: list[dict[str, Any]] = []
+    meshes: list[dict[str, Any]] = []
+    corners = buffer.table(np.array([0, 1, 2, 0, 2, 3]), UINT16, INDICES)
+    facades, number = [], 0
+    for component in scene.components:
+        children = []
+        for element in component.elements:
+            place, view = atlas.places[number], views[number]
+            texels = (view.corners_px + np.array([place.x_px, place.y_px])) / np.array(atlas.pages[place.page])
+            meshes.append(_mesh(scene, element, texels, place.page, corners, buffer))
+            known = attributes_of(element.global_id, attributes, path)
+            extras = {"layer": "element", "global_id": element.global_id, "attributes": known}
+            nodes.append({"name": plain(element.name), "mesh": number, "extras": extras})
+            children.append(number)
+            number += 1
+        facades.append((component, children))
+    roots = [_facade_node(component, children, attributes, path) for component, children in facades if children]
+    first = len(nodes)
+    nodes += roots
+    root = {"name": plain(scene.name), **frame_of(scene.origin_enu_m)}
+    nodes.append({**root, "children": list(range(first, len(nodes)))})
+    pages = range(len(images))
+    return {
+        "asset": {"version": "2.0", "generator": "Reflight", "extras": scene_extras(scene)},
+        "extensionsUsed": [UNLIT],
+        "scene": 0,
+        "scenes": [{"name": plain(scene.name), "nodes": [len(nodes) - 1]}],
+        "nodes": nodes,
+        "meshes": meshes,
+        "images": list(images),
+        "samplers": [{"magFilter": LINEAR, "minFilter": LINEAR_BETWEEN_SIZES, "wrapS": TO_EDGE, "wrapT": TO_EDGE}],
+        "textures": [{"source": page, "sampler": 0} for page in pages],
+        "materials": [_material(page) for page in pages],
+    }
+
+
+def _facade_node(component: GsComponent, children: Sequence[int], attributes: Attributes, path: Path) -> dict[str, Any]:
+    extras = component_extras(component, attributes, path)
+    return {"name": plain(component.name), "children": list(children), "extras": extras}
+
+
+def _mesh(
+    scene: GsScene, element: GsElement, texels: NDArray[np.float64], page: int, corners: int, buffer: GlbBuffer
+) -> dict[str, Any]:
+    places = np.array(element.corners_enu_m, np.float64) - np.array(scene.origin_enu_m)
+    positions = places.astype(np.float32)
+    attributes = {
+        "POSITION": buffer.table(positions, FLOAT, **limits_of(positions)),
+        "TEXCOORD_0": _put_texels(texels, buffer),
+    }
+    primitive = {"attributes": attributes, "indices": corners, "material": page, "mode": TRIANGLES}
+    return {"name": plain(element.name), "primitives": [primitive]}
+
+
+def _put_texels(texels: NDArray[np.float64], buffer: GlbBuffer) -> int:
+    """Number of their accessor."""
+    view = buffer.view(8 * len(texels), VERTICES)
+    buffer.accessors.append({"bufferView": view, "componentType": FLOAT, "count": len(texels), "type": "VEC2"})
+    number = len(buffer.accessors) - 1
+    buffer.fill(lambda put: put(buffer.offset(number), texels.astype("<f4")))
+    return number
+
+
+def _material(page: int) -> dict[str, Any]:
+    """Drawn as it is: the light is in the picture."""
+    surface = {"baseColorTexture": {"index": page}, "metallicFactor": 0.0, "roughnessFactor": 1.0}
+    return {"name": f"panels {page + 1}", "pbrMetallicRoughness": surface, "extensions": {UNLIT: {}}}

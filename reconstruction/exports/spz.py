@@ -1,0 +1,97 @@
+"""SPZ files (Niantic, version 3): Gaussians in few bytes each, and one gzip stream for all of them.
+
+Version 3 is read by everything that reads SPZ; version 4 (ZSTD) by the newest programs only, and
+Python has no ZSTD of its own before 3.14. The format has neither panels nor origin: places count from the scene's
+`origin_enu_m`.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from planning.errors import InputError
+from planning.json_file import write_atomically
+from planning.progress import QUIET, Monitor
+from reconstruction.exports.component_parts import check_scene
+from reconstruction.exports.compression import PRESETS, Compressed, Compression
+from reconstruction.exports.gaussian_blocks import are_discs, blocks_of, expect_some, morton_order, n_gaussians
+from reconstruction.exports.spz_packing import STREAMS, fraction_bits, n_resized, packed, sizes_of
+from reconstruction.exports.turned_axes import Axes
+from reconstruction.objects.gs_scene import GsScene
+from reconstruction.splatting.raster import FLAT, SOLID
+
+MAGIC = b"NGSP"
+
+VERSION = 3
+
+HEADER = struct.Struct("<4sIIBBBB")
+"""Magic, version, count, degree, bits after the binary point, flags, reserved."""
+
+GZIP = 31
+"""zlib's name for a window of 32 KiB in a gzip stream."""
+
+AT_ONCE_BYTES = 1 << 22
+
+
+def write_spz(
+    scene: GsScene,
+    path: Path,
+    compression: Compression = PRESETS["balanced"],
+    axes: Axes = "y-up",
+    monitor: Monitor = QUIET,
+) -> Compressed:
+    """Write the components of a scene that are here, whole or not at all.
+
+    Parameters
+    ----------
+    axes
+        `y-up` is what the format says; others are for programs that do not go by it.
+
+    Raises
+    ------
+    InputError
+        There is nothing to see, numbers are not finite or too large, or the file cannot be written.
+    """
+    check_scene(scene, path)
+    least = compression.least_opacity
+    means = [block.means_m for block in blocks_of(scene, axes, least, monitor, "reading Gaussians")]
+    n = sum(map(len, means))
+    expect_some(n, path)
+    places_m = np.concatenate(means)
+    furthest_m = float(np.abs(places_m).max())
+    fraction = fraction_bits(furthest_m)
+    if fraction is None:
+        raise InputError(f"{path}: not written: a Gaussian lies {furthest_m:.3g} m from the origin; train again")
+    rank = np.empty(n, np.int64)
+    rank[morton_order(places_m)] = np.arange(n)
+    del means, places_m
+    streams = {name: np.empty((n, size), np.uint8) for name, size in sizes_of(compression.degree).items()}
+    start, resized = 0, 0
+    n_sizes = FLAT if are_discs(scene) else SOLID
+    for block in blocks_of(scene, axes, least, monitor, "packing Gaussians"):
+        rows = rank[start : start + len(block)]
+        for name, values in packed(block, fraction, compression).items():
+            streams[name][rows] = values
+        resized += n_resized(block, n_sizes)
+        start += len(block)
+    header = HEADER.pack(MAGIC, VERSION, n, compression.degree, fraction, 0, 0)
+    content = _gzipped([header, *(streams[name].data.cast("B") for name in STREAMS if streams[name].size)], monitor)
+    write_atomically(path, content)
+    return Compressed(path, len(content), n, n_gaussians(scene) - n, resized, 2.0 ** -(fraction + 1))
+
+
+def _gzipped(parts: list[bytes | memoryview], monitor: Monitor) -> bytes:
+    total, done = sum(map(len, parts)), 0
+    compressor = zlib.compressobj(6, zlib.DEFLATED, GZIP)
+    found = []
+    for part in parts:
+        for start in range(0, len(part), AT_ONCE_BYTES):
+            monitor.report("compressing", done, total)
+            piece = part[start : start + AT_ONCE_BYTES]
+            found.append(compressor.compress(piece))
+            done += len(piece)
+    return b"".join([*found, compressor.flush()])

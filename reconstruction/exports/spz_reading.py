@@ -1,0 +1,122 @@
+"""Reading SPZ files of anybody's: nothing that a header says is believed before the file's length bears it out."""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from planning.errors import InputError
+from reconstruction.exports.ellipsoids import Ellipsoids
+from reconstruction.exports.spz import AT_ONCE_BYTES, GZIP, HEADER, MAGIC
+from reconstruction.exports.spz_packing import MOST_FRACTION_BITS, STREAMS, Bytes, sizes_of, unpacked
+from reconstruction.exports.turned_axes import Axes, turned_back
+
+MOST_GAUSSIANS = 10_000_000
+"""2.4 GB of them in memory; no viewer shows as many."""
+
+MOST_DEFLATED = 1032
+"""To one byte, by deflate."""
+
+MOST_AFTER = 1 << 20
+"""Bytes of extensions after the Gaussians."""
+
+HOW_TO_CONVERT = "save it as version 3, for example by `splat-transform FILE --spz-version 3 OTHER.spz`"
+
+
+def read_spz(path: Path, axes: Axes = "y-up") -> Ellipsoids:
+    """Gaussians of a file of version 2 or 3, in ENU.
+
+    Parameters
+    ----------
+    axes
+        That the file is in.
+
+    Raises
+    ------
+    InputError
+        The file is missing, is no such file, says what it does not hold, or holds more than can be read.
+    """
+    try:
+        with path.open("rb") as stream:
+            size = path.stat().st_size
+            start = stream.read(4)
+            stream.seek(0)
+            if start == MAGIC:
+                raise InputError(f"{path}: is an SPZ file of version 4 or later, which is not read; {HOW_TO_CONVERT}")
+            if start[:2] != b"\x1f\x8b":
+                raise InputError(f"{path}: is no SPZ file (it does not start like one)")
+            return turned_back(_read(_Inflated(stream, path), size, path), axes)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+
+
+class _Inflated:
+    """A gzip stream that gives as many bytes as it is asked for, and no more."""
+
+    def __init__(self, stream: BinaryIO, path: Path) -> None:
+        self._stream, self._path = stream, path
+        self._inflater = zlib.decompressobj(GZIP)
+        self._waiting = b""
+
+    def take(self, n: int) -> bytearray:
+        """The next `n` bytes."""
+        found = bytearray()
+        while len(found) < n:
+            piece = self._next(min(n - len(found), AT_ONCE_BYTES))
+            if not piece:
+                raise InputError(f"{self._path}: ends too early; it is cut off or damaged")
+            found += piece
+        return found
+
+    def end(self) -> None:
+        """Come to the end, where the checksum is, past a little that is not known."""
+        n = 0
+        while piece := self._next(AT_ONCE_BYTES):
+            n += len(piece)
+            if n > MOST_AFTER:
+                raise InputError(f"{self._path}: goes on for more than {MOST_AFTER} bytes after its Gaussians")
+        if not self._inflater.eof:
+            raise InputError(f"{self._path}: ends too early; it is cut off or damaged")
+
+    def _next(self, most: int) -> bytes:
+        try:
+            while not self._inflater.eof:
+                if not self._waiting:
+                    self._waiting = self._stream.read(1 << 16)
+                before = len(self._waiting)
+                piece = self._inflater.decompress(self._waiting, most)
+                self._waiting = self._inflater.unconsumed_tail
+                if piece:
+                    return piece
+                if before == 0:
+                    return b""
+        except zlib.error as error:
+            raise InputError(f"{self._path}: is damaged ({error})") from error
+        return b""
+
+
+def _read(inflated: _Inflated, size: int, path: Path) -> Ellipsoids:
+    magic, version, n, degree, fraction, _, _ = HEADER.unpack(inflated.take(HEADER.size))
+    if magic != MAGIC:
+        raise InputError(f"{path}: is no SPZ file (there is something else in its gzip stream)")
+    if version not in (2, 3):
+        raise InputError(f"{path}: expected SPZ of version 2 or 3, found {version}; {HOW_TO_CONVERT}")
+    if degree > 3:
+        raise InputError(f"{path}: has colours of degree {degree}; 0 to 3 are read")
+    if fraction > MOST_FRACTION_BITS:
+        raise InputError(f"{path}: has {fraction} bits after the binary point; expected 0 to {MOST_FRACTION_BITS}")
+    sizes = sizes_of(degree, version)
+    needed = HEADER.size + n * sum(sizes.values())
+    if n == 0 or needed > MOST_DEFLATED * size:
+        raise InputError(f"{path}: says that it has {n} Gaussians; the file's {size} bytes cannot hold them")
+    if n > MOST_GAUSSIANS:
+        raise InputError(f"{path}: has {n} Gaussians; at most {MOST_GAUSSIANS} are read")
+    streams: dict[str, Bytes] = {}
+    for name in STREAMS:
+        values = np.frombuffer(inflated.take(n * sizes[name]), np.uint8)
+        streams[name] = values.reshape(n, sizes[name])
+    inflated.end()
+    return unpacked(streams, fraction, degree, version)

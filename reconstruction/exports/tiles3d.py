@@ -1,0 +1,300 @@
+"""A scene as 3D Tiles 1.1: a folder with `tileset.json`, and binary glTF files of Gaussians and of panels by facade.
+
+Two more tilesets name the same files: `gaussians.json` and `panels.json`, for viewers in which Gaussians and meshes are
+layers of their own. Tiles lie in the site's east-north-up frame, which the root's transform places on Earth.
+
+Files are named after their content and written first; `tileset.json` is replaced last, in one step. So a folder that
+had tiles has whole ones at every moment.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from planning.errors import InputError
+from planning.folders import make_folder
+from planning.json_file import read_json, write_atomically
+from planning.progress import QUIET, Monitor
+from planning.site import Origin
+from reconstruction.exports.component_parts import check_scene
+from reconstruction.exports.glb import write_glb
+from reconstruction.exports.gltf import INVISIBLE, Document, GltfOptions, component_extras, frame_of, scene_extras
+from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, PanelTable, panel_table, plain
+from reconstruction.exports.tiles3d_tree import (
+    Box,
+    Branch,
+    box_of_gaussians,
+    box_of_panels,
+    branches_of,
+    part_of_branch,
+)
+from reconstruction.objects.gs_scene import GsComponent, GsScene
+
+EXTRAS = {"format": "reflight-3dtiles/1", "axes": "tiles: x east, y north, z up, metres, in the site's frame"}
+
+TILESET = "tileset.json"
+
+Layer = Literal["gaussians", "panels"]
+
+TILESETS: dict[str, tuple[Layer, ...]] = {
+    "gaussians.json": ("gaussians",),
+    "panels.json": ("panels",),
+    TILESET: ("gaussians", "panels"),
+}
+"""What they show; in the order in which they are written."""
+
+THINNEST_M = 0.001
+"""Half a box: readers take none for no box at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class TilesOptions:
+    """What a tileset has.
+
+    Parameters
+    ----------
+    sh_degree, panel_opacity, as_points
+        As `GltfOptions` has them.
+    gaussians_per_tile
+        At most, but for single panels that have more: 24 MB with harmonics of degree 3.
+    place
+        `earth`: where the site is; `local`: tiles stay in the site's frame, for viewers without a globe.
+    """
+
+    sh_degree: int = 3
+    panel_opacity: float = INVISIBLE
+    gaussians_per_tile: int = 100_000
+    place: Literal["earth", "local"] = "earth"
+    as_points: bool = False
+
+    def __post_init__(self) -> None:
+        self.of_files  # noqa: B018  (it checks them)
+        if self.gaussians_per_tile < 1:
+            raise ValueError(f"gaussians_per_tile: expected 1 or more, got {self.gaussians_per_tile}")
+
+    @property
+    def of_files(self) -> GltfOptions:
+        """Those of each file."""
+        return GltfOptions(self.sh_degree, self.panel_opacity, self.as_points)
+
+
+DEFAULT = TilesOptions()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tile:
+    """With a file, or with children.
+
+    Parameters
+    ----------
+    more
+        Of the tile's JSON.
+    """
+
+    box: Box
+    layer: Layer | None = None
+    file: str | None = None
+    children: tuple[_Tile, ...] = ()
+    more: dict[str, Any] | None = None
+
+    def json(self, layers: Sequence[Layer]) -> dict[str, Any]:
+        """As the specification has it."""
+        box = self.around(layers)
+        found: dict[str, Any] = {"boundingVolume": {"box": _box(box)}}
+        # Nothing finer than a file exists; where its files are missing, all of a tile is.
+        found["geometricError"] = 0.0 if self.file is not None else box.diagonal_m
+        found |= self.more or {}
+        if self.file is not None:
+            found["content"] = {"uri": self.file}
+        children = [child.json(layers) for child in self.children if child.has(layers)]
+        return found | ({"children": children} if children else {})
+
+    def around(self, layers: Sequence[Layer]) -> Box:
+        """The box around its files of some layers; its own where it has none of them."""
+        boxes = [child.around(layers) for child in self.children if child.has(layers)]
+        return boxes[0].with_others(*boxes[1:]) if boxes else self.box
+
+    def has(self, layers: Sequence[Layer]) -> bool:
+        """Whether it has files of some layers."""
+        return self.layer in layers if self.file is not None else any(child.has(layers) for child in self.children)
+
+
+def write_tiles(
+    scene: GsScene,
+    folder: Path,
+    options: TilesOptions = DEFAULT,
+    attributes: Attributes = NO_ATTRIBUTES,
+    monitor: Monitor = QUIET,
+) -> None:
+    """Write a scene, or what of it is here; tiles that were in the folder stay whole until these are.
+
+    Raises
+    ------
+    InputError
+        The site's place on Earth is not known, numbers are not finite, there is nothing to write, or it cannot be
+        written.
+    """
+    if options.place == "earth" and scene.origin is None:
+        raise InputError(
+            f"{folder}: 3D Tiles lie on Earth, and the site's place is not known; set the site's origin, or ask for "
+            "tiles in its local frame"
+        )
+    check_scene(scene, folder)
+    table = panel_table(scene, attributes, folder)
+    make_folder(folder)
+    old = _files_of(folder)
+    made = _Folder(folder, scene, table, options, monitor)
+    try:
+        tiles = tuple(made.component(component, attributes) for component in scene.components)
+        tiles = tuple(tile for tile in tiles if tile.children)
+        if not tiles:
+            raise InputError(f"{folder}: nothing to write: the scene has neither Gaussians nor panels")
+    except BaseException:
+        _remove(folder, made.files - old)
+        raise
+    around = tiles[0].box.with_others(*(tile.box for tile in tiles[1:]))
+    transform = {} if options.place == "local" else {"transform": _earth_from_enu(scene.origin)}
+    root = _Tile(around, children=tiles, more={"refine": "ADD"} | transform)
+    for name, layers in TILESETS.items():
+        _write(folder / name, scene, table, root, layers)
+    _remove(folder, old - made.files)
+
+
+class _Folder:
+    """Files in the making."""
+
+    def __init__(
+        self, folder: Path, scene: GsScene, table: PanelTable, options: TilesOptions, monitor: Monitor
+    ) -> None:
+        self.files: set[str] = set()
+        self._folder, self._scene, self._table, self._monitor = folder, scene, table, monitor
+        self._options, self._at_most = options.of_files, options.gaussians_per_tile
+
+    def component(self, component: GsComponent, attributes: Attributes) -> _Tile:
+        """A tile with those of its Gaussians and panels; without children where it has neither."""
+        children = []
+        if component.elements:
+            children.append(_Tile(box_of_panels(component), "panels", self._file(component, "panels")))
+        if len(component.gaussians):
+            children.append(self._gaussians(component, branches_of(component, self._at_most)))
+        if not children:
+            return _Tile(Box(np.zeros(3), np.zeros(3)))
+        around = children[0].box.with_others(*(child.box for child in children[1:]))
+        known = {
+            "global_id": component.global_id,
+            "name": plain(component.name),
+            "kind": component.kind,
+            "n_panels": len(component.elements),
+            "n_gaussians": len(component.gaussians),
+        }
+        extras = component_extras(component, attributes, self._folder)
+        more = {"metadata": {"class": "component", "properties": known}, "extras": extras}
+        return _Tile(around, children=tuple(children), more=more)
+
+    def _gaussians(self, component: GsComponent, branch: Branch) -> _Tile:
+        if branch.halves:
+            halves = tuple(self._gaussians(component, half) for half in branch.halves)
+            return _Tile(halves[0].box.with_others(*(half.box for half in halves[1:])), children=halves)
+        part = part_of_branch(component, branch)
+        return _Tile(box_of_gaussians(part, self._scene), "gaussians", self._file(part, "gaussians"))
+
+    def _file(self, part: GsComponent, layer: Layer) -> str:
+        """Write a file; returns its name."""
+        made = Document(self._scene, (part,), self._table, self._options, self._monitor)
+        frame = frame_of(self._scene.origin_enu_m)
+        nodes = made.gaussian_nodes(part, frame) if layer == "gaussians" else made.panel_nodes(part, frame)
+        # Of a facade's name only what every file system and every URI has.
+        name = re.sub(r"[^A-Za-z0-9]+", "-", part.name).strip("-")[:40] or "part"
+        new = self._folder / f".{name}-{layer}-new.glb"
+        try:
+            write_glb(new, made.content(nodes), made.buffer)
+            with new.open("rb") as stream:
+                digest = hashlib.file_digest(stream, "sha256").hexdigest()
+            file = f"{name}-{layer}-{digest[:12]}.glb"
+            self.files.add(file)
+            new.replace(self._folder / file)
+        except OSError as error:
+            raise InputError(f"{self._folder}: cannot be written ({error.strerror or error})") from error
+        finally:
+            new.unlink(missing_ok=True)
+        return file
+
+
+def _write(path: Path, scene: GsScene, table: PanelTable, root: _Tile, layers: Sequence[Layer]) -> None:
+    """A tileset of layers; where the scene has none of them, one that shows nothing."""
+    text, number = {"type": "STRING", "required": True}, {"type": "SCALAR", "componentType": "UINT32", "required": True}
+    schema = table.schema
+    named = {"global_id": {**text, "semantic": "ID"}, "name": {**text, "semantic": "NAME"}}
+    schema["classes"] |= {
+        "site": {"name": "Site", "properties": named},
+        "component": {
+            "name": "Facade or background",
+            "properties": {**named, "kind": text, "n_panels": number, "n_gaussians": number},
+        },
+    }
+    content = {
+        "asset": {"version": "1.1", "extras": scene_extras(scene) | EXTRAS},
+        "schema": schema,
+        "metadata": {"class": "site", "properties": {"global_id": scene.global_id, "name": plain(scene.name)}},
+        "geometricError": root.around(layers).diagonal_m,
+        "root": root.json(layers),
+    }
+    write_atomically(path, json.dumps(content, indent=1, allow_nan=False).encode())
+
+
+def _box(box: Box) -> list[float]:
+    """Middle, and half the box along each axis."""
+    middle, half = 0.5 * (box.low + box.high), np.maximum(0.5 * (box.high - box.low), THINNEST_M)
+    return [float(value) for value in (*middle, *np.diag(half).ravel())]
+
+
+def _earth_from_enu(origin: Origin | None) -> list[float]:
+    """Transform from a site's frame to the Earth's (EPSG:4978), column by column, shape (16,)."""
+    from pyproj import Transformer
+
+    assert origin is not None  # asked for before
+    cart = Transformer.from_pipeline("+proj=cart +ellps=WGS84")
+    place = cart.transform(origin.lon_deg, origin.lat_deg, origin.ellipsoid_height_m)
+    lat, lon = math.radians(origin.lat_deg), math.radians(origin.lon_deg)
+    east = (-math.sin(lon), math.cos(lon), 0.0)
+    north = (-math.sin(lat) * math.cos(lon), -math.sin(lat) * math.sin(lon), math.cos(lat))
+    up = (math.cos(lat) * math.cos(lon), math.cos(lat) * math.sin(lon), math.sin(lat))
+    return [*east, 0.0, *north, 0.0, *up, 0.0, *(float(value) for value in place), 1.0]
+
+
+def _files_of(folder: Path) -> set[str]:
+    """Files of tiles that are in the folder, as its tileset names them."""
+    path = folder / TILESET
+    if not path.is_file():
+        return set()
+    try:
+        content = read_json(path)
+    except InputError:
+        return set()
+    return {uri for uri in _uris(content) if re.fullmatch(r"[A-Za-z0-9-]+-[0-9a-f]{12}\.glb", uri)}
+
+
+def _uris(content: Any) -> Iterator[str]:
+    open_ = [content]
+    while open_:
+        found = open_.pop()
+        if isinstance(found, dict):
+            if isinstance(found.get("uri"), str):
+                yield found["uri"]
+            open_ += found.values()
+        elif isinstance(found, list):
+            open_ += found
+
+
+def _remove(folder: Path, files: set[str]) -> None:
+    for file in files:
+        (folder / file).unlink(missing_ok=True)

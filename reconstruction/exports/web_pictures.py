@@ -1,0 +1,91 @@
+"""Pictures of defects for a web page: made anew as small JPEG files, so that nothing of the old file is left in them.
+
+Neither places in EXIF nor whatever else a file carries reaches the page.
+"""
+
+from __future__ import annotations
+
+import struct
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.errors import InputError
+
+LONGEST_PX = 1280
+QUALITY = 82
+"""Of JPEG: some 200 kB for a picture of that size."""
+
+MAX_PIXELS = 100 * 10**6
+"""Larger ones are refused by what their header says: a file of some kilobytes can claim any size."""
+
+MAX_FILE_BYTES = 64 * 2**20
+
+_PNG = b"\x89PNG\r\n\x1a\n"
+_NO_SIZE = {0xC4, 0xC8, 0xCC}
+"""JPEG markers among those of frames (SOF) that are none."""
+
+
+def small_jpeg(name: str, content: bytes) -> bytes:
+    """The picture, at most `LONGEST_PX` pixels wide and high.
+
+    Parameters
+    ----------
+    name
+        For messages.
+
+    Raises
+    ------
+    InputError
+        It is no JPEG or PNG file, is damaged, or larger than any camera's.
+    """
+    place = f"picture '{name[:80]}'"
+    if len(content) > MAX_FILE_BYTES:
+        raise InputError(f"{place}: has more than {MAX_FILE_BYTES // 2**20} MiB; save it smaller")
+    size_wh = _size(content)
+    if size_wh is None:
+        raise InputError(f"{place}: expected a JPEG or PNG file, found something else or a damaged one")
+    if not 0 < size_wh[0] * size_wh[1] <= MAX_PIXELS:
+        raise InputError(
+            f"{place}: claims to have {size_wh[0]} x {size_wh[1]} pixels; expected at most "
+            f"{MAX_PIXELS // 10**6} megapixels, so it is not decoded"
+        )
+    try:
+        picture = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_COLOR)
+    except cv2.error as error:
+        raise InputError(f"{place}: cannot be decoded ({error.err}); copy the file again") from error
+    if picture is None or not picture.size:
+        raise InputError(f"{place}: cannot be decoded; copy the file again")
+    is_good, written = cv2.imencode(".jpg", _shrunk(np.asarray(picture)), (cv2.IMWRITE_JPEG_QUALITY, QUALITY))
+    if not is_good:
+        raise InputError(f"{place}: cannot be written as JPEG")
+    return written.tobytes()
+
+
+def _shrunk(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    height, width = picture.shape[:2]
+    factor = LONGEST_PX / max(height, width)
+    if factor >= 1.0:
+        return picture
+    size_wh = max(1, round(width * factor)), max(1, round(height * factor))
+    return np.asarray(cv2.resize(picture, size_wh, interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def _size(content: bytes) -> tuple[int, int] | None:
+    """Width and height that a file's header says; None where there is none."""
+    if content.startswith(_PNG):
+        return struct.unpack(">II", content[16:24]) if len(content) >= 24 and content[12:16] == b"IHDR" else None
+    if not content.startswith(b"\xff\xd8\xff"):
+        return None
+    place = 2
+    while place + 9 <= len(content) and content[place] == 0xFF:
+        marker = content[place + 1]
+        if marker == 0xFF:  # fill bytes may stand before a marker
+            place += 1
+            continue
+        if 0xC0 <= marker <= 0xCF and marker not in _NO_SIZE:
+            height, width = struct.unpack(">HH", content[place + 5 : place + 9])
+            return width, height
+        place += 2 + int(struct.unpack(">H", content[place + 2 : place + 4])[0])
+    return None

@@ -1,0 +1,50 @@
+"""Scenes that formats may stumble over, and what several tests of formats ask."""
+
+import numpy as np
+
+from planning.errors import OperationCancelled
+from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
+from reconstruction.exports.gaussian_blocks import morton_order
+from reconstruction.exports.turned_axes import turned
+from tests.reconstruction.objects.made_scene import made_scene
+
+
+def scene_with(n=40, **columns):
+    """A background whose Gaussians have numbers of a test's own."""
+    scene = made_scene(((1,),), n)
+    for name, value in columns.items():
+        for component in scene.components:
+            component.gaussians.values[name][:] = value
+    return scene
+
+
+def spread(scene, furthest_m, seed=0):
+    """The scene, its Gaussians up to so far from the origin."""
+    rng = np.random.default_rng(seed)
+    for component in scene.components:
+        means = component.gaussians.values["means"]
+        means[:] = rng.uniform(-furthest_m, furthest_m, means.shape)
+    return scene
+
+
+def in_order(scene, axes) -> Ellipsoids:
+    """A scene's Gaussians, told in ENU, in the order of a file of these axes."""
+    ellipsoids = ellipsoids_of_all(scene.components)
+    return ellipsoids.chosen(morton_order(turned(ellipsoids, axes).means_m))
+
+
+def quaternion_errors(one, other):
+    """Of the same rotations whatever their sign, shape (n,)."""
+    return np.minimum(np.abs(one - other).max(axis=1), np.abs(one + other).max(axis=1))
+
+
+class Interrupted:
+    """A monitor that ends the work at the n-th report."""
+
+    def __init__(self, n):
+        self.left = n
+
+    def report(self, stage, done, total):
+        self.left -= 1
+        if self.left < 0:
+            raise OperationCancelled("no longer wanted")

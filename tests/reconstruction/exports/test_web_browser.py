@@ -1,0 +1,272 @@
+"""Web pages in headless Chromium: what a user does by mouse, fingers and keys, and what hostile records cannot do."""
+
+import time
+
+import cv2
+import numpy as np
+import pytest
+
+from reconstruction.exports.web import write_web
+from tests.reconstruction.exports.test_web import HOSTILE, hostile_records, hostile_scene
+from tests.reconstruction.exports.web_browser import chromium, middle, opened, pixel
+from tests.reconstruction.objects.made_scene import made_scene
+
+CAMERA = "return reflight.camera()"
+PICKED = "return reflight.state().picked"
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with chromium(tmp_path_factory.mktemp("chromium")) as found:
+        yield found
+
+
+def of_pane(element, record, **fields):
+    return {"global_id": element.global_id, "record": record, **fields}
+
+
+def inspected(scene):
+    panes = [element for _, element in scene.elements]
+    rows = [
+        of_pane(pane, "inspection", date=f"2026-0{i}-11", inspector="K. Weiß") for i, pane in enumerate(panes[:3], 1)
+    ]
+    rows.append(of_pane(panes[1], "defect", kind="Riß am Rand", severity=5, u=0.5, v=0.5, found_on="2026-02-01"))
+    rows.append({"global_id": scene.global_id, "record": "document", "title": "plan", "place": "plan.pdf"})
+    return rows
+
+
+def test_hostile_records_are_text_in_a_page_that_works(browser, tmp_path):
+    scene = hostile_scene()
+    content = cv2.imencode(".png", np.zeros((5, 5, 3), np.uint8))[1].tobytes()
+    panes = scene.components[0].elements
+    records = [*hostile_records(scene), of_pane(panes[1], "defect", kind="a", picture="p")]
+    browser.log("performance")
+    page = opened(browser, tmp_path / "page", scene, records, (800, 300), picture_of={"p": content}.get)
+    state = browser.run("return reflight.state()")
+    assert (state["isLoaded"], state["n"]) == (True, page.n_gaussians)
+    counted = "return ['img', 'svg', 'iframe', 'a'].map((name) => document.querySelectorAll(name).length)"
+    assert browser.run(counted) == [0, 0, 0, 0]
+    assert browser.texts(".row b")[:3] == HOSTILE[:3]
+    browser.run("document.querySelector('.row').click()")
+    # One drawing of a place, and one link, to the web.
+    assert browser.run(counted) == [0, 1, 0, 1]
+    assert browser.run("return document.querySelector('a').href") == "https://example.org/b.pdf"
+    is_shown = "return arguments[0].map((text) => document.getElementById('content').textContent.includes(text))"
+    assert browser.run(is_shown, [*HOSTILE[:5], "javascript:alert(5)", "nowhere"]) == [True] * 6 + [False]
+    for choice in range(browser.run("return document.getElementById('colour').options.length") - 1):
+        browser.choose("colour", str(choice))
+    assert browser.run(counted) == [0, 1, 0, 1]
+    browser.run("reflight.pick(arguments[0])", panes[1].global_id)
+    decoded = "const image = document.querySelector('img'); await image.decode(); return image.naturalWidth"
+    assert browser.run(decoded) == 5
+    assert browser.alert() is None
+    assert browser.errors() == []
+    asked = [line["message"] for line in browser.log("performance") if "requestWillBeSent" in line["message"]]
+    assert any('"url":"file:' in line for line in asked)
+    assert not any(f'"url":"{scheme}:' in line for line in asked for scheme in ("http", "https", "ws", "wss"))
+
+
+@pytest.mark.slow
+def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(browser, tmp_path):
+    scene = made_scene(sizes=((400, 400),), n_background=1)
+    facade, background = scene.components
+    # Panes at y = 0, seen from the south; a wall of one large disc stands before the left one.
+    for element in facade.elements:
+        corners = np.asarray(element.corners_enu_m) - scene.origin_enu_m
+        u, v = np.random.default_rng(0).random((2, 400, 1))
+        places = corners[0] + u * (corners[1] - corners[0]) + v * (corners[3] - corners[0])
+        facade.gaussians.values["means"][element.start : element.stop] = places
+    west, east = (middle(scene, element) for element in facade.elements)
+    values = background.gaussians.values
+    values["means"][0] = west + np.array([0, -1.5, 0])
+    values["quats"][0] = (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
+    values["log_scales"][0] = np.log(0.25)
+    values["opacity_logits"][0] = 8.0
+    opened(browser, tmp_path / "page", scene)
+    browser.run("reflight.look(...arguments)", (west + np.array([0.7, -8, 0])).tolist(), 0, 0)
+    browser.settled()
+    camera = browser.run(CAMERA)
+    names = [element.global_id for element in facade.elements]
+    assert browser.run("return reflight.at(...arguments)", *pixel(camera, west)) == names[0]
+    assert browser.run("return reflight.seenAt(...arguments)", *pixel(camera, west)) is None
+    beside = west + np.array([0, 0, 0.8])
+    for place, expected in [(east, names[1]), (west, None), (beside, names[0])]:
+        x, y = map(round, pixel(camera, place))
+        browser.mouse(("move", x, y), ("down",), ("up",))
+        assert browser.run(PICKED) == expected
+    assert browser.run("return decodeURIComponent(location.hash.slice(1))") == names[0]
+    # A drag is no click, and turns the model.
+    x, y = map(round, pixel(camera, east))
+    browser.mouse(("move", x, y), ("down",), ("move", 200, 100), ("up",))
+    assert browser.run(PICKED) == names[0]
+    assert browser.run(CAMERA)["heading"] != camera["heading"]
+
+
+@pytest.mark.slow
+def test_search_folds_accents_and_finds_all_fields(browser, tmp_path):
+    scene = made_scene(sizes=((20, 20, 20), (20,)))
+    opened(browser, tmp_path / "page", scene, inspected(scene))
+
+    def found(text):
+        browser.choose("search", text)
+        return browser.texts(".row b")
+
+    assert found("weiss") == found("WEISS") == ["A-0000", "A-0001", "A-0002"]
+    assert found("  riss AM ") == ["A-0001"]
+    assert found("2026-03-11") == ["A-0002"]
+    assert found(scene.components[1].elements[0].global_id) == ["B-0000"]
+    assert found("nowhere") == []
+    assert len(found("")) == 4
+
+
+@pytest.mark.slow
+def test_colours_show_on_panes_and_in_the_legend(browser, tmp_path):
+    scene = made_scene(sizes=((0, 0, 0),), n_background=0)
+    panes = [element for _, element in scene.elements]
+    rows = [of_pane(pane, "attribute", name="maker", value=maker) for pane, maker in zip(panes, "aab", strict=True)]
+    opened(browser, tmp_path / "page", scene, rows)
+    browser.choose("colour", "0")
+    browser.settled()
+    camera = browser.run(CAMERA)
+    shown = browser.pixels().astype(int)
+    first, second, third = (shown[int(y), int(x)] for x, y in (pixel(camera, middle(scene, pane)) for pane in panes))
+    assert np.array_equal(first, second)
+    # Blue and orange, as the legend says.
+    assert first[2] > first[0] + 60
+    assert third[0] > third[2] + 60
+    squares = "return [...document.querySelectorAll('#legend .square')].map((each) => each.style.backgroundColor)"
+    assert browser.run(squares) == ["rgb(0, 114, 178)", "rgb(230, 159, 0)"]
+    assert browser.texts("#legend .swatch") == ["a", "b"]
+
+
+@pytest.mark.slow
+def test_language_follows_the_browser_and_the_switch(browser, tmp_path):
+    scene = made_scene(sizes=((20, 20, 20),))
+    browser.cdp("Emulation.setUserAgentOverride", userAgent="test", acceptLanguage="de-AT")
+    opened(browser, tmp_path / "page", scene, inspected(scene))
+    browser.cdp("Emulation.setUserAgentOverride", userAgent="test", acceptLanguage="en-GB")
+    language = "return document.documentElement.lang"
+    assert (browser.run(language), browser.texts(".count")) == ("de", ["3 Scheiben"])
+    browser.run("document.getElementById('language').click()")
+    assert (browser.run(language), browser.texts(".count")) == ("en", ["3 panes"])
+
+
+@pytest.mark.slow
+def test_fingers_turn_move_and_pick_on_a_tablet(browser, tmp_path):
+    scene = made_scene(sizes=((50, 50, 50),), n_background=0)
+    browser.window(700, 900, touch=True)
+    browser.open(write_web(scene, tmp_path / "page", inspected(scene)).path)
+    browser.settled()
+    before = browser.run(CAMERA)
+
+    def touch(kind, *points):
+        touches = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]
+        browser.cdp("Input.dispatchTouchEvent", type=kind, touchPoints=touches)
+
+    touch("touchStart", (200, 300))
+    touch("touchMove", (260, 300))
+    touch("touchEnd")
+    turned = browser.run(CAMERA)
+    assert turned["heading"] > before["heading"] + 5
+    touch("touchStart", (200, 300), (300, 300))
+    touch("touchMove", (150, 300), (350, 300))
+    touch("touchEnd")
+    nearer = browser.run(CAMERA)
+    pane = scene.components[0].elements[1]
+    target = middle(scene, pane)
+    assert np.linalg.norm(nearer["eye"] - target) < 0.8 * np.linalg.norm(turned["eye"] - target)
+    browser.run("document.getElementById('home').click()")
+    time.sleep(0.6)
+    touch("touchStart", pixel(browser.run(CAMERA), target))
+    touch("touchEnd")
+    assert browser.run(PICKED) == pane.global_id
+    assert browser.run("return document.body.classList.contains('open')")
+    browser.window(900, 500)
+
+
+@pytest.mark.slow
+def test_keys_reach_everything(browser, tmp_path):
+    scene = made_scene(sizes=((50, 50, 50),))
+    opened(browser, tmp_path / "page", scene, inspected(scene))
+    browser.run("document.getElementById('picture').focus()")
+    start = browser.run(CAMERA)
+    browser.press("\ue014", "w")  # arrow to the right, forward
+    moved = browser.run(CAMERA)
+    assert moved["heading"] != start["heading"]
+    assert np.linalg.norm(np.subtract(moved["eye"], start["eye"])) > 0.01
+    browser.press("f")
+    assert browser.run("return document.getElementById('fly').getAttribute('aria-pressed')") == "true"
+    browser.press("\ue00c", "0")  # escape
+    time.sleep(0.6)
+    np.testing.assert_allclose(browser.run(CAMERA)["heading"], start["heading"], atol=1e-6)
+    browser.run("document.querySelector('.row').focus()")
+    browser.press("\ue007")  # enter
+    assert browser.run(PICKED) == scene.components[0].elements[0].global_id
+    assert browser.texts("#said")[0].endswith("A-0000")
+
+
+@pytest.mark.slow
+def test_pages_open_at_the_pane_that_their_address_names(browser, tmp_path):
+    scene = made_scene()
+    page = write_web(scene, tmp_path / "page")
+    wanted = scene.components[0].elements[2].global_id
+    browser.open(page.path, f"#{wanted}")
+    browser.settled()
+    assert browser.run(PICKED) == wanted
+    browser.open(page.path, "#%E0%A4%A")
+    browser.settled()
+    assert browser.run("return reflight.state().isLoaded")
+
+
+ATTEMPTS = """
+const put = (name, fields) => document.body.append(Object.assign(document.createElement(name), fields));
+const blocked = [];
+document.addEventListener("securitypolicyviolation", (event) => blocked.push(event.effectiveDirective));
+const attempts = [
+  () => put("img", { src: "http://127.0.0.1:9/a.png" }),
+  () => put("iframe", { src: "http://127.0.0.1:9/" }),
+  () => put("script", { text: "window.bad = 1" }),
+  () => { document.body.innerHTML += "<img src=x onerror='window.bad = 1'>"; },
+  () => { document.body.setAttribute("onclick", "window.bad = 1"); document.body.click(); },
+];
+const tried = (attempt) => { try { attempt(); return null; } catch (error) { return error.name; } };
+const thrown = attempts.map(tried);
+const isFetched = await fetch("http://127.0.0.1:9/").then(() => true, () => false);
+await new Promise((go) => setTimeout(go, 200));
+return { blocked, thrown, isFetched, bad: window.bad ?? null };
+"""
+
+
+@pytest.mark.slow
+def test_the_policy_blocks_network_scripts_and_markup_from_text(browser, tmp_path):
+    opened(browser, tmp_path / "page", made_scene())
+    found = browser.run(ATTEMPTS)
+    assert found["bad"] is None
+    assert not found["isFetched"]
+    assert found["thrown"][3] == "TypeError"
+    assert {"img-src", "connect-src", "frame-src"} <= set(found["blocked"])
+
+
+@pytest.mark.slow
+def test_a_page_that_was_cut_off_says_so(browser, tmp_path):
+    page = write_web(made_scene(), tmp_path / "page")
+    content = page.path.read_bytes()
+    page.path.write_bytes(content[: content.index(b'id="g0">') + 200])
+    browser.open(page.path)
+    browser.settled()
+    assert "damaged" in browser.texts("#trouble")[0]
+    assert len(browser.texts(".row")) == 4
+
+
+@pytest.mark.slow
+def test_without_webgl_the_records_are_still_there(browser, tmp_path):
+    scene = made_scene(sizes=((50, 50, 50),))
+    page = write_web(scene, tmp_path / "page", inspected(scene))
+    source = "HTMLCanvasElement.prototype.getContext = () => null"
+    added = browser.cdp("Page.addScriptToEvaluateOnNewDocument", source=source)
+    browser.open(page.path)
+    browser.settled()
+    assert "WebGL 2" in browser.texts("#trouble")[0]
+    browser.run("document.querySelectorAll('.row')[1].click()")
+    assert "Riß am Rand" in browser.texts("#content")[0]
+    browser.cdp("Page.removeScriptToEvaluateOnNewDocument", **added)
