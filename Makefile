@@ -17,7 +17,7 @@ TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: setup demo test test-all check check-style check-types check-imports ready-to-test alone benchmark tables format
-.PHONY: translations pictures clean
+.PHONY: translations pictures foreign clean
 
 setup: $(VENV)/.ready $(WARM)
 
@@ -63,7 +63,16 @@ test:
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not slow and not benchmark and not alone'
 	$(MAKE) alone FAST='not slow and'
 
-test-all:
+# Programs of others that read what we write, for tests that are skipped without them: Python's, and those of npm.
+foreign: $(VENV)/.foreign
+
+$(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
+	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt --editable '.[foreign]'
+	@command -v npm >/dev/null || echo 'npm is missing: tests with its readers are skipped'
+	! command -v npm >/dev/null || npm ci --prefix tests/foreign --ignore-scripts --no-audit --no-fund
+	touch $@
+
+test-all: foreign
 	$(MAKE) --jobs $(WORKERS) ready-to-test
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal --hypothesis-profile thorough -m 'not benchmark and not alone'
 	$(MAKE) alone

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,9 @@ from reconstruction.splatting.splats import NO_PANEL
 
 BACKGROUND = "background"
 
+NO_SITE, NO_FACADE = "site", "facade"
+"""Names of those that have none."""
+
 PANELS = "panels"
 """Of what splats have: which panel; told by the elements."""
 
@@ -34,6 +37,8 @@ OF_AUXILIARY = {"light.": "reflection", "sky.": "sky", "shader.": "shading", "co
 @dataclass(frozen=True, slots=True)
 class PanelGlobalIds:
     """GlobalIds of what a site has: those of the building model, else ones that follow from the names.
+
+    The same as `reconstruction.records.objects.site_objects` gives a site that has no model yet.
 
     Parameters
     ----------
@@ -74,7 +79,7 @@ def organised(trained: TrainedModel, source_ids: Mapping[str, str] | None = None
     source_ids
         GlobalIds of the building model by panel, in the place of those that the model's site tells.
     """
-    record, tensors = trained.record, tensors_of(trained)
+    record, tensors = _named(trained.record), tensors_of(trained)
     splats = {name.removeprefix(OF_SPLATS): _plain(tensors[name]) for name in tensors if name.startswith(OF_SPLATS)}
     panels = splats.pop(PANELS)
     ids = PanelGlobalIds.of(record, source_ids)
@@ -137,6 +142,20 @@ def put_together(scene: GsScene, path: Path) -> TrainedModel:
     return trained_of(scene.training, tensors, path)
 
 
+def _named(record: ModelRecord) -> ModelRecord:
+    """With names for all: data sets of other programs may lack them, or have one twice."""
+    used: set[str] = set()
+    panels = []
+    for number, panel in enumerate(record.site.panels, 1):
+        name = panel.id or f"panel {number}"
+        while name in used:
+            name = f"{name} ({number})"
+        used.add(name)
+        facade = panel.facade or NO_FACADE
+        panels.append(replace(panel, id=name, facade=f"{facade} (facade)" if facade == BACKGROUND else facade))
+    return replace(record, site=replace(record.site, name=record.site.name or NO_SITE, panels=tuple(panels)))
+
+
 def _facade(
     name: str,
     numbers: Sequence[int],
@@ -152,7 +171,7 @@ def _facade(
         elements.append(GsElement(ids.panel(panel.id), panel.id, number, corners, start, stop))
         start = stop
     rows = np.concatenate([rows_of[number] for number in numbers])
-    return GsComponent(ids.component(f"facade {name}"), name, "facade", tuple(elements), _chosen(splats, rows))
+    return GsComponent(ids.component(name), name, "facade", tuple(elements), _chosen(splats, rows))
 
 
 def _chosen(splats: Mapping[str, np.ndarray[Any, Any]], rows: np.ndarray[Any, np.dtype[np.int32]]) -> GsGaussian:

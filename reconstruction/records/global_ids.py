@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import uuid
 
 from planning.errors import InputError
@@ -11,12 +12,14 @@ ALPHABET = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_$"
 
 LENGTH = 22
 
+_PAIRS = tuple(first + second for first in ALPHABET for second in ALPHABET)
+_FORM = re.compile(r"[0-3][0-9A-Za-z_$]{21}")
 _NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "urn:reflight:objects")
 
 
 def is_global_id(text: str) -> bool:
     """Whether a text is an IFC GlobalId: 22 characters of the alphabet, the first of 0 to 3 (132 bits hold 128)."""
-    return len(text) == LENGTH and text[0] in "0123" and all(character in ALPHABET for character in text)
+    return _FORM.fullmatch(text) is not None
 
 
 def check_global_id(text: str, field: str) -> None:
@@ -33,11 +36,11 @@ def check_global_id(text: str, field: str) -> None:
 
 def compressed(number: uuid.UUID) -> str:
     """GlobalId of a UUID."""
-    value, digits = number.int, []
-    for _ in range(LENGTH):
-        value, digit = divmod(value, 64)
-        digits.append(ALPHABET[digit])
-    return "".join(reversed(digits))
+    value, pairs = number.int, []
+    for _ in range(LENGTH // 2):
+        value, pair = divmod(value, len(_PAIRS))
+        pairs.append(_PAIRS[pair])
+    return "".join(reversed(pairs))
 
 
 def global_id_of(site_name: str, name: str) -> str:

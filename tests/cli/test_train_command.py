@@ -268,3 +268,46 @@ def test_what_is_no_model_is_not_organised(reflight, glass, tmp_path):
     assert not (tmp_path / "scene").exists()
     with pytest.raises(InputError, match="make one with `organise`"):
         scene_of(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("name", "ending"),
+    [
+        ("web", ""),
+        ("gltf", ".glb"),
+        ("3d-tiles", ""),
+        ("ply", ".ply"),
+        ("ply-2dgs", ".ply"),
+        ("spz", ".spz"),
+        ("sog", ".sog"),
+        ("mesh", ".glb"),
+        ("cityjson", ".city.json"),
+        ("ifc", ".ifc"),
+    ],
+)
+def test_a_model_is_exported(reflight, glass, tmp_path, name, ending):
+    if name == "ifc":
+        shutil.copytree(glass / "model", tmp_path / "model")
+        reflight("organise", tmp_path / "model", "-o", tmp_path / "scene")
+    source = tmp_path / "scene" if name == "ifc" else glass / "model"
+    out = tmp_path / f"out{ending}"
+    done = reflight("export", source, "--format", name, "-o", out, "--json")
+    assert done.status == 0, done.err
+    assert done.json["format"] == name
+    assert done.json["bytes"] > 500
+    assert out.exists()
+    if name in ("web", "3d-tiles"):
+        assert {path.name for path in out.iterdir()} & {"index.html", "tileset.json"}
+
+
+def test_exports_of_models_are_refused_in_words(reflight, glass, tmp_path):
+    done = reflight("export", glass / "data", "--format", "gltf", "-o", tmp_path / "a.glb")
+    assert done.status == 1
+    assert "make one with `organise`" in done.err
+    done = reflight("export", glass / "model", "--format", "gltf", "--components", "Z", "-o", tmp_path / "a.glb")
+    assert done.status == 1
+    assert "there is no component 'Z'" in done.err
+    done = reflight("export", glass / "model", "--format", "kml", "-o", tmp_path / "a.kml")
+    assert done.status == 1
+    assert "a.kml" not in [path.name for path in tmp_path.iterdir()]
+    assert reflight("export", glass / "model", "--format", "nothing", "-o", tmp_path / "a").status == 2

@@ -1,4 +1,4 @@
-"""`export`: a plan to mission files."""
+"""`export`: a plan to mission files, or a model to the formats of other programs."""
 
 from __future__ import annotations
 
@@ -6,26 +6,56 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.lists import words
 from groundstation.cli.options import number
 
 MAX_RETURN_HEIGHT_M = 1500.0
 """Highest that DJI's waylines allow for any height above take-off."""
+
+MISSIONS = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
+MODELS = ("web", "gltf", "3d-tiles", "usd", "ply", "ply-2dgs", "spz", "sog", "mesh", "cityjson", "ifc")
+
+COLOURS_HELP = "baked: what panels mirror is in their colours (default); own: without"
+
+EPILOG = """formats of models:
+  web           folder with one page that any browser shows without a network, with picking and records
+  gltf          .glb: splats (KHR_gaussian_splatting), and panels to pick with their GlobalIds and attributes
+  3d-tiles      folder: the same in tiles, placed on Earth
+  usd           .usdc or .usda: splats and panels
+  ply, ply-2dgs splats for SuperSplat and others, as ellipsoids or as discs
+  spz, sog      splats, compressed
+  mesh          .glb: panels with pictures of their fronts, for programs that know no splats
+  cityjson, ifc the panels alone, as windows and plates of the building
+
+examples:
+  export office.plan.json --format dji-kmz -o office.kmz
+  export tower.gsscene --format web -o tower.web
+  export tower.gsscene --format spz --preset small -o tower.spz
+"""
 
 
 def add_parser(subparsers: Any) -> None:
     """Describe the command."""
     parser = subparsers.add_parser(
         "export",
-        help="write a plan as a mission for DJI or MAVLink, or for a look in a map",
-        description="Write mission files. The first sortie gets the name given, further ones NAME-2, NAME-3 and so "
-        "on (KML and CSV hold all sorties).",
+        help="write a plan as a mission for DJI or MAVLink, or a model for other programs",
+        description="Write mission files of a plan, or a model in a format of other programs. Of missions the first\n"
+        "sortie gets the name given, further ones NAME-2, NAME-3 and so on (KML and CSV hold all sorties).",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=run)
     add = parser.add_argument
-    add("plan", type=Path, metavar="PLAN", help="plan file")
-    formats = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
-    add("--format", required=True, choices=formats, help="kind of file")
-    add("-o", "--out", type=Path, required=True, metavar="FILE", help="file to write")
+    add("plan", type=Path, metavar="PLAN|MODEL", help="plan file; or folder of a model, or of its objects")
+    formats = (*MISSIONS, *MODELS)
+    add(
+        "--format",
+        required=True,
+        choices=formats,
+        metavar="FORMAT",
+        help=f"of plans {', '.join(MISSIONS)}; of models below",
+    )
+    add("-o", "--out", type=Path, required=True, metavar="FILE", help="file to write; web and 3d-tiles: folder")
     add("--site", type=Path, metavar="SITE", help="site file (default: the one beside the plan it was made for)")
     add(
         "--heights",
@@ -36,11 +66,42 @@ def add_parser(subparsers: Any) -> None:
     add("--autopilot", choices=("ardupilot", "px4"), help="whose rules MAVLink files follow (default: by profile)")
     add("--link-loss", choices=("continue", "go-home"), default="continue", help="DJI: what to do without radio link")
     add("--return-height", type=number, metavar="M", help="DJI: above take-off (default: above everything on the site)")
+    model = parser.add_argument_group("models")
+    model.add_argument("--colours", choices=("baked", "own"), default="baked", help=COLOURS_HELP)
+    model.add_argument(
+        "--degree", type=int, choices=(0, 1, 2, 3), help="of colours by direction (default: the format's)"
+    )
+    model.add_argument(
+        "--preset", choices=("small", "balanced", "fine"), default="balanced", help="of spz and sog (default balanced)"
+    )
+    model.add_argument("--components", type=words, metavar="LIST", help="such as A,background (default: all)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
 
 def run(options: argparse.Namespace) -> int:
     """Export and print; returns the exit status."""
+    return _export_model(options) if options.format in MODELS else _export_plan(options)
+
+
+def _export_model(options: argparse.Namespace) -> int:
+    from groundstation.cli.console import print_json, run_job
+    from groundstation.services.model_export import ModelExport, ModelFormat, export_model
+
+    wanted = ModelExport(
+        ModelFormat(options.format), options.colours == "baked", options.degree, options.preset, options.components
+    )
+    done = run_job("export", lambda context: export_model(options.plan, options.out, wanted, context))
+    if options.json:
+        content = {"file": str(done.path), "format": options.format, "bytes": done.n_bytes, "notes": list(done.notes)}
+        print_json(content)
+        return 0
+    print(f"{done.path}: {done.n_bytes / 1e6:.3g} MB")
+    for note in done.notes:
+        print(f"note: {note}")
+    return 0
+
+
+def _export_plan(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_findings, print_json
     from groundstation.services.missions import export_plan
     from groundstation.services.planning import finding_summary

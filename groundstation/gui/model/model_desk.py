@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import getpass
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.workspace import Workspace
+from groundstation.services.facility_records import user_name
 from groundstation.services.jobs import JobContext
 from groundstation.services.panel_colours import NO_COLOURS, Colouring, colouring
 from groundstation.services.reconstruct_messages import (
@@ -248,7 +248,7 @@ class ModelDesk(QObject):
         if self.card is None:
             return False
         try:
-            with book_of_scene(self.card.folder, getpass.getuser()) as book:
+            with book_of_scene(self.card.folder, user_name()) as book:
                 change(book)
         except GroundStationError as error:
             self._say(error)

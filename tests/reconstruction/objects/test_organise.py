@@ -8,12 +8,14 @@ import pytest
 import torch
 
 from planning.errors import InputError
+from planning.site import Airspace, Facade, Origin, Panel, Site
 from reconstruction.modelling.config import config_of
 from reconstruction.modelling.saved import description_of, tensors_of
 from reconstruction.modelling.train import train_model
 from reconstruction.objects.organise import PanelGlobalIds, organised, put_together
 from reconstruction.objects.store import read_scene, write_scene
 from reconstruction.records.global_ids import is_global_id
+from reconstruction.records.objects import site_objects
 from tests.reconstruction.objects.conftest import CONFIG
 
 HERE = Path("here")
@@ -35,7 +37,9 @@ def test_a_model_that_went_through_objects_and_files_is_the_same_bits(data_set, 
 def test_facades_have_four_layers_and_the_background_three(scene, trained):
     site = trained.record.site
     *facades, background = scene.components
-    assert [component.name for component in facades] == list(dict.fromkeys(panel.facade for panel in site.panels))
+    assert [component.name for component in facades] == list(
+        dict.fromkeys(panel.facade or "facade" for panel in site.panels)
+    )
     assert {element.name for _, element in scene.elements} == {panel.id for panel in site.panels}
     assert background.kind == "background"
     assert not background.elements
@@ -75,6 +79,36 @@ def test_the_building_model_s_global_ids_are_taken_where_they_are_good(trained):
     panels = tuple(replace(panel, source_id=given.get(panel.id)) for panel in trained.record.site.panels)
     told = replace(trained.record, site=replace(trained.record.site, panels=panels))
     assert PanelGlobalIds.of(told).panel(names[0]) == given[names[0]]
+
+
+def test_what_has_no_name_or_one_twice_gets_one_of_its_own(trained):
+    panels = tuple(
+        replace(panel, id=("" if number else "A"), facade="") for number, panel in enumerate(trained.record.site.panels)
+    )
+    panels = (*panels[:-1], replace(panels[-1], id="A"))
+    nameless = replace(
+        trained, record=replace(trained.record, site=replace(trained.record.site, name="", panels=panels))
+    )
+    scene = organised(nameless)
+    names = [element.name for _, element in scene.elements]
+    assert len(set(names)) == len(names) == len(panels)
+    assert all([scene.name, *(component.name for component in scene.components), *names])
+    assert len({element.global_id for _, element in scene.elements}) == len(panels)
+
+
+def test_global_ids_are_those_that_a_site_without_a_model_has(trained, tmp_path):
+    panels = trained.record.site.panels
+    facades = [
+        Facade(name, tuple(Panel(each.id, each.corners_enu_m) for each in panels if each.facade == name))
+        for name in dict.fromkeys(panel.facade for panel in panels)
+    ]
+    box = Airspace((-99.0, -99.0, 0.0), (99.0, 99.0, 60.0), 0.0)
+    site = Site("here", Origin(48.0, 11.0, 500.0), tuple(facades), box, (0.0, -50.0, 0.0))
+    named = replace(trained, record=replace(trained.record, site=replace(trained.record.site, name="here")))
+    scene = organised(named)
+    mine = {scene.global_id, *(each.global_id for each in scene.components[:-1])}
+    mine |= {element.global_id for _, element in scene.elements}
+    assert mine == {row.global_id for row in site_objects(site)}
 
 
 def test_parts_of_scenes_that_do_not_belong_together_are_refused(scene, trained):
