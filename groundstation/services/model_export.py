@@ -39,6 +39,9 @@ WITHOUT_COLOURS = frozenset({ModelFormat.CITYJSON, ModelFormat.IFC})
 """Formats of panels alone."""
 
 
+NO_CESIUM = "CesiumJS 1.145 stops at Gaussians that are not compressed: for it, show panels.json, or write --points"
+
+
 @dataclass(frozen=True, slots=True)
 class ModelExport:
     """What is wanted.
@@ -53,6 +56,8 @@ class ModelExport:
         Of compressed formats.
     components
         Names of those that are wanted; None for all.
+    points
+        Whether glTF and 3D Tiles have coloured points in the place of Gaussians, for viewers that know none.
     """
 
     format: ModelFormat
@@ -60,6 +65,7 @@ class ModelExport:
     degree: int | None = None
     preset: Preset = "balanced"
     components: tuple[str, ...] | None = None
+    points: bool = False
 
     def __post_init__(self) -> None:
         if self.degree is not None and self.degree not in (0, 1, 2, 3):
@@ -200,7 +206,7 @@ def _web(export: _Export) -> list[str]:
 def _gltf(export: _Export) -> list[str]:
     from reconstruction.exports.gltf import GltfOptions, write_gltf
 
-    options = GltfOptions(sh_degree=export.degree(3))
+    options = GltfOptions(sh_degree=export.degree(3), as_points=export.wanted.points)
     write_gltf(export.scene, export.out, options, export.attributes, export.monitor)
     return []
 
@@ -209,9 +215,10 @@ def _tiles(export: _Export) -> list[str]:
     from reconstruction.exports.tiles3d import TilesOptions, write_tiles
 
     place: Literal["earth", "local"] = "local" if export.scene.origin is None else "earth"
-    options = TilesOptions(sh_degree=export.degree(3), place=place)
+    options = TilesOptions(sh_degree=export.degree(3), place=place, as_points=export.wanted.points)
     write_tiles(export.scene, export.out, options, export.attributes, export.monitor)
-    return [] if place == "earth" else ["the place on Earth is not known: tiles stay in the site's own frame"]
+    notes = [] if place == "earth" else ["the place on Earth is not known: tiles stay in the site's own frame"]
+    return notes if export.wanted.points else [*notes, NO_CESIUM]
 
 
 def _usd(export: _Export) -> list[str]:

@@ -55,11 +55,11 @@ class GltfOptions:
     Parameters
     ----------
     sh_degree
-        Of the colours' harmonics, 0 to 3: 64, 100, 160 or 244 bytes for each Gaussian.
+        Of the colours' harmonics, 0 to 3: 68, 104, 164 or 248 bytes for each Gaussian on a facade.
     panel_opacity
         Of the panels' quads, over 0 to 1.
     as_points
-        Only means and diffuse colours, 24 bytes each: for viewers that fail at Gaussians (CesiumJS 1.145, where they
+        Only means and diffuse colours, 24 bytes each on a facade: for viewers that fail at Gaussians (CesiumJS 1.145, where they
         are not compressed).
     """
 

@@ -74,6 +74,7 @@ def add_parser(subparsers: Any) -> None:
     model.add_argument(
         "--preset", choices=("small", "balanced", "fine"), default="balanced", help="of spz and sog (default balanced)"
     )
+    model.add_argument("--points", action="store_true", help="gltf, 3d-tiles: coloured points instead of Gaussians")
     model.add_argument("--components", type=words, metavar="LIST", help="such as A,background (default: all)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -88,7 +89,12 @@ def _export_model(options: argparse.Namespace) -> int:
     from groundstation.services.model_export import ModelExport, ModelFormat, export_model
 
     wanted = ModelExport(
-        ModelFormat(options.format), options.colours == "baked", options.degree, options.preset, options.components
+        ModelFormat(options.format),
+        options.colours == "baked",
+        options.degree,
+        options.preset,
+        options.components,
+        options.points,
     )
     done = run_job("export", lambda context: export_model(options.plan, options.out, wanted, context))
     if options.json:
