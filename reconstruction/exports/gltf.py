@@ -59,8 +59,8 @@ class GltfOptions:
     panel_opacity
         Of the panels' quads, over 0 to 1.
     as_points
-        Only means and diffuse colours, 24 bytes each on a facade: for viewers that fail at Gaussians (CesiumJS 1.145, where they
-        are not compressed).
+        Only means and diffuse colours, 24 bytes each on a facade: for viewers that fail at Gaussians (CesiumJS 1.145,
+        where they are not compressed).
     """
 
     sh_degree: int = 3
