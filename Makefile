@@ -63,12 +63,15 @@ test:
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not slow and not benchmark and not alone'
 	$(MAKE) alone FAST='not slow and'
 
-# Programs of others that read what we write, for tests that are skipped without them: Python's, and those of npm.
+# Programs of others that read what we write, for tests that are skipped without them: Python's, those of npm, and
+# Chromium (Ubuntu has it as a snap, which does not run everywhere).
 foreign: $(VENV)/.foreign
 
 $(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
 	$(PY) -m pip install --quiet --no-compile --constraint constraints.txt --editable '.[foreign]'
 	@command -v npm >/dev/null || echo 'npm is missing: tests with its readers are skipped'
+	command -v chromedriver >/dev/null || { [ "$$(id -u)" = 0 ] && apt-get install -y -qq chromium chromium-driver; } || \
+		echo 'chromium and chromium-driver are missing: tests of web pages are skipped'
 	! command -v npm >/dev/null || npm ci --prefix tests/foreign --ignore-scripts --no-audit --no-fund
 	touch $@
 

@@ -52,7 +52,10 @@ def test_help_answers_in_under_half_a_second_and_names_the_commands():
         done = subprocess.run([sys.executable, "app.py", "-h"], cwd=ROOT, capture_output=True, text=True, check=False)
         fastest = min(fastest, time.perf_counter() - started)
     assert done.returncode == 0
-    commands = "demo project site plan check compare brief export import simulate report topup signing route tradeoff"
+    commands = (
+        "demo project site plan check compare brief export import simulate report topup signing route tradeoff "
+        "train render score organise records"
+    )
     for command in commands.split():
         assert f"\n    {command} " in done.stdout
     assert fastest < 0.5

@@ -158,22 +158,18 @@ def _shown(whole: GsScene, trained: TrainedModel, wanted: ModelExport, monitor: 
 def _records(folder: Path) -> tuple[dict[str, dict[str, Any]], tuple[Mapping[str, Any], ...]]:
     """Attributes by object, and all records as plain rows; none where there is no book."""
     from groundstation.services.facility_records import open_records, plain_records, records_path
+    from reconstruction.records.queries import attributes_by_object
 
     if not records_path(folder).is_file():
         return {}, ()
     with open_records(folder) as book:
-        found = plain_records(book)
-    attributes = {
-        global_id: {row["name"]: row["value"] for row in rows if row["record"] == "attribute"}
-        for global_id, rows in found.items()
-    }
-    rows = tuple({"global_id": global_id, **row} for global_id, each in found.items() for row in each)
-    return {global_id: values for global_id, values in attributes.items() if values}, rows
+        found, attributes = plain_records(book), attributes_by_object(book)
+    return attributes, tuple({"global_id": global_id, **row} for global_id, each in found.items() for row in each)
 
 
 def _ifc(folder: Path, out: Path) -> WrittenModel:
-    from groundstation.services.facility_records import export_ifc, user_name
-    from groundstation.services.scene_records import book_of_scene
+    from groundstation.services.facility_records import export_ifc
+    from groundstation.services.scene_records import book_of_scene, user_name
 
     with book_of_scene(folder, user_name()) as book:
         done = export_ifc(book, out)

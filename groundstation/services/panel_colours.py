@@ -136,13 +136,12 @@ def colouring(book: RecordBook | None, by: str, facades: Mapping[str, str]) -> C
         return by_value(dict(facades), global_ids)
     if not by or book is None:
         return NO_COLOURS
-    from reconstruction.records.queries import attribute_values, latest_inspections, worst_open_defects
+    from reconstruction.records.queries import attribute_values, inspection_dates, open_severities
 
     if by == Computed.DEFECTS:
-        worst = {each: defect.severity for each, defect in worst_open_defects(book).items()}
-        return by_severity(worst, global_ids)
+        return by_severity(open_severities(book), global_ids)
     if by == Computed.INSPECTED:
-        dates = {each: date.fromisoformat(found.date) for each, found in latest_inspections(book).items()}
+        dates = {each: date.fromisoformat(text) for each, text in inspection_dates(book).items()}
         return by_value(dates, global_ids)
     found = attribute_values(book, by)
     units = Counter(each.unit for each in found.values())

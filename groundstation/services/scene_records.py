@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import getpass
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +12,14 @@ if TYPE_CHECKING:
     from reconstruction.records.book import RecordBook
     from reconstruction.records.entries import Entry
     from reconstruction.records.objects import ObjectRow
+
+
+def user_name() -> str:
+    """Who is at the computer, for the history."""
+    try:
+        return getpass.getuser()[:200] or "unknown"
+    except (OSError, KeyError, ImportError):
+        return "unknown"
 
 
 def book_of_scene(folder: Path, who: str) -> RecordBook:

@@ -38,14 +38,14 @@ def small_jpeg(name: str, content: bytes) -> bytes:
     Raises
     ------
     InputError
-        It is no JPEG or PNG file, is damaged, or larger than any camera's.
+        It is no JPEG, PNG or WebP file, is damaged, or larger than any camera's.
     """
     place = f"picture '{name[:80]}'"
     if len(content) > MAX_FILE_BYTES:
         raise InputError(f"{place}: has more than {MAX_FILE_BYTES // 2**20} MiB; save it smaller")
     size_wh = _size(content)
     if size_wh is None:
-        raise InputError(f"{place}: expected a JPEG or PNG file, found something else or a damaged one")
+        raise InputError(f"{place}: expected a JPEG, PNG or WebP file, found something else or a damaged one")
     if not 0 < size_wh[0] * size_wh[1] <= MAX_PIXELS:
         raise InputError(
             f"{place}: claims to have {size_wh[0]} x {size_wh[1]} pixels; expected at most "
@@ -76,6 +76,8 @@ def _size(content: bytes) -> tuple[int, int] | None:
     """Width and height that a file's header says; None where there is none."""
     if content.startswith(_PNG):
         return struct.unpack(">II", content[16:24]) if len(content) >= 24 and content[12:16] == b"IHDR" else None
+    if content.startswith(b"RIFF") and content[8:12] == b"WEBP":
+        return _size_of_webp(content)
     if not content.startswith(b"\xff\xd8\xff"):
         return None
     place = 2
@@ -88,4 +90,21 @@ def _size(content: bytes) -> tuple[int, int] | None:
             height, width = struct.unpack(">HH", content[place + 5 : place + 9])
             return width, height
         place += 2 + int(struct.unpack(">H", content[place + 2 : place + 4])[0])
+    return None
+
+
+def _size_of_webp(content: bytes) -> tuple[int, int] | None:
+    """Of the first chunk: extended, lossless or lossy (RFC 9649)."""
+
+    def number(start: int, n_bytes: int) -> int:
+        return int.from_bytes(content[start : start + n_bytes], "little")
+
+    kind = content[12:16] if len(content) >= 30 else b""
+    if kind == b"VP8X":
+        return number(24, 3) + 1, number(27, 3) + 1
+    if kind == b"VP8L" and content[20] == 0x2F:
+        bits = number(21, 4)
+        return (bits & 0x3FFF) + 1, (bits >> 14 & 0x3FFF) + 1
+    if kind == b"VP8 " and content[23:26] == b"\x9d\x01\x2a":
+        return number(26, 2) & 0x3FFF, number(28, 2) & 0x3FFF
     return None

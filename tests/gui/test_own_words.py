@@ -138,7 +138,7 @@ NO_SENTENCE = {
         *("smallest clearance", "findings: {0}"),
     ),
     "what the history of records says": ("objects of the model", "{0} put", "{0} removed", "undone: {0}"),
-    "names that GlobalIds follow from": ("facade {0}",),
+    "names that GlobalIds follow from": ("component {0}", "panel {0}"),
     "keys and comments of files of models": (
         *("site: {0}", "site origin, WGS 84 lat lon ellipsoid height: {0}", "empty places"),
     ),

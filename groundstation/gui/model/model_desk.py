@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.workspace import Workspace
-from groundstation.services.facility_records import user_name
 from groundstation.services.jobs import JobContext
 from groundstation.services.panel_colours import NO_COLOURS, Colouring, colouring
 from groundstation.services.reconstruct_messages import (
@@ -24,7 +23,7 @@ from groundstation.services.reconstruct_messages import (
 )
 from groundstation.services.reconstruct_process import ModelProcess
 from groundstation.services.scene_card import SceneCard, is_model, is_scene, read_card, scenes_beside
-from groundstation.services.scene_records import book_of_scene, with_file
+from groundstation.services.scene_records import book_of_scene, user_name, with_file
 from planning.errors import GroundStationError
 from planning.findings import Severity
 

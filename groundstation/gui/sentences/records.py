@@ -33,7 +33,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "{0} rows refer to rows that are not there; take a copy back"),
     QT_TRANSLATE_NOOP("Sentences", "is there already; nothing is written over it"),
     QT_TRANSLATE_NOOP("Sentences", "is a folder; expected a file with records"),
-    QT_TRANSLATE_NOOP("Sentences", "there are no records yet; make them with 'records FOLDER make'"),
+    QT_TRANSLATE_NOOP("Sentences", "there are no records yet; make them with 'records FOLDER make --objects SITE'"),
     QT_TRANSLATE_NOOP("Sentences", "expected a file with records, found a device or a pipe"),
     QT_TRANSLATE_NOOP("Sentences", "the file is empty; take a copy of it back"),
     QT_TRANSLATE_NOOP("Sentences", "expected records (a SQLite file), found something else"),
@@ -52,7 +52,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "the file is damaged; take a copy of it back"),
     QT_TRANSLATE_NOOP("Sentences", "the disk does not answer as it should; nothing was changed"),
     QT_TRANSLATE_NOOP("Sentences", "a value is too large"),
-    QT_TRANSLATE_NOOP("Sentences", "cannot be used ({0})"),
+    QT_TRANSLATE_NOOP("Sentences", "is damaged or cannot be used ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "expected a name without brackets, quotes and blanks around it, got '{0}'"),
     QT_TRANSLATE_NOOP("Sentences", "name: '{0}' stands for the object itself; use another name"),
     QT_TRANSLATE_NOOP("Sentences", "follows from the corners of the pane and is not set"),
@@ -99,4 +99,5 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "is not the file that was stored; copy it back"),
     QT_TRANSLATE_NOOP("Sentences", "has more than {0} MiB"),
     QT_TRANSLATE_NOOP("Sentences", "the place could not be looked at ({0})"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}; the file is damaged"),
 )

@@ -10542,10 +10542,6 @@ Take it over?</source>
         <translation>ist ein Ordner; erwartet wird eine Datei mit Einträgen</translation>
     </message>
     <message>
-        <source>there are no records yet; make them with &apos;records FOLDER make&apos;</source>
-        <translation>es gibt noch keine Einträge; mit &apos;records FOLDER make&apos; anlegen</translation>
-    </message>
-    <message>
         <source>expected a file with records, found a device or a pipe</source>
         <translation>erwartet wird eine Datei mit Einträgen, gefunden wurde ein Gerät oder eine Pipe</translation>
     </message>
@@ -10602,8 +10598,12 @@ Take it over?</source>
         <translation>ein Wert ist zu groß</translation>
     </message>
     <message>
-        <source>cannot be used ({0})</source>
-        <translation>ist nicht zu gebrauchen ({0})</translation>
+        <source>there are no records yet; make them with &apos;records FOLDER make --objects SITE&apos;</source>
+        <translation>es gibt noch keine Einträge; mit &apos;records FOLDER make --objects SITE&apos; anlegen</translation>
+    </message>
+    <message>
+        <source>is damaged or cannot be used ({0})</source>
+        <translation>ist beschädigt oder nicht zu gebrauchen ({0})</translation>
     </message>
     <message>
         <source>expected a name without brackets, quotes and blanks around it, got &apos;{0}&apos;</source>
@@ -10764,6 +10764,10 @@ Take it over?</source>
     <message>
         <source>the place could not be looked at ({0})</source>
         <translation>die Stelle ließ sich nicht ansehen ({0})</translation>
+    </message>
+    <message>
+        <source>{0}; the file is damaged</source>
+        <translation>{0}; die Datei ist beschädigt</translation>
     </message>
 </context>
 <context>

@@ -95,7 +95,7 @@ def picture(width, height, ending=".png"):
     return cv2.imencode(ending, cv2.resize(pixels, (width, height)))[1].tobytes()
 
 
-@pytest.mark.parametrize("ending", [".png", ".jpg"])
+@pytest.mark.parametrize("ending", [".png", ".jpg", ".webp"])
 def test_pictures_are_made_small_and_anew(ending):
     content = picture(2000, 1000, ending)
     if ending == ".jpg":
@@ -114,16 +114,25 @@ def png_of(width, height):
     return b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + head + struct.pack(">I", zlib.crc32(head))
 
 
+def webp_of(kind, start):
+    chunk = kind + bytes(4) + start.ljust(20, b"\x00")
+    return b"RIFF" + struct.pack("<I", len(chunk) + 4) + b"WEBP" + chunk
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "expected a JPEG or PNG"),
-        (b"<svg onload='alert(1)'/>", "expected a JPEG or PNG"),
-        (b"GIF89a" + bytes(20), "expected a JPEG or PNG"),
+        (b"", "expected a JPEG, PNG or WebP"),
+        (b"<svg onload='alert(1)'/>", "expected a JPEG, PNG or WebP"),
+        (b"GIF89a" + bytes(20), "expected a JPEG, PNG or WebP"),
         (png_of(60_000, 60_000), "60000 x 60000"),
+        (webp_of(b"VP8X", bytes(4) + b"\xff\xff\xff" * 2), "16777216 x 16777216"),
+        (webp_of(b"VP8L", b"\x2f\xff\xff\xff\xff"), "16384 x 16384"),
+        (webp_of(b"VP8 ", bytes(3) + b"\x9d\x01\x2a" + b"\xff\xff" * 2), "16383 x 16383"),
+        (webp_of(b"ALPH", b""), "expected a JPEG"),
         (png_of(0, 5), "0 x 5"),
         (png_of(10, 10), "cannot be decoded"),
-        (b"\xff\xd8\xff\xe0", "expected a JPEG or PNG"),
+        (b"\xff\xd8\xff\xe0", "expected a JPEG, PNG or WebP"),
         (b"\xff\xd8\xff\xc0\x00\x11\x08\xff\xff\xff\xff\x03", "65535 x 65535"),
     ],
 )
