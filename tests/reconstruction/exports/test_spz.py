@@ -1,6 +1,7 @@
 """SPZ files: what is read back is what was written to within the format's steps, and hostile files are refused."""
 
 import gzip
+import itertools
 import math
 import struct
 import zlib
@@ -222,6 +223,7 @@ def test_extensions_after_the_gaussians_are_passed_over(tmp_path):
         (gzip.compress(header() + bytes(20))[:-8] + bytes(8), "is damaged"),
         (gzip.compress(header() + bytes(20))[:24] + b"\xff\xff\xff\xff", "is damaged|cut off"),
     ],
+    ids=itertools.count(),
 )
 def test_hostile_files_are_refused_in_words(tmp_path, content, message):
     path = tmp_path / "model.spz"
