@@ -29,7 +29,7 @@ def middles(lens=LENS):
     return np.column_stack([x.ravel(), y.ravel()])
 
 
-def slow(corners, origin, ray):
+def one_by_one(corners, origin, ray):
     """Moeller and Trumbore's test of two triangles, one panel after the other."""
     best = (np.inf, -1)
     for number, quad in enumerate(corners):
@@ -59,7 +59,7 @@ def test_the_nearest_panel_is_found_as_by_triangles_one_by_one(seed):
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     origin = rng.normal(size=3)
     found, distances = Quads.of(corners).met(origin, rays)
-    assert found.tolist() == [slow(corners, origin, ray) for ray in rays]
+    assert found.tolist() == [one_by_one(corners, origin, ray) for ray in rays]
     assert np.array_equal(np.isfinite(distances), found >= 0)
 
 
