@@ -113,5 +113,5 @@ def test_of_the_glass_of_made_photos_next_to_every_pixel_is_picked_right(tmp_pat
         found = picked(quads, photo, middles(photo.intrinsics), depth.ravel()).reshape(truth.shape)
         n_right += int((found[glass] == truth[glass].astype(int) - 1).sum())
         n_glass += int(glass.sum())
-    assert n_glass > 0.4 * side**2 * width_px * 0.75 * width_px
+    assert n_glass > 0.4 * len(source.photos) * width_px * 0.75 * width_px
     assert n_right >= 0.999 * n_glass
