@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.services.scene_records import user_name
+from groundstation.services.scene_records import object_rows, user_name
 from planning.errors import InputError
 from planning.progress import QUIET, Monitor
 
@@ -64,26 +64,36 @@ def open_records(folder: Path, writing: bool = False, who: str | None = None) ->
     return RecordBook(records_path(folder), writing, user_name() if who is None else who)
 
 
-def make_records(folder: Path, site_path: Path, who: str | None = None) -> ObjectsSet:
-    """Make the records of a site, or bring those that are there up to its facades and panels.
+def make_records(folder: Path, site_path: Path | None = None, who: str | None = None) -> ObjectsSet:
+    """Make records, or bring those that are there up to the objects that there are now.
+
+    Parameters
+    ----------
+    site_path
+        Of whose facades and panels; None: of the scene in the folder.
 
     Raises
     ------
     InputError
-        The site cannot be read, or the file cannot be written.
+        Site or scene cannot be read, or the file cannot be written.
     """
     from groundstation.services.given_files import read_given_site
     from planning.folders import make_folder
+    from reconstruction.objects.store import StoredScene
     from reconstruction.records.book import make_book
     from reconstruction.records.objects import site_objects
 
-    site = read_given_site(site_path).site
-    rows = site_objects(site)
+    if site_path is None:
+        scene = StoredScene(folder)
+        rows, origin = object_rows(scene), scene.origin
+    else:
+        site = read_given_site(site_path).site
+        rows, origin = site_objects(site), site.origin
     make_folder(folder)
     if not records_path(folder).exists():
         make_book(records_path(folder))
     with open_records(folder, True, who) as book:
-        return book.set_objects(rows, site.origin)
+        return book.set_objects(rows, origin)
 
 
 def object_lines(book: RecordBook, wanted: ObjectFilter) -> list[dict[str, Any]]:

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from planning.scenes import write_scene
+from reconstruction.objects.store import write_scene as write_objects
+from tests.reconstruction.objects.made_scene import made_scene
 
 
 @pytest.fixture
@@ -104,3 +106,14 @@ def test_looking_into_records_loads_nothing_heavy(folder):
     done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert len(json.loads(done.stdout)["objects"]) == 34
+
+
+def test_records_of_a_scene_take_its_objects(reflight, tmp_path):
+    write_objects(made_scene(), tmp_path / "made.gsscene")
+    done = reflight("records", tmp_path / "made.gsscene", "make", "--json")
+    assert done.status == 0, done.error
+    n_objects = 1 + len(made_scene().components) + len(list(made_scene().elements))
+    assert done.json["objects"]["present"] == n_objects
+    nothing = reflight("records", tmp_path, "make")
+    assert nothing.status == 1
+    assert "make one with `organise`" in nothing.error

@@ -11,17 +11,18 @@ from groundstation.cli.lists import count
 from planning.errors import InputError
 
 EPILOG = """examples:
-  records tower.model make --objects tower.site.json
-  records tower.model set A-0012 maker='Glas AG' 'thickness=28' 'u-value [W/m²K] (number)=1.1'
-  records tower.model add A-0012 inspection date=2026-03-31 inspector=Chan method=drone result=crack
-  records tower.model add A-0012 defect kind=crack severity=3 found_on=2026-03-31 u=0.2 v=0.7 picture=crack.jpg
-  records tower.model list --severity 3
-  records tower.model show A-0012
-  records tower.model search 'crack south'
-  records tower.model export -o tables
-  records tower.model import tables/defects.csv
-  records tower.model export -o records.ifc --into tower.ifc
-  records tower.model history A-0012
+  records tower.gsscene make
+  records tower.records make --objects tower.site.json
+  records tower.gsscene set A-0012 maker='Glas AG' 'thickness=28' 'u-value [W/m²K] (number)=1.1'
+  records tower.gsscene add A-0012 inspection date=2026-03-31 inspector=Chan method=drone result=crack
+  records tower.gsscene add A-0012 defect kind=crack severity=3 found_on=2026-03-31 u=0.2 v=0.7 picture=crack.jpg
+  records tower.gsscene list --severity 3
+  records tower.gsscene show A-0012
+  records tower.gsscene search 'crack south'
+  records tower.gsscene export -o tables
+  records tower.gsscene import tables/defects.csv
+  records tower.gsscene export -o records.ifc --into tower.ifc
+  records tower.gsscene history A-0012
 """
 
 
@@ -38,7 +39,9 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder of a model")
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
     make = _add_action(actions, "make", run_make, "make the records of a site, or bring them up to its panels")
-    make.add_argument("--objects", type=Path, required=True, metavar="SITE", help="site file with facades and panels")
+    make.add_argument(
+        "--objects", type=Path, metavar="SITE", help="site file with facades and panels (default: the scene's)"
+    )
     _add_looking(actions)
     _add_changing(actions)
     _add_files(actions)
