@@ -148,7 +148,7 @@ def test_start_is_refused_while_the_list_is_not_well(flight):
     follower.until_may(Request.UPLOAD)
     live.request(Request.UPLOAD)
     follower.until(lambda event: isinstance(event, Answered) and event.request is Request.UPLOAD)
-    follower.until(lambda event: isinstance(event, FlightChanged) and event.view.phase is Phase.CHECKING)
+    follower.until_in(Phase.CHECKING)
     assert Request.START not in follower.view.may
     bad = [check.code for check in follower.view.checks if check.verdict.value != "ok"]
     assert "wind" in bad
