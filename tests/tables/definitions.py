@@ -86,7 +86,8 @@ def _methods() -> Table:
     return Table(
         "3",
         "Methods",
-        "The same photos of our plan, and the same processor time for each.",
+        "The same photos of our plan, and the same limits of steps and of processor time for each; where steps are "
+        "dear, the time is up first.",
         (ST, UST),
         cases,
         (Above(PAPERS, others, 3.0), Above(OURS, (PAPERS,), 0.0)),

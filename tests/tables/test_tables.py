@@ -100,7 +100,7 @@ def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):
 def test_the_page_has_means_seeds_and_the_paper_s_numbers(tmp_path):
     case = TABLE_5.cases[0]
     text = page(tmp_path, [result(case, 25.0, 1), result(case, 26.0, 0)])
-    assert f"| {case.title} | 25.50 | 20.00 | 0.9000 |  | 60 | 0: 26.00, 1: 25.00 | 28.25 |" in text
+    assert f"| {case.title} | 25.50 | 20.00 | 0.9000 |  | 60 | 9 | 0: 26.00, 1: 25.00 | 28.25 |" in text
 
 
 @pytest.mark.parametrize(("whole_db", "word"), [(25.5, "met"), (24.5, "**missed**")])
@@ -110,6 +110,16 @@ def test_what_must_hold_is_said_to_be_met_or_missed(tmp_path, whole_db, word):
     wish = TABLE_5.must_hold[0]
     assert gap_db(TABLE_5, wish, "curved", SMALL, results) == pytest.approx(whole_db - 25.0)
     assert f"{whole_db - 25.0:+.2f} dB (at least 0: {word})" in page(tmp_path, results)
+
+
+def test_what_is_known_so_far_is_said_with_what_was_not_run(tmp_path):
+    methods = tables(SMALL)[1]
+    by_title = {case.title: case for case in methods.cases}
+    known = [result(by_title[title], value) for title, value in (("RefGlass-GS", 25.0), ("2DGS", 23.0))]
+    text = page(tmp_path, known)
+    left = "3DGS, GaussianShader, Ref-Gaussian, Ref-GS"
+    assert f"- RefGlass-GS above 2DGS: +2.00 dB (at least 3: **missed**; not run: {left})" in text
+    assert "Reflight above" not in text
 
 
 def test_nothing_is_said_of_what_was_not_run():
