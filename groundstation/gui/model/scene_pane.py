@@ -13,12 +13,12 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QPushBu
 
 from groundstation.gui.model.model_desk import ModelDesk
 from groundstation.gui.model.picture_places import places_in
+from groundstation.gui.reconstruct.led_camera import USUAL_DISTANCE_M, LedCamera
 from groundstation.gui.reconstruct.looks import Looks, View
 from groundstation.gui.reconstruct.model_view import Mark, ModelView
 from groundstation.gui.reconstruct.names import layer_names
 from groundstation.gui.theme import colours
 from groundstation.gui.workspace import Workspace
-from groundstation.services.reconstruct_camera import moved, orbited, turned
 from groundstation.services.reconstruct_messages import Probe, Probed, Section, Seen, Subject
 from groundstation.services.scene_card import PanelRow, view_of
 from groundstation.services.units import UnitSystem, length_unit
@@ -26,9 +26,6 @@ from planning.frames import Vec3
 from reconstruction.cameras import PosedPhoto
 from reconstruction.modelling.layer_names import PICTURE
 from reconstruction.objects.picking import picked
-
-USUAL_DISTANCE_M = 15.0
-"""To what is looked at, before a picture has told it."""
 
 STEPS = 1000
 """Of the section's slider."""
@@ -61,8 +58,7 @@ class ScenePane(QWidget):
         self.axis, self.cut, self.turn_over = QComboBox(), QSlider(Qt.Orientation.Horizontal), QCheckBox()
         self.cut_at = QLabel()
         self.looks = Looks(desk.look, self._size_px, self)
-        self._camera: PosedPhoto | None = None
-        self._distance_m = USUAL_DISTANCE_M
+        self.led = LedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._problem = ""
         self._pointed = -1
@@ -80,7 +76,7 @@ class ScenePane(QWidget):
 
     def camera(self) -> PosedPhoto | None:
         """Where the view is from."""
-        return self._camera
+        return self.led.camera
 
     def picture(self) -> QImage:
         """What is shown now, with what is drawn over it."""
@@ -95,8 +91,8 @@ class ScenePane(QWidget):
         for folder in self._desk.others:
             self.compare.addItem(folder.name, str(folder))
         self.axis.setCurrentIndex(0)
-        self._camera = None if card is None else card.first_view
-        self._distance_m = USUAL_DISTANCE_M
+        self.led.camera = None if card is None else card.first_view
+        self.led.distance_m = USUAL_DISTANCE_M
         for widget in (self.layer, self.compare, self.home, self.measure, self.axis, self.save):
             widget.setEnabled(card is not None)
         self.show_view()
@@ -104,7 +100,7 @@ class ScenePane(QWidget):
     def show_view(self) -> None:
         """Show what is chosen, from where the camera is."""
         card = self._desk.card
-        if self._camera is None or card is None:
+        if self.led.camera is None or card is None:
             self._images = {"left": None, "right": None}
             self.looks.show(None)
             self._say()
@@ -114,7 +110,7 @@ class ScenePane(QWidget):
             self._images["right"] = None
         layer = str(self.layer.currentData() or PICTURE)
         tints = self._desk.tints if layer == PICTURE else ()
-        self.looks.show(View(self._camera, left, right, layer, "", tints, self.section()))
+        self.looks.show(View(self.led.camera, left, right, layer, "", tints, self.section()))
         self._say()
 
     def section(self) -> Section | None:
@@ -180,9 +176,7 @@ class ScenePane(QWidget):
         self.home.clicked.connect(self.go_home)
         self.front.clicked.connect(self.face_panel)
         self.save.clicked.connect(self.saveAsked)
-        view.orbited.connect(self._orbit)
-        view.turned.connect(self._turn)
-        view.moved.connect(self._move)
+        self.led.led.connect(self._led)
         view.homeAsked.connect(self.go_home)
         view.resized.connect(self.show_view)
         view.clicked.connect(self._clicked)
@@ -198,46 +192,35 @@ class ScenePane(QWidget):
     def go_home(self) -> None:
         """See the largest facade."""
         if self._desk.card is not None:
-            self._lead(self._desk.card.first_view)
+            self._look_from(self._desk.card.first_view)
 
     def face_panel(self) -> None:
         """See the chosen panel from the front."""
         panel = self._selected()
         if panel is not None:
-            self._lead(view_of((panel,)))
+            self._look_from(view_of((panel,)))
 
-    def _orbit(self, right_rad: float, up_rad: float) -> None:
-        if self._camera is not None:
-            self._lead(orbited(self._camera, self._distance_m, right_rad, up_rad))
+    def _look_from(self, camera: PosedPhoto) -> None:
+        self.led.camera = camera
+        self.show_view()
 
-    def _turn(self, right_rad: float, up_rad: float) -> None:
-        if self._camera is not None:
-            self._lead(turned(self._camera, right_rad, up_rad))
-
-    def _move(self, right: float, up: float, forward: float) -> None:
-        if self._camera is not None:
-            far_m = self._distance_m
-            self._lead(moved(self._camera, far_m * right, far_m * up, far_m * forward))
-            self._distance_m = max(0.5, far_m * (1.0 - min(forward, 0.9)))
-
-    def _lead(self, camera: PosedPhoto) -> None:
-        self._camera = camera
+    def _led(self) -> None:
         self.show_view()
 
     def _clicked(self, x: float, y: float) -> None:
         """Ask which panel or place it is; the process of models answers, as it knows what stands before it."""
         left, _ = self._subjects()
-        if self._camera is None or left is None:
+        if self.led.camera is None or left is None:
             return
-        lens = self._camera.intrinsics
+        lens = self.led.camera.intrinsics
         what = MEASURE if self.measure.isChecked() else PICK
         self._asked[what] = next(NUMBERS)
         at = (x * lens.width_px, y * lens.height_px)
-        self._desk.probe(Probe(what, self._asked[what], left, self._camera, at, self.section()))
+        self._desk.probe(Probe(what, self._asked[what], left, self.led.camera, at, self.section()))
 
     def _point_at(self, x: float, y: float) -> None:
         """Mark the panel under the mouse, as far as its edges tell."""
-        card, camera = self._desk.card, self._camera
+        card, camera = self._desk.card, self.led.camera
         number = -1
         if card is not None and camera is not None and card.panels and 0.0 <= x <= 1.0 and 0.0 <= y <= 1.0:
             lens = camera.intrinsics
@@ -289,7 +272,7 @@ class ScenePane(QWidget):
         self._images[place] = image
         self._problem = seen.problem
         if place == "left" and seen.depth_m is not None:
-            self._distance_m = seen.depth_m
+            self.led.distance_m = seen.depth_m
         self._say()
 
     def _say(self) -> None:
@@ -349,10 +332,10 @@ class ScenePane(QWidget):
 
     def _places(self, points_enu_m: tuple[Vec3, ...] | list[Vec3]) -> tuple[tuple[float, float], ...] | None:
         """Where points are in the picture, in shares of it; None where one is beside or behind the camera."""
-        found = None if self._camera is None else places_in(self._camera, points_enu_m)
-        if self._camera is None or found is None:
+        found = None if self.led.camera is None else places_in(self.led.camera, points_enu_m)
+        if self.led.camera is None or found is None:
             return None
-        lens = self._camera.intrinsics
+        lens = self.led.camera.intrinsics
         return tuple((place.x() / lens.width_px, place.y() / lens.height_px) for place in found)
 
     def _cut_m(self) -> float:

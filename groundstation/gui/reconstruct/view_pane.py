@@ -9,20 +9,18 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSlider, QVBoxLayout, QWidget
 
 from groundstation.gui.reconstruct.error_strip import ErrorStrip
+from groundstation.gui.reconstruct.led_camera import LedCamera
 from groundstation.gui.reconstruct.looks import Looks, View
 from groundstation.gui.reconstruct.model_view import ModelView
 from groundstation.gui.reconstruct.reconstruct_desk import TRAINING, Phase, ReconstructDesk
 from groundstation.gui.reconstruct.small_pictures import SmallPictures
 from groundstation.gui.reconstruct.view_bar import NOTHING, PHOTO, ViewBar
 from groundstation.gui.workspace import Workspace
-from groundstation.services.reconstruct_camera import moved, orbited, sized, turned
+from groundstation.services.reconstruct_camera import sized
 from groundstation.services.reconstruct_messages import Seen, Subject
 from groundstation.services.units import UnitSystem, length_unit
 from reconstruction.cameras import PosedPhoto
 from reconstruction.modelling.layer_names import PICTURE
-
-USUAL_DISTANCE_M = 15.0
-"""To what is looked at, before a picture has told it."""
 
 ERRORS_MS = 200
 """Between two changes of the strip: photos of a finished model are judged faster than anybody reads."""
@@ -39,8 +37,7 @@ class ViewPane(QWidget):
         self.line, self.worst = QSlider(Qt.Orientation.Horizontal), QPushButton(self.tr("Worst first"))
         self.looks = Looks(desk.look, self._size_px, self)
         self._photo: PosedPhoto | None = None
-        self._camera: PosedPhoto | None = None
-        self._distance_m = USUAL_DISTANCE_M
+        self.led = LedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._scale: tuple[float, float] | None = None
         self._problem = ""
@@ -60,7 +57,7 @@ class ViewPane(QWidget):
 
     def camera(self) -> PosedPhoto | None:
         """Where the view is from."""
-        return self._camera
+        return self.led.camera
 
     def close_pictures(self) -> None:
         """The window goes."""
@@ -71,7 +68,7 @@ class ViewPane(QWidget):
         card = self._desk.card
         photos = () if card is None else card.source.photos
         self.strip.set_photos(photos, self._desk.unseen())
-        self._photo = self._camera = None
+        self._photo = self.led.camera = None
         self.offer_models()
         self._show_errors()
         if photos:
@@ -94,7 +91,7 @@ class ViewPane(QWidget):
 
     def show_view(self) -> None:
         """Show what is chosen, from where the camera is."""
-        if self._camera is None:
+        if self.led.camera is None:
             self._images = {"left": None, "right": None}
             self.looks.show(None)
             self._say()
@@ -105,7 +102,7 @@ class ViewPane(QWidget):
             if subject is None:
                 self._images[place] = None
         name = "" if self._photo is None else self._photo.name
-        self.looks.show(View(self._camera, left, right, layer, name))
+        self.looks.show(View(self.led.camera, left, right, layer, name))
         self.line.setVisible(left is not None and right is not None)
         self._say()
 
@@ -143,9 +140,7 @@ class ViewPane(QWidget):
         self.bar.homeAsked.connect(self._go_home)
         self.worst.toggled.connect(self.strip.set_worst_first)
         self.strip.chosen.connect(self._choose_photo)
-        view.orbited.connect(self._orbit)
-        view.turned.connect(self._turn)
-        view.moved.connect(self._move)
+        self.led.led.connect(self._led)
         view.homeAsked.connect(self._go_home)
         view.resized.connect(self.show_view)
         view.valueChanged.connect(self._line_moved)
@@ -167,25 +162,11 @@ class ViewPane(QWidget):
     def _go_home(self) -> None:
         if self._photo is not None:
             lens = self._photo.intrinsics
-            self._camera, self._is_at_home = sized(self._photo, lens.width_px, lens.height_px), True
+            self.led.camera, self._is_at_home = sized(self._photo, lens.width_px, lens.height_px), True
             self.show_view()
 
-    def _orbit(self, right_rad: float, up_rad: float) -> None:
-        if self._camera is not None:
-            self._lead(orbited(self._camera, self._distance_m, right_rad, up_rad))
-
-    def _turn(self, right_rad: float, up_rad: float) -> None:
-        if self._camera is not None:
-            self._lead(turned(self._camera, right_rad, up_rad))
-
-    def _move(self, right: float, up: float, forward: float) -> None:
-        if self._camera is not None:
-            far_m = self._distance_m
-            self._lead(moved(self._camera, far_m * right, far_m * up, far_m * forward))
-            self._distance_m = max(0.5, far_m * (1.0 - min(forward, 0.9)))
-
-    def _lead(self, camera: PosedPhoto) -> None:
-        self._camera, self._is_at_home = camera, False
+    def _led(self) -> None:
+        self._is_at_home = False
         self.show_view()
 
     def _bar_changed(self) -> None:
@@ -236,13 +217,13 @@ class ViewPane(QWidget):
         if place == "left":
             self._scale, self._problem = seen.scale, seen.problem
             if seen.depth_m is not None:
-                self._distance_m = seen.depth_m
+                self.led.distance_m = seen.depth_m
         elif seen.problem:
             self._problem = seen.problem
         self._say()
 
     def _say(self) -> None:
-        left, right = self._subjects() if self._camera is not None else (None, None)
+        left, right = self._subjects() if self.led.camera is not None else (None, None)
         self.view.set_pictures(self._images["left"], self._images["right"])
         self.view.set_words(self._words(left), self._words(right))
         self.view.set_note(self._note(left))
