@@ -180,14 +180,6 @@ class GsScene:
     def _by_global_id(self) -> Mapping[str, tuple[GsComponent, GsElement]]:
         return {element.global_id: (component, element) for component, element in self.elements}
 
-    @cached_property
-    def _by_panel(self) -> Mapping[int, GsElement]:
-        return {element.panel: element for _, element in self.elements}
-
     def element(self, global_id: str) -> tuple[GsComponent, GsElement]:
         """An element by its GlobalId, with its component; raises `KeyError`."""
         return self._by_global_id[global_id]
-
-    def of_panel(self, panel: int) -> GsElement | None:
-        """The element that a map of panels shows by a number; None for -1, and where its facade is not here."""
-        return self._by_panel.get(panel)

@@ -44,5 +44,6 @@ def run(options: argparse.Namespace) -> int:
     if done.n_given_ids:
         print(f"{counted(done.n_given_ids, 'panel')} with the GlobalId of the building model")
     if done.n_empty:
-        print(f"{counted(done.n_empty, 'panel')} without Gaussians: no photo showed them")
+        empty = counted(done.n_empty, "panel")
+        print(f"{empty} without Gaussians of their own: no photo showed them, or the method knows no panels")
     return 0

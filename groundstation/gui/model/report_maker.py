@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QPointF, Signal
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF, QTextDocument
 
 from groundstation.gui.brief_printer import BriefDocument, write_pdf
@@ -154,6 +154,6 @@ def marked(picture: QImage, seen: Seen, panel: PanelRow, defects: Sequence[Defec
         if place is not None:
             painter.setBrush(QColor("#b3261e"))
             painter.drawEllipse(place[0], MARK_PX, MARK_PX)
-            painter.drawText(place[0] + place[0].__class__(MARK_PX + 3.0, 4.0), str(number))
+            painter.drawText(place[0] + QPointF(MARK_PX + 3.0, 4.0), str(number))
     painter.end()
     return found

@@ -53,9 +53,7 @@ def test_each_panel_has_just_the_gaussians_that_lie_on_it(scene, trained):
         found = component.gaussians_of(element)
         assert np.array_equal(np.sort(found.places), np.flatnonzero(panels == element.panel))
         assert np.array_equal(found.values["means"], means[found.places])
-        assert scene.of_panel(element.panel) is element
         assert scene.element(element.global_id) == (component, element)
-    assert scene.of_panel(-1) is None
 
 
 def test_every_object_has_a_global_id_of_its_own_that_stays(scene, trained):
