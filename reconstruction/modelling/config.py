@@ -89,6 +89,9 @@ class Rates:
         Of the parameters as they are stored (logarithms, logits).
     colour_details
         Of the bands of spherical harmonics above the first, as a share of `colours`.
+    glass_geometry
+        Of places and rotations of splats on panels, as a share of the others'. Where mirrored directions follow them,
+        each step of Adam turns all that is mirrored.
     reflectivity, f0
         Of the logits of r and F0: as quick as opacities are slow, since the pre-training has found them.
     light
@@ -109,6 +112,7 @@ class Rates:
     opacities: float = 5e-2
     colours: float = 2.5e-3
     colour_details: float = 0.05
+    glass_geometry: float = 1.0
     reflectivity: float = 1e-2
     f0: float = 1e-2
     light: float = 0.25
@@ -123,6 +127,7 @@ class Rates:
             value = getattr(self, each.name)
             _require(each.name, value, "0 or more", value >= 0.0)
         _require_share("means_last", self.means_last)
+        _require_share("glass_geometry", self.glass_geometry)
         _require_share("last", self.last)
 
     def share(self, step: int, progress: float) -> float:

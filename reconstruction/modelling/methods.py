@@ -48,8 +48,13 @@ class Method:
 
 PAPER = "Liang et al., RefGlass-GS (the paper), 2026"
 
-AS_PAPER: dict[str, Any] = {"light": "mlp", "geometry": "splats", "losses": {"normal_prior": 1.0}}
-"""Place and normal of what mirrors come from the splats, held by the normal prior."""
+AS_PAPER: dict[str, Any] = {
+    "light": "mlp",
+    "geometry": "splats",
+    "losses": {"normal_prior": 1.0},
+    "rates": {"glass_geometry": 0.1},
+}
+"""Place and normal of what mirrors come from the splats, held by the normal prior and by small steps."""
 
 LIGHT_FIRST = "light is learned alone first, from rays of glass that the refined panels give"
 

@@ -4,7 +4,9 @@ A view is rasterised once; where a panel mirrors, the blended colour c, reflecti
 shaded with the light L from where the mirrored ray goes: I = (1 - R) c + R F L. All of it is linear light in the
 model's frame (ENU less `origin_enu_m`); gain, vignetting and the sRGB curve come last.
 
-R counts only where there is a panel to mirror: elsewhere a pixel that some glass splat reaches into shows c alone.
+With the panels' planes, R counts only where there is one to mirror: elsewhere a pixel that some glass splat reaches
+into shows c alone. With the splats' own, it counts wherever some glass splat does: a pixel that a frame's splat weighs
+most in still mirrors by the share of the glass in it, and has a gradient that can bring the frame's weight down.
 """
 
 from __future__ import annotations
@@ -306,14 +308,16 @@ class SceneModel(nn.Module):
     ) -> Shaded:
         """(1 - R) c, R F L, L and R as pictures."""
         blended = raster.features[..., FEATURES["reflectivity"]].squeeze(-1)
-        rows, columns = torch.nonzero((panels >= 0) & (blended > LEAST_REFLECTIVITY), as_tuple=True)
+        mirrors = blended > LEAST_REFLECTIVITY
+        if not self._asks_splats:
+            mirrors &= panels >= 0
+        rows, columns = torch.nonzero(mirrors, as_tuple=True)
         features = raster.features[rows, columns]
-        seen = panels[rows, columns]
         with torch.autocast(panels.device.type, torch.bfloat16, enabled=self.precision == "bfloat16"):
             if self._asks_splats:
-                light, cosines = self._mirrored_by_splats(view, raster, directions[rows, columns], rows, columns, seen)
+                light, cosines = self._mirrored_by_splats(view, raster, directions[rows, columns], rows, columns)
             else:
-                light, cosines = self._mirrored_by_planes(view, rows, columns, seen, generator)
+                light, cosines = self._mirrored_by_planes(view, rows, columns, panels[rows, columns], generator)
         light = light.float()
         own, reflectivity = features[:, FEATURES["colour"]], features[:, FEATURES["reflectivity"]]
         fresnel = schlick(features[:, FEATURES["f0"]], cosines)
@@ -337,7 +341,7 @@ class SceneModel(nn.Module):
         return self.light(rays_of_pixels(table, 0, columns, rows, panels), generator)  # type: ignore[no-any-return]
 
     def _mirrored_by_splats(
-        self, view: View, raster: Raster, omega_o: Tensor, rows: Tensor, columns: Tensor, panels: Tensor
+        self, view: View, raster: Raster, omega_o: Tensor, rows: Tensor, columns: Tensor
     ) -> tuple[Tensor, Tensor]:
         """The same by where rays meet the blended plane of the splats on glass.
 
@@ -352,7 +356,7 @@ class SceneModel(nn.Module):
         points = view.position_m.to(omega_o) + (blended[:, 3] / lengths / along)[:, None] * omega_o
         middle = torch.from_numpy(self.planes.middle_enu_m - self.origin_enu_m).to(points)
         rescaled = (points - middle) / self.planes.half_side_m
-        light = self.light.light(rescaled, reflected_directions(omega_o, normals), panels.long())
+        light = self.light.light(rescaled, reflected_directions(omega_o, normals))
         return light, incidence_cosines(omega_o, normals)
 
     def _kept(self, view: View) -> Tensor:

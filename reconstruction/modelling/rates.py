@@ -69,14 +69,19 @@ def _of_splats(splats: Splats, rates: Rates) -> Sequence[tuple[str, list[Tensor]
 
 
 @torch.no_grad()
-def take_step(optimiser: torch.optim.Adam, splats: Splats, details: float) -> None:
-    """A step of Adam, in which the bands of spherical harmonics above the first go only a share `details` of theirs.
+def take_step(optimiser: torch.optim.Adam, splats: Splats, rates: Rates) -> None:
+    """A step of Adam, in which some of what splats have goes only a share of it.
 
-    Adam's steps do not depend on the gradients' size, so it is the step that is shortened.
+    That is the bands of spherical harmonics above the first (`colour_details`), and places and rotations of splats on
+    panels (`glass_geometry`). Adam's steps do not depend on the gradients' size, so it is the step that is shortened.
     """
-    before = splats.sh[:, 1:].clone()
+    glass = splats.panels >= 0
+    turned = (splats.means, splats.quats) if rates.glass_geometry != 1.0 else ()
+    details, before = splats.sh[:, 1:].clone(), [value[glass] for value in turned]
     optimiser.step()
-    splats.sh[:, 1:] = torch.lerp(before, splats.sh[:, 1:], details)
+    splats.sh[:, 1:] = torch.lerp(details, splats.sh[:, 1:], rates.colour_details)
+    for value, old in zip(turned, before, strict=True):
+        value[glass] = torch.lerp(old, value[glass], rates.glass_geometry)
 
 
 def set_rates(optimiser: torch.optim.Adam, rates: Rates, step: int, progress: float, factor: float) -> None:

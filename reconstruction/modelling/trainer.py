@@ -243,7 +243,7 @@ class Trainer(TrainingState):
         stage = config.losses.stage(self.progress) if self._with_glass else None
         show(strategy, picture.raster, offsets, samples, self._ranks, 0.0 if stage is None else stage.weight)
         strategy.before_step(at.step, splats, self.optimiser)
-        take_step(self.optimiser, splats, config.rates.colour_details)
+        take_step(self.optimiser, splats, config.rates)
         self.exposures.project()
         strategy.after_step(at.step, splats, self.optimiser, self.generator)
         self.optimiser.zero_grad(set_to_none=True)

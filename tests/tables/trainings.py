@@ -29,6 +29,10 @@ from tests.tables.results import Result
 from tests.tables.scales import SCALES, Scale
 
 
+OF_PANELS = ("light", "geometry", "light_share", "reflections")
+"""Settings that change nothing where a method knows no panels."""
+
+
 @dataclass(frozen=True, slots=True)
 class Case:
     """A line of a table.
@@ -66,7 +70,12 @@ class Case:
 
     def made_with(self, scene: str, scale: Scale) -> str:
         """Checksum of all that its numbers depend on, but for the program and the seed."""
-        what = [asdict(self.config(scale, 0)), [asdict(each) for each in self.photos(scene, scale)]]
+        config = self.config(scale, 0)
+        settings = asdict(config)
+        if not config.trained_by.knows_panels:
+            settings = {name: value for name, value in settings.items() if name not in OF_PANELS}
+            settings["rates"].pop("glass_geometry")
+        what = [settings, [asdict(each) for each in self.photos(scene, scale)]]
         return hashlib.sha256(json.dumps(what, sort_keys=True, default=str).encode()).hexdigest()[:10]
 
 

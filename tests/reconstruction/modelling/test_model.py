@@ -9,7 +9,7 @@ from torch import nn
 
 from reconstruction.modelling.handover import hand_over
 from reconstruction.modelling.layer_names import LAYERS
-from reconstruction.modelling.model import SceneModel
+from reconstruction.modelling.model import LEAST_REFLECTIVITY, SceneModel
 from reconstruction.modelling.photo_stream import PhotoStream, StreamSettings
 from reconstruction.modelling.render import OF_PICTURE, render_view
 from reconstruction.reflections.config import ReflectionConfig
@@ -29,14 +29,14 @@ from tests.reconstruction.reflections.made_folder import DIFFUSE, F0, REFLECTIVI
 class Known(nn.Module):
     """The light that the made folder's glass mirrors."""
 
-    def forward(self, points, omega_r, panels):
+    def forward(self, points, omega_r, panels=None):
         return torch.from_numpy(far(points.detach().double().numpy(), omega_r.detach().double().numpy())).float()
 
 
 class Turning(nn.Module):
     """Light that changes with place and direction, with gradients to both."""
 
-    def forward(self, points, omega_r, panels):
+    def forward(self, points, omega_r, panels=None):
         return torch.sigmoid(3.0 * points + 2.0 * omega_r)
 
 
@@ -146,6 +146,26 @@ def test_reflectivity_counts_only_where_a_panel_mirrors(model_of, samples):
     own = picture.raster.features[..., FEATURES["colour"]]
     sky = picture.diffuse - own
     assert (sky[nowhere] >= 0.0).all()
+
+
+def test_glass_behind_a_wide_frame_mirrors_by_its_share_and_draws_the_frame_back(parts, samples):
+    # A frame finer than a pixel is drawn a pixel wide, and may weigh most where nearly all that is seen is glass.
+    source, origin, splats = parts
+    values = {name: getattr(splats, name).detach() for name in SHAPES}
+    nearer = values["means"] - 0.05 * (values["means"] - samples[0].view.position_m)
+    frame = {**values, "means": nearer, "opacity_logits": torch.full((len(splats),), float(logit(torch.tensor(0.7))))}
+    both = {name: torch.cat([value, frame[name]]) for name, value in values.items()}
+    covered = Splats(both, torch.cat([splats.panels, torch.full_like(splats.panels, NO_PANEL)]))
+    light = GlassLight(Turning(), source.panels, GlassLearned())
+    picture = SceneModel(covered, Sky(), light, source.panels, origin, 1.0, "splats")(samples[0].view)
+    blended = picture.raster.features[..., FEATURES["reflectivity"]].squeeze(-1)
+    is_frame = inside(samples[0]) & (picture.panels < 0) & (blended > LEAST_REFLECTIVITY)
+    assert is_frame.sum() > 50
+    assert torch.equal(picture.reflectivity[is_frame], blended[is_frame])
+    assert (picture.reflection[is_frame] > 0.0).all()
+    picture.reflection[is_frame].sum().backward()
+    assert (covered.opacity_logits.grad[len(splats) :] <= 0.0).all()
+    assert (covered.opacity_logits.grad[len(splats) :] < 0.0).any()
 
 
 def test_parts_add_up_and_exposure_and_vignetting_come_last(model_of, samples):
