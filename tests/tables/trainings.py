@@ -28,7 +28,6 @@ from tests.tables.photos import Photos, Planner, photos_in
 from tests.tables.results import Result
 from tests.tables.scales import SCALES, Scale
 
-
 OF_PANELS = ("light", "geometry", "light_share", "reflections")
 """Settings that change nothing where a method knows no panels."""
 
