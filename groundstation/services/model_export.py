@@ -12,7 +12,7 @@ from planning.errors import InputError
 from planning.progress import QUIET, Monitor
 
 if TYPE_CHECKING:
-    from reconstruction.exports.compression import Compressed
+    from reconstruction.exports.compression import Compressed, Compression
     from reconstruction.modelling.saved import TrainedModel
     from reconstruction.objects.gs_scene import GsScene
 
@@ -39,7 +39,12 @@ WITHOUT_COLOURS = frozenset({ModelFormat.CITYJSON, ModelFormat.IFC})
 """Formats of panels alone."""
 
 
-NO_CESIUM = "CesiumJS 1.145 stops at Gaussians that are not compressed: for it, show panels.json, or write --points"
+Gaussians = Literal["numbers", "spz", "points"]
+
+TWO_LAYERS = "CesiumJS: show gaussians.json and panels.json as two layers"
+NO_CESIUM = (
+    "CesiumJS stops at Gaussians that are not compressed: for it, show panels.json alone, or write --gaussians spz"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,11 +58,12 @@ class ModelExport:
     degree
         Of the harmonics that are written, 0 to 3; None: as the format has it by itself.
     preset
-        Of compressed formats.
+        Of compressed formats, and of Gaussians as `spz`.
     components
         Names of those that are wanted; None for all.
-    points
-        Whether glTF and 3D Tiles have coloured points in the place of Gaussians, for viewers that know none.
+    gaussians
+        Of glTF and 3D Tiles: as numbers, compressed, or coloured points in their place; None: as the format has them by
+        itself.
     """
 
     format: ModelFormat
@@ -65,7 +71,7 @@ class ModelExport:
     degree: int | None = None
     preset: Preset = "balanced"
     components: tuple[str, ...] | None = None
-    points: bool = False
+    gaussians: Gaussians | None = None
 
     def __post_init__(self) -> None:
         if self.degree is not None and self.degree not in (0, 1, 2, 3):
@@ -202,7 +208,8 @@ def _web(export: _Export) -> list[str]:
 def _gltf(export: _Export) -> list[str]:
     from reconstruction.exports.gltf import GltfOptions, write_gltf
 
-    options = GltfOptions(sh_degree=export.degree(3), as_points=export.wanted.points)
+    gaussians = export.wanted.gaussians or "numbers"
+    options = GltfOptions(sh_degree=export.degree(3), gaussians=gaussians, compression=_compression(export))
     write_gltf(export.scene, export.out, options, export.attributes, export.monitor)
     return []
 
@@ -211,10 +218,13 @@ def _tiles(export: _Export) -> list[str]:
     from reconstruction.exports.tiles3d import TilesOptions, write_tiles
 
     place: Literal["earth", "local"] = "local" if export.scene.origin is None else "earth"
-    options = TilesOptions(sh_degree=export.degree(3), place=place, as_points=export.wanted.points)
+    gaussians = export.wanted.gaussians or "spz"
+    options = TilesOptions(
+        sh_degree=export.degree(3), place=place, gaussians=gaussians, compression=_compression(export)
+    )
     write_tiles(export.scene, export.out, options, export.attributes, export.monitor)
     notes = [] if place == "earth" else ["the place on Earth is not known: tiles stay in the site's own frame"]
-    return notes if export.wanted.points else [*notes, NO_CESIUM]
+    return notes + {"spz": [TWO_LAYERS], "numbers": [NO_CESIUM], "points": []}[gaussians]
 
 
 def _usd(export: _Export) -> list[str]:
@@ -272,7 +282,7 @@ WRITERS: dict[ModelFormat, Callable[[_Export], list[str]]] = {
 }
 
 
-def _compression(export: _Export) -> Any:
+def _compression(export: _Export) -> Compression:
     from dataclasses import replace
 
     from reconstruction.exports.compression import PRESETS

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from reconstruction.exports.whole_files import whole_file
 
-FLOAT, UINT16, UINT32 = 5126, 5123, 5125
+FLOAT, UINT8, UINT16, UINT32 = 5126, 5121, 5123, 5125
 """Types of accessors."""
 
 TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
@@ -76,6 +76,11 @@ class GlbBuffer:
         """
         view = self.view(n * width * np.dtype(_DTYPES[kind]).itemsize, target)
         self.accessors.append({"bufferView": view, "componentType": kind, "count": n, "type": TYPES[width], **more})
+        return len(self.accessors) - 1
+
+    def unfilled(self, n: int, width: int, kind: int, **more: Any) -> int:
+        """An accessor of numbers that an extension gives; returns its number."""
+        self.accessors.append({"componentType": kind, "count": n, "type": TYPES[width], **more})
         return len(self.accessors) - 1
 
     def fill(self, write: Callable[[Put], None]) -> None:

@@ -3,26 +3,29 @@
 glTF is right-handed with y up. The root node turns east, north, up into that, and moves the model to its place in the
 site's frame, so that the numbers of vertices stay small: float32 is then exact to less than 0.1 mm within 1 km.
 Extensions: KHR_gaussian_splatting, EXT_mesh_features, EXT_structural_metadata, KHR_materials_unlit. No viewer needs to
-know any of them to open the file.
+know any of them to open the file, unless Gaussians are compressed.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import accumulate
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from planning.frames import Vec3
 from planning.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
+from reconstruction.exports.compression import PRESETS, Compression
 from reconstruction.exports.glb import GlbBuffer, write_glb
 from reconstruction.exports.gltf_meshes import (
     FEATURES,
     N_OF_DEGREE,
+    SPLATTING,
+    SPZ,
     panel_material,
+    put_compressed,
     put_gaussians,
     put_panels,
 )
@@ -34,14 +37,15 @@ from reconstruction.exports.gltf_tables import (
     panel_table,
     plain,
 )
+from reconstruction.exports.spz import spz_of
 from reconstruction.objects.gs_scene import GsComponent, GsScene
 
 FORMAT = "reflight-gltf/1"
 
 METADATA, UNLIT = "EXT_structural_metadata", "KHR_materials_unlit"
 
-Y_UP_FROM_ENU = [-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]
-"""x, y, z, w: (x, y, z) becomes (x, z, -y)."""
+Gaussians = Literal["numbers", "spz", "points"]
+"""How they are in a file: as numbers, compressed (as CesiumJS wants them), or only as coloured points."""
 
 INVISIBLE = 0.001
 """Opacity of quads that nobody sees: it changes 8-bit colours by a quarter of a step at most. With 0, viewers that pick
@@ -58,14 +62,18 @@ class GltfOptions:
         Of the colours' harmonics, 0 to 3: 68, 104, 164 or 248 bytes for each Gaussian on a facade.
     panel_opacity
         Of the panels' quads, over 0 to 1.
-    as_points
-        Only means and diffuse colours, 24 bytes each on a facade: for viewers that fail at Gaussians (CesiumJS 1.145,
-        where they are not compressed).
+    gaussians
+        As `numbers`; `spz`: a tenth of that, without the panel of each, for viewers that know the draft extension
+        (CesiumJS knows no other); `points`: means and diffuse colours, 24 bytes each on a facade, for viewers that fail
+        at Gaussians.
+    compression
+        Of `spz`, but for its degree.
     """
 
     sh_degree: int = 3
     panel_opacity: float = INVISIBLE
-    as_points: bool = False
+    gaussians: Gaussians = "numbers"
+    compression: Compression = PRESETS["balanced"]
 
     def __post_init__(self) -> None:
         if self.sh_degree not in N_OF_DEGREE:
@@ -98,7 +106,7 @@ def write_gltf(
     """
     check_scene(scene, path)
     table = panel_table(scene, attributes, path)
-    made = Document(scene, scene.components, table, options, monitor)
+    made = Document(scene, scene.components, table, options, path, monitor)
     children = []
     for component in scene.components:
         parts = made.gaussian_nodes(component) + made.panel_nodes(component)
@@ -113,8 +121,16 @@ def write_gltf(
 def frame_of(origin_enu_m: Vec3) -> dict[str, Any]:
     """Of a node whose children are in the model's frame."""
     east, north, up = (float(value) for value in origin_enu_m)
-    # Adding zero makes zero of minus zero.
-    return {"rotation": Y_UP_FROM_ENU, "translation": [east + 0.0, up + 0.0, 0.0 - north]}
+    # (x, y, z) becomes (x, z, -y). As a matrix, column by column: CesiumJS passes over what nodes of Gaussians say
+    # otherwise. Adding zero makes zero of minus zero.
+    return {
+        "matrix": [
+            *(1.0, 0.0, 0.0, 0.0),
+            *(0.0, 0.0, -1.0, 0.0),
+            *(0.0, 1.0, 0.0, 0.0),
+            *(east + 0.0, up + 0.0, 0.0 - north, 1.0),
+        ]
+    }
 
 
 def component_extras(component: GsComponent, attributes: Attributes, path: Path) -> dict[str, Any]:
@@ -134,6 +150,8 @@ class Document:
     ----------
     components
         That the file has something of. All their panels are in one table: some readers look at one of a class only.
+    path
+        For messages.
     """
 
     def __init__(
@@ -142,10 +160,12 @@ class Document:
         components: Sequence[GsComponent],
         table: PanelTable,
         options: GltfOptions,
+        path: Path,
         monitor: Monitor,
     ) -> None:
         self.buffer = GlbBuffer()
         self._scene, self._schema, self._options, self._monitor = scene, table.schema, options, monitor
+        self._path = path
         self._nodes: list[dict[str, Any]] = []
         self._meshes: list[dict[str, Any]] = []
         self._used: set[str] = set()
@@ -169,11 +189,23 @@ class Document:
         """
         if not len(component.gaussians):
             return []
+        options = self._options
+        if options.gaussians == "spz":
+            return [self._mesh_node(self._compressed(component), more)]
         row = self._first_row[id(component)]
-        degree = None if self._options.as_points else self._options.sh_degree
+        degree = None if options.gaussians == "points" else options.sh_degree
         mesh = put_gaussians(component, degree, row, self.buffer, self._monitor)
         self._used |= mesh["primitives"][0]["extensions"].keys()
         return [self._mesh_node(mesh, more)]
+
+    def _compressed(self, component: GsComponent) -> dict[str, Any]:
+        """The mesh of all its Gaussians: also of those that nobody sees, so that no file is without any."""
+        options = self._options
+        compression = replace(options.compression, degree=options.sh_degree, least_opacity=0.0)
+        alone = replace(self._scene, components=(component,))
+        content, found = spz_of(alone, compression, "enu", self._path, self._monitor)
+        self._used |= {SPLATTING, SPZ}
+        return put_compressed(component, content, found.n_gaussians, options.sh_degree, self.buffer)
 
     def panel_nodes(self, component: GsComponent, more: dict[str, Any] | None = None) -> list[int]:
         """A node with a component's panels; none where it has no panels."""
@@ -200,6 +232,8 @@ class Document:
             found["extensions"] = {METADATA: {"schema": self._schema, "propertyTables": self._tables}}
         if self._used:
             found["extensionsUsed"] = sorted(self._used)
+        if SPZ in self._used:
+            found["extensionsRequired"] = [SPLATTING, SPZ]
         return found
 
     def _mesh_node(self, mesh: dict[str, Any], more: dict[str, Any] | None) -> int:

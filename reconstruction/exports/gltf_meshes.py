@@ -1,5 +1,9 @@
 """Gaussians and panels as meshes of glTF: KHR_gaussian_splatting, and quads that a viewer can pick.
 
+Gaussians may be compressed (KHR_gaussian_splatting_compression_spz_2, a draft): then their numbers come from an SPZ
+file within the file, in the axes of the mesh, as CesiumJS reads them. Such primitives say neither kernel nor colour
+space and have diffuse colours and opacities as COLOR_0: programs tell the draft's two ways by that.
+
 Viewers that do not know Gaussians draw their means as points in their diffuse colour. No viewer tells which Gaussian
 was clicked on, so each facade has a mesh of its panels: invisible, and hit by picking as any mesh is. Both say by
 `_FEATURE_ID_0` (EXT_mesh_features) which row of the table of properties they belong to.
@@ -16,11 +20,14 @@ from planning.frames import Vec3
 from planning.progress import Monitor
 from reconstruction.exports.component_parts import element_numbers, ellipsoid_blocks, light_of
 from reconstruction.exports.ellipsoids import Ellipsoids
-from reconstruction.exports.glb import FLOAT, INDICES, UINT16, UINT32, GlbBuffer, Put, limits_of
+from reconstruction.exports.glb import FLOAT, INDICES, UINT8, UINT16, UINT32, GlbBuffer, Put, limits_of
 from reconstruction.exports.gltf_tables import area_vector
 from reconstruction.objects.gs_scene import GsComponent
 
 SPLATTING, FEATURES = "KHR_gaussian_splatting", "EXT_mesh_features"
+
+SPZ = "KHR_gaussian_splatting_compression_spz_2"
+"""After version 2 of Niantic's library, whose files say that they are of version 3."""
 
 KERNEL = {
     "kernel": "ellipse",
@@ -75,6 +82,23 @@ def put_gaussians(
                 put(buffer.offset(number) + start * columns[name][0].nbytes, columns[name])
 
     buffer.fill(fill)
+    return {"name": f"{component.name}: Gaussians", "primitives": [_primitive(POINTS, attributes, extensions)]}
+
+
+def put_compressed(component: GsComponent, content: bytes, n: int, degree: int, buffer: GlbBuffer) -> dict[str, Any]:
+    """Put the SPZ file of a component's Gaussians into a buffer; returns their mesh.
+
+    Parameters
+    ----------
+    n, degree
+        Gaussians in the file, and of the harmonics, 0 to 3.
+    """
+    view = buffer.add(content)
+    attributes = {"POSITION": buffer.unfilled(n, 3, FLOAT, **limits_of(component.gaussians.values["means"]))}
+    attributes["COLOR_0"] = buffer.unfilled(n, 4, UINT8, normalized=True)
+    for name, width in (("ROTATION", 4), ("SCALE", 3), *((name, 3) for name in _harmonics(degree)[1:])):
+        attributes[f"{SPLATTING}:{name}"] = buffer.unfilled(n, width, FLOAT)
+    extensions = {SPLATTING: {"extensions": {SPZ: {"bufferView": view}}}}
     return {"name": f"{component.name}: Gaussians", "primitives": [_primitive(POINTS, attributes, extensions)]}
 
 

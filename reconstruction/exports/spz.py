@@ -57,6 +57,26 @@ def write_spz(
         There is nothing to see, numbers are not finite or too large, or the file cannot be written.
     """
     check_scene(scene, path)
+    content, found = spz_of(scene, compression, axes, path, monitor)
+    write_atomically(path, content)
+    return found
+
+
+def spz_of(
+    scene: GsScene, compression: Compression, axes: Axes, path: Path, monitor: Monitor
+) -> tuple[bytes, Compressed]:
+    """What a file of a scene's components holds, and what came of them.
+
+    Parameters
+    ----------
+    path
+        That it is for.
+
+    Raises
+    ------
+    InputError
+        There is nothing to see, or a place is too far away for the format.
+    """
     least = compression.least_opacity
     means = [block.means_m for block in blocks_of(scene, axes, least, monitor, "reading Gaussians")]
     n = sum(map(len, means))
@@ -80,8 +100,7 @@ def write_spz(
         start += len(block)
     header = HEADER.pack(MAGIC, VERSION, n, compression.degree, fraction, 0, 0)
     content = _gzipped([header, *(streams[name].data.cast("B") for name in STREAMS if streams[name].size)], monitor)
-    write_atomically(path, content)
-    return Compressed(path, len(content), n, n_gaussians(scene) - n, resized, 2.0 ** -(fraction + 1))
+    return content, Compressed(path, len(content), n, n_gaussians(scene) - n, resized, 2.0 ** -(fraction + 1))
 
 
 def _gzipped(parts: list[bytes | memoryview], monitor: Monitor) -> bytes:

@@ -26,8 +26,18 @@ from planning.json_file import read_json, write_atomically
 from planning.progress import QUIET, Monitor
 from planning.site import Origin
 from reconstruction.exports.component_parts import check_scene
+from reconstruction.exports.compression import PRESETS, Compression
 from reconstruction.exports.glb import write_glb
-from reconstruction.exports.gltf import INVISIBLE, Document, GltfOptions, component_extras, frame_of, scene_extras
+from reconstruction.exports.gltf import (
+    INVISIBLE,
+    Document,
+    Gaussians,
+    GltfOptions,
+    component_extras,
+    frame_of,
+    scene_extras,
+)
+from reconstruction.exports.gltf_meshes import SPLATTING, SPZ
 from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, PanelTable, panel_table, plain
 from reconstruction.exports.tiles3d_tree import (
     Box,
@@ -42,6 +52,9 @@ from reconstruction.objects.gs_scene import GsComponent, GsScene
 EXTRAS = {"format": "reflight-3dtiles/1", "axes": "tiles: x east, y north, z up, metres, in the site's frame"}
 
 TILESET = "tileset.json"
+
+CONTENT = "3DTILES_content_gltf"
+"""What tilesets tell by it of their files, CesiumJS has to know before it reads the first."""
 
 Layer = Literal["gaussians", "panels"]
 
@@ -62,10 +75,10 @@ class TilesOptions:
 
     Parameters
     ----------
-    sh_degree, panel_opacity, as_points
-        As `GltfOptions` has them.
+    sh_degree, panel_opacity, gaussians, compression
+        As `GltfOptions` has them; CesiumJS shows Gaussians as `spz` only, and only those of `gaussians.json`.
     gaussians_per_tile
-        At most, but for single panels that have more: 24 MB with harmonics of degree 3.
+        At most, but for single panels that have more: 24 MB with harmonics of degree 3, a tenth of that as `spz`.
     place
         `earth`: where the site is; `local`: tiles stay in the site's frame, for viewers without a globe.
     """
@@ -74,7 +87,8 @@ class TilesOptions:
     panel_opacity: float = INVISIBLE
     gaussians_per_tile: int = 100_000
     place: Literal["earth", "local"] = "earth"
-    as_points: bool = False
+    gaussians: Gaussians = "spz"
+    compression: Compression = PRESETS["balanced"]
 
     def __post_init__(self) -> None:
         self.of_files  # noqa: B018  (it checks them)
@@ -84,7 +98,7 @@ class TilesOptions:
     @property
     def of_files(self) -> GltfOptions:
         """Those of each file."""
-        return GltfOptions(self.sh_degree, self.panel_opacity, self.as_points)
+        return GltfOptions(self.sh_degree, self.panel_opacity, self.gaussians, self.compression)
 
 
 DEFAULT = TilesOptions()
@@ -165,7 +179,9 @@ def write_tiles(
     transform = {} if options.place == "local" else {"transform": _earth_from_enu(scene.origin)}
     root = _Tile(around, children=tiles, more={"refine": "ADD"} | transform)
     for name, layers in TILESETS.items():
-        _write(folder / name, scene, table, root, layers)
+        # CesiumJS takes all content of a tileset for Gaussians where such are compressed.
+        is_compressed = options.gaussians == "spz" and layers == ("gaussians",)
+        _write(folder / name, scene, table, root, layers, (SPLATTING, SPZ) if is_compressed else ())
     _remove(folder, old - made.files)
 
 
@@ -209,7 +225,7 @@ class _Folder:
 
     def _file(self, part: GsComponent, layer: Layer) -> str:
         """Write a file; returns its name."""
-        made = Document(self._scene, (part,), self._table, self._options, self._monitor)
+        made = Document(self._scene, (part,), self._table, self._options, self._folder, self._monitor)
         frame = frame_of(self._scene.origin_enu_m)
         nodes = made.gaussian_nodes(part, frame) if layer == "gaussians" else made.panel_nodes(part, frame)
         # Of a facade's name only what every file system and every URI has.
@@ -229,8 +245,10 @@ class _Folder:
         return file
 
 
-def _write(path: Path, scene: GsScene, table: PanelTable, root: _Tile, layers: Sequence[Layer]) -> None:
-    """A tileset of layers; where the scene has none of them, one that shows nothing."""
+def _write(
+    path: Path, scene: GsScene, table: PanelTable, root: _Tile, layers: Sequence[Layer], needed: Sequence[str]
+) -> None:
+    """A tileset of layers, whose files need some extensions; where the scene has no layer, one that shows nothing."""
     text, number = {"type": "STRING", "required": True}, {"type": "SCALAR", "componentType": "UINT32", "required": True}
     schema = table.schema
     named = {"global_id": {**text, "semantic": "ID"}, "name": {**text, "semantic": "NAME"}}
@@ -248,6 +266,9 @@ def _write(path: Path, scene: GsScene, table: PanelTable, root: _Tile, layers: S
         "geometricError": root.around(layers).diagonal_m,
         "root": root.json(layers),
     }
+    if needed:
+        content["extensionsUsed"] = [CONTENT]
+        content["extensions"] = {CONTENT: {"extensionsUsed": [*needed], "extensionsRequired": [*needed]}}
     write_atomically(path, json.dumps(content, indent=1, allow_nan=False).encode())
 
 

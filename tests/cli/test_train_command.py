@@ -300,6 +300,22 @@ def test_a_model_is_exported(reflight, glass, tmp_path, name, ending):
         assert {path.name for path in out.iterdir()} & {"index.html", "tileset.json"}
 
 
+def test_gaussians_of_gltf_are_numbers_compressed_or_points(reflight, glass, tmp_path):
+    sizes = {}
+    for how in ("numbers", "spz", "points"):
+        out = tmp_path / f"{how}.glb"
+        done = reflight("export", glass / "model", "--format", "gltf", "--gaussians", how, "-o", out, "--json")
+        assert done.status == 0, done.err
+        sizes[how] = done.json["bytes"]
+    assert max(sizes["spz"], sizes["points"]) < 0.7 * sizes["numbers"]
+    said = {}
+    for how in ("numbers", "spz"):
+        tiles = ("--format", "3d-tiles", "--gaussians", how, "-o", tmp_path / how)
+        said[how] = " ".join(reflight("export", glass / "model", *tiles, "--json").json["notes"])
+    assert "--gaussians spz" in said["numbers"]
+    assert "gaussians.json" in said["spz"]
+
+
 def test_exports_of_models_are_refused_in_words(reflight, glass, tmp_path):
     done = reflight("export", glass / "data", "--format", "gltf", "-o", tmp_path / "a.glb")
     assert done.status == 1

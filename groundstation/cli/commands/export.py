@@ -16,6 +16,10 @@ MISSIONS = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
 MODELS = ("web", "gltf", "3d-tiles", "usd", "ply", "ply-2dgs", "spz", "sog", "mesh", "cityjson", "ifc")
 
 COLOURS_HELP = "baked: what panels mirror is in their colours (default); own: without"
+GAUSSIANS_HELP = (
+    "of gltf (default numbers) and 3d-tiles (default spz): as numbers; compressed, as CesiumJS wants them; or coloured "
+    "points in their place"
+)
 
 EPILOG = """formats of models:
   web           folder with one page that any browser shows without a network, with picking and records
@@ -72,9 +76,12 @@ def add_parser(subparsers: Any) -> None:
         "--degree", type=int, choices=(0, 1, 2, 3), help="of colours by direction (default: the format's)"
     )
     model.add_argument(
-        "--preset", choices=("small", "balanced", "fine"), default="balanced", help="of spz and sog (default balanced)"
+        "--preset",
+        choices=("small", "balanced", "fine"),
+        default="balanced",
+        help="of spz, sog and --gaussians spz (default balanced)",
     )
-    model.add_argument("--points", action="store_true", help="gltf, 3d-tiles: coloured points instead of Gaussians")
+    model.add_argument("--gaussians", choices=("numbers", "spz", "points"), help=GAUSSIANS_HELP)
     model.add_argument("--components", type=words, metavar="LIST", help="such as A,background (default: all)")
     add("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -94,7 +101,7 @@ def _export_model(options: argparse.Namespace) -> int:
         options.degree,
         options.preset,
         options.components,
-        options.points,
+        options.gaussians,
     )
     done = run_job("export", lambda context: export_model(options.plan, options.out, wanted, context))
     if options.json:

@@ -11,10 +11,13 @@ from hypothesis import strategies as st
 
 from planning.errors import InputError, OperationCancelled
 from reconstruction.exports.component_parts import AT_ONCE, part_of
+from reconstruction.exports.compression import PRESETS
 from reconstruction.exports.ellipsoids import ellipsoids_of
 from reconstruction.exports.glb import GlbBuffer, write_glb
 from reconstruction.exports.gltf import GltfOptions, write_gltf
+from reconstruction.exports.gltf_meshes import SPZ
 from reconstruction.exports.gltf_tables import identifier, one_after_the_other
+from reconstruction.exports.spz_reading import read_spz
 from reconstruction.objects.gs_scene import GsGaussian
 from tests.reconstruction.exports.glb_reader import FEATURES, SPLATTING, Glb
 from tests.reconstruction.objects.made_scene import gaussians, made_scene
@@ -83,11 +86,54 @@ def test_gaussians_have_the_numbers_of_the_scene(tmp_path, degree):
 def test_points_alone_are_the_same_points(tmp_path):
     scene = made_scene()
     whole = written(scene, tmp_path).attributes("A: Gaussians")
-    found = written(scene, tmp_path, GltfOptions(as_points=True))
+    found = written(scene, tmp_path, GltfOptions(gaussians="points"))
     points = found.attributes("A: Gaussians")
     assert points.keys() == {"POSITION", "COLOR_0", "_FEATURE_ID_0"}
     assert all(np.array_equal(values, whole[name]) for name, values in points.items())
     assert SPLATTING not in found.json["extensionsUsed"]
+
+
+@pytest.mark.parametrize("degree", [0, 1, 3])
+def test_compressed_gaussians_are_those_of_the_file_within_the_file(tmp_path, degree):
+    scene = made_scene(((300, 0, 5), (2,)), 40)
+    options = GltfOptions(sh_degree=degree, gaussians="spz", compression=PRESETS["fine"])
+    found = written(scene, tmp_path, options)
+    assert found.json["extensionsRequired"] == [SPLATTING, SPZ]
+    assert {SPLATTING, SPZ} <= set(found.json["extensionsUsed"])
+    for component in scene.components:
+        primitive = found.primitives[f"{component.name}: Gaussians"]
+        n = len(component.gaussians)
+        accessors = {name: found.json["accessors"][number] for name, number in primitive["attributes"].items()}
+        assert all(each["count"] == n and "bufferView" not in each for each in accessors.values())
+        coefficients = [
+            f"{SPLATTING}:SH_DEGREE_{of}_COEF_{m}" for of in range(1, degree + 1) for m in range(2 * of + 1)
+        ]
+        own = ["POSITION", "COLOR_0", f"{SPLATTING}:ROTATION", f"{SPLATTING}:SCALE"]
+        assert list(accessors) == own + coefficients
+        means = component.gaussians.values["means"]
+        assert accessors["POSITION"]["min"] == means.min(axis=0).tolist()
+        # Without kernel and colours of degree 0 it is the way of the draft that CesiumJS reads.
+        assert primitive["extensions"][SPLATTING].keys() == {"extensions"}
+        view = primitive["extensions"][SPLATTING]["extensions"][SPZ]["bufferView"]
+        alone = tmp_path / "alone.spz"
+        alone.write_bytes(found.view(view))
+        read, expected = read_spz(alone, "enu"), ellipsoids_of(component)
+        nearest = np.linalg.norm(read.means_m[:, None] - expected.means_m, axis=2).argmin(axis=1)
+        assert np.array_equal(np.sort(nearest), np.arange(n))
+        np.testing.assert_allclose(read.means_m, expected.means_m[nearest], atol=1e-3)
+        np.testing.assert_allclose(read.opacities, expected.opacities[nearest], atol=0.003)
+        n_read = (degree + 1) ** 2
+        # The format has display colours from -0.44 to 1.44, and higher degrees from -1 to 1.
+        most = np.where(np.arange(n_read) == 0, 0.94 / 0.28209479, 1.0)[:, None]
+        np.testing.assert_allclose(read.sh[:, :n_read], np.clip(expected.sh[nearest, :n_read], -most, most), atol=0.03)
+
+
+def test_compressed_gaussians_that_nobody_sees_stay_so_that_no_file_is_without_any(tmp_path):
+    scene = made_scene(((3,),), 0)
+    for component in scene.components:
+        component.gaussians.values["opacity_logits"][:] = -20.0
+    found = written(scene, tmp_path, GltfOptions(gaussians="spz"))
+    assert found.json["accessors"][found.primitives["A: Gaussians"]["attributes"]["POSITION"]]["count"] == 3
 
 
 def test_points_of_viewers_without_gaussians_have_the_diffuse_colour(tmp_path):
@@ -105,9 +151,11 @@ def test_the_root_turns_east_north_up_into_y_up_at_the_place_in_the_site(tmp_pat
     found = written(scene, tmp_path)
     (root,) = found.json["scenes"][0]["nodes"]
     node = found.json["nodes"][root]
-    turn = rotation_of(node["rotation"])
-    np.testing.assert_allclose(turn @ np.eye(3), [[1, 0, 0], [0, 0, 1], [0, -1, 0]], atol=1e-15)
-    np.testing.assert_allclose(node["translation"], turn @ np.array(scene.origin_enu_m), atol=1e-15)
+    matrix = np.array(node["matrix"]).reshape(4, 4).T
+    turn = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+    np.testing.assert_array_equal(matrix[:3, :3], turn)
+    np.testing.assert_array_equal(matrix[:3, 3], turn @ np.array(scene.origin_enu_m))
+    np.testing.assert_array_equal(matrix[3], [0, 0, 0, 1])
     names = [found.json["nodes"][child]["name"] for child in node["children"]]
     assert names == [component.name for component in scene.components]
     extras = found.json["asset"]["extras"]

@@ -13,7 +13,8 @@ from planning.errors import InputError, OperationCancelled
 from planning.geodesy.enu import geodetic_from_enu
 from reconstruction.exports.component_parts import extents_m
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of
-from reconstruction.exports.tiles3d import TilesOptions, write_tiles
+from reconstruction.exports.gltf_meshes import SPZ
+from reconstruction.exports.tiles3d import CONTENT, TilesOptions, write_tiles
 from reconstruction.exports.tiles3d_tree import branches_of, part_of_branch
 from tests.reconstruction.exports.glb_reader import SPLATTING, Glb
 from tests.reconstruction.exports.test_gltf import HOSTILE, Cancelling, component_with, rotation_of
@@ -69,7 +70,7 @@ def test_a_site_without_a_place_has_tiles_in_its_own_frame_only(tmp_path):
 
 def test_each_gaussian_is_in_one_tile_inside_its_box(tmp_path):
     scene = made_scene(SIZES, 100)
-    write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=25))
+    write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=25, gaussians="numbers"))
     means = []
     for tile in tiles_of(read(tmp_path)["root"]):
         if "-gaussians-" not in tile.get("content", {}).get("uri", ""):
@@ -77,7 +78,7 @@ def test_each_gaussian_is_in_one_tile_inside_its_box(tmp_path):
         glb = Glb((tmp_path / tile["content"]["uri"]).read_bytes())
         (name,) = glb.primitives
         (node,) = glb.json["scenes"][0]["nodes"]
-        assert glb.json["nodes"][node]["translation"] == [1.0, 3.0, -2.0]
+        assert glb.json["nodes"][node]["matrix"][12:] == [1.0, 3.0, -2.0, 1.0]
         values = glb.attributes(name)
         n = len(values["POSITION"])
         panels = {row["Number in the model"] for row in glb.table} if "_FEATURE_ID_0" in values else set()
@@ -151,6 +152,23 @@ def test_three_tilesets_share_the_files(tmp_path):
     assert [name.split("-panels-")[0] for name in panels] == ["A", "B"]
     on_disk = {path.name for path in tmp_path.iterdir()}
     assert on_disk == {*everything, "tileset.json", "gaussians.json", "panels.json"}
+
+
+def test_a_tileset_of_compressed_gaussians_says_what_its_files_need(tmp_path):
+    write_tiles(made_scene(SIZES, 10), tmp_path)
+    needed = read(tmp_path, "gaussians.json")
+    assert needed["extensionsUsed"] == [CONTENT]
+    assert needed["extensions"][CONTENT]["extensionsRequired"] == [SPLATTING, SPZ]
+    for name in ("panels.json", "tileset.json"):
+        assert "extensions" not in read(tmp_path, name)
+    for file in files_of(tmp_path, "gaussians.json"):
+        found = Glb((tmp_path / file).read_bytes()).json
+        assert found["extensionsRequired"] == [SPLATTING, SPZ]
+        # CesiumJS looks at the first node of the scene alone.
+        (root,) = found["scenes"][0]["nodes"]
+        assert found["nodes"][root].keys() >= {"mesh", "matrix"}
+    write_tiles(made_scene(SIZES, 10), tmp_path, TilesOptions(gaussians="numbers"))
+    assert "extensions" not in read(tmp_path, "gaussians.json")
 
 
 def test_tiles_say_what_they_are(tmp_path):
