@@ -191,7 +191,7 @@ def _trained(
     checkpoint = out / CHECKPOINT
     if resume:
         if not checkpoint.is_file():
-            raise InputError(f"{out}: holds no training that was interrupted; train without --resume")
+            raise InputError(f"{out}: holds no training that was interrupted; begin the training anew")
         return resume_model(dataset, checkpoint, watching, method=wish.method, ranks=ranks, watch=watch)
     config = config_of_wish(wish)
     if ranks.is_first:
@@ -203,8 +203,7 @@ def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:
     """See that a training can begin, and make its folder."""
     if checkpoint.is_file():
         raise InputError(
-            f"{out}: holds a training that was interrupted; go on with it (--resume), name another folder, or delete "
-            f"{checkpoint}"
+            f"{out}: holds a training that was interrupted; resume it, name another folder, or delete {checkpoint}"
         )
     if not (dataset / "dataset.json").is_file():
         raise InputError(f"{dataset}: has no dataset.json; name a folder that `prepare` or `scene render` has finished")

@@ -17,13 +17,9 @@ from planning.site_import.ifc_worker import read_in_worker
 from planning.site_import.options import ImportOptions
 from planning.site_import.placement import place
 from planning.site_import.source import HOW_TO_GET_PANELS, SourceModel, SourceWindow
+from planning.step_file import check_ends
 
 Array = NDArray[np.float64]
-
-MAX_FILE_BYTES = 4 * 2**30
-
-TAIL_BYTES = 4096
-"""The end mark stands in the last few; some programs write a comment after it."""
 
 
 def read_ifc(path: Path, options: ImportOptions, monitor: Monitor) -> SourceModel:
@@ -34,7 +30,7 @@ def read_ifc(path: Path, options: ImportOptions, monitor: Monitor) -> SourceMode
     InputError
         The file is no IFC file, is cut off or broken, the deflection is not positive, or see `ifc_source`.
     """
-    _check_ends(path)
+    check_ends(path)
     if not options.deflection_m > 0.0:
         raise InputError(f"--deflection {options.deflection_m:g}: expected a positive length in metres")
     return ifc_source(path, *read_in_worker(path, options.deflection_m, monitor), options)
@@ -71,21 +67,3 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
         repeats_panes=True,
         notes=(*placement.georeference.notes, *content.notes),
     )
-
-
-def _check_ends(path: Path) -> None:
-    """Refuse what is no STEP file or is cut off: IfcOpenShell reads what is left of it without a word."""
-    try:
-        size = path.stat().st_size
-        with path.open("rb") as file:
-            head = file.read(64)
-            file.seek(max(0, size - TAIL_BYTES))
-            tail = file.read()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
-    if size > MAX_FILE_BYTES:
-        raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**30} GiB; export the facade alone")
-    if not head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"ISO-10303-21"):
-        raise InputError(f"{path}: expected an IFC file (STEP text that begins with ISO-10303-21)")
-    if b"END-ISO-10303-21" not in tail:
-        raise InputError(f"{path}: the file is cut off (END-ISO-10303-21 is missing); copy or export it again")

@@ -110,9 +110,9 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
             raise ValueError(f"expected '{FORMAT}'")
         state = unflatten(record["state"], tensors)
     except (SafetensorError, KeyError, ValueError, TypeError, RecursionError) as error:
-        raise InputError(f"{path}: is no checkpoint, or damaged ({error}); train without --resume") from error
+        raise InputError(f"{path}: is no checkpoint, or damaged ({error}); begin the training anew") from error
     if not isinstance(state, dict):
-        raise InputError(f"{path}: is no checkpoint; train without --resume")
+        raise InputError(f"{path}: is no checkpoint; begin the training anew")
     return state
 
 

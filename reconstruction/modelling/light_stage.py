@@ -98,7 +98,7 @@ def begun_light(content: dict[str, Any], path: Path) -> BegunLight | None:
     stage = to_record(content[STAGE], LightStage, path)
     splats, state, spent_s = (content.get(name) for name in ("splats", "training", "spent_s"))
     if not isinstance(splats, dict) or not isinstance(state, dict) or not isinstance(spent_s, float):
-        raise InputError(f"{path}: holds no state of a training; train without --resume")
+        raise InputError(f"{path}: holds no state of a training; begin the training anew")
     return BegunLight(stage, splats, state, spent_s)
 
 

@@ -128,9 +128,7 @@ def read_model(folder: Path) -> TrainedModel:
     """
     path = folder / DESCRIPTION
     if not path.is_file():
-        advice = (
-            "go on with its training (train --resume)" if (folder / CHECKPOINT).is_file() else "name one of `train`"
-        )
+        advice = "resume its training" if (folder / CHECKPOINT).is_file() else "name one of `train`"
         raise InputError(f"{folder}: holds no finished model; {advice}")
     content = read_json(path)
     expect_format(content, FORMAT, path)

@@ -199,7 +199,7 @@ def _learned_light(
         if begun is None:
             raise
         raise InputError(
-            f"{checkpoint}: is of another version, or damaged ({error}); train without --resume"
+            f"{checkpoint}: is of another version, or damaged ({error}); begin the training anew"
         ) from error
     return trained, stage.decisions
 

@@ -183,7 +183,7 @@ def _resumed(
     _check_method(record.config, method, checkpoint)
     state = content.get("training")
     if not isinstance(state, dict) or not isinstance(state.get("model"), dict):
-        raise InputError(f"{checkpoint}: holds no state of a training; train without --resume")
+        raise InputError(f"{checkpoint}: holds no state of a training; begin the training anew")
     source = read_photo_set(folder)
     missing = {*record.learned, *record.held_out} - {photo.name for photo in source.photos}
     if missing or site_record(folder) != record.site:
@@ -192,7 +192,7 @@ def _resumed(
     try:
         model, exposures = empty_model(record, state["model"])
     except ValueError as error:
-        raise InputError(f"{checkpoint}: is damaged ({error}); train without --resume") from error
+        raise InputError(f"{checkpoint}: is damaged ({error}); begin the training anew") from error
     with ExitStack() as closing:
         photos, shown = _photos(source, record, closing)
         trainer = Trainer(

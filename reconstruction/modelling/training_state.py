@@ -164,6 +164,6 @@ class TrainingState:
             self.at = msgspec.convert(state["progress"], Progress)
         except (KeyError, ValueError, TypeError, RuntimeError) as error:
             raise InputError(
-                f"{self.path}: is of another model or version ({error}); train without --resume"
+                f"{self.path}: is of another model or version ({error}); begin the training anew"
             ) from error
         self.photos.window_px = self.at.window_px

@@ -18,10 +18,11 @@ import msgspec
 from planning.errors import InputError
 from planning.json_file import check_output, write_atomically
 from planning.progress import QUIET, Monitor
+from planning.step_file import check_ends
 from reconstruction.records.ifc_extend import Extension, extension
 from reconstruction.records.ifc_extract import IfcProperties, extract, open_model
 from reconstruction.records.ifc_sets import PropertySet
-from reconstruction.records.step_text import check_ends, edited
+from reconstruction.records.step_text import edited
 
 COPY = "copy.ifc"
 

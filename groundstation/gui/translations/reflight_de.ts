@@ -10202,19 +10202,19 @@ Take it over?</source>
         <translation>die Datei ist leer; kopieren Sie sie neu</translation>
     </message>
     <message>
-        <source>is no checkpoint, or damaged ({0}); train without --resume</source>
+        <source>is no checkpoint, or damaged ({0}); begin the training anew</source>
         <translation>ist kein Zwischenstand oder beschädigt ({0}); beginnen Sie das Training neu</translation>
     </message>
     <message>
-        <source>is no checkpoint; train without --resume</source>
+        <source>is no checkpoint; begin the training anew</source>
         <translation>ist kein Zwischenstand; beginnen Sie das Training neu</translation>
     </message>
     <message>
-        <source>holds no state of a training; train without --resume</source>
+        <source>holds no state of a training; begin the training anew</source>
         <translation>enthält keinen Stand eines Trainings; beginnen Sie das Training neu</translation>
     </message>
     <message>
-        <source>go on with its training (train --resume)</source>
+        <source>resume its training</source>
         <translation>setzen Sie sein Training fort</translation>
     </message>
     <message>
@@ -10262,7 +10262,7 @@ Take it over?</source>
         <translation>seine Fotos, Kameras oder Scheiben sind nicht die, mit denen das Training begonnen wurde; nennen Sie jenen Datensatz</translation>
     </message>
     <message>
-        <source>is of another version, or damaged ({0}); train without --resume</source>
+        <source>is of another version, or damaged ({0}); begin the training anew</source>
         <translation>ist von einer anderen Version oder beschädigt ({0}); beginnen Sie das Training neu</translation>
     </message>
     <message>
@@ -10282,7 +10282,7 @@ Take it over?</source>
         <translation>{0}; nennen Sie den Datensatz, mit dem das Training begonnen wurde</translation>
     </message>
     <message>
-        <source>is damaged ({0}); train without --resume</source>
+        <source>is damaged ({0}); begin the training anew</source>
         <translation>ist beschädigt ({0}); beginnen Sie das Training neu</translation>
     </message>
     <message>
@@ -10294,11 +10294,11 @@ Take it over?</source>
         <translation>device: &apos;cuda&apos; ist verlangt, und torch findet kein CUDA-Gerät; lassen Sie es weg</translation>
     </message>
     <message>
-        <source>holds no training that was interrupted; train without --resume</source>
+        <source>holds no training that was interrupted; begin the training anew</source>
         <translation>enthält kein Training, das abgebrochen wurde; beginnen Sie das Training neu</translation>
     </message>
     <message>
-        <source>holds a training that was interrupted; go on with it (--resume), name another folder, or delete {0}</source>
+        <source>holds a training that was interrupted; resume it, name another folder, or delete {0}</source>
         <translation>enthält ein abgebrochenes Training; setzen Sie es fort, nennen Sie einen anderen Ordner, oder löschen Sie {0}</translation>
     </message>
     <message>
@@ -10334,7 +10334,7 @@ Take it over?</source>
         <translation>zurück zu Schritt {0}</translation>
     </message>
     <message>
-        <source>is of another model or version ({0}); train without --resume</source>
+        <source>is of another model or version ({0}); begin the training anew</source>
         <translation>gehört zu einem anderen Modell oder einer anderen Version ({0}); beginnen Sie das Training neu</translation>
     </message>
     <message>

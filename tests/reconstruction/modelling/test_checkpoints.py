@@ -93,7 +93,7 @@ def record(content):
 )
 def test_damaged_and_hostile_files_are_refused(tmp_path, content):
     (tmp_path / "c").write_bytes(content)
-    with pytest.raises(InputError, match="train without --resume"):
+    with pytest.raises(InputError, match="begin the training anew"):
         read_checkpoint(tmp_path / "c")
 
 

@@ -167,7 +167,7 @@ def test_folders_without_a_model_are_refused(tmp_path, data_set):
     with pytest.raises(InputError, match="holds no finished model"):
         read_model(data_set)
     (tmp_path / "checkpoint.safetensors").write_bytes(b"")
-    with pytest.raises(InputError, match="train --resume"):
+    with pytest.raises(InputError, match="resume its training"):
         read_model(tmp_path)
     with pytest.raises(InputError, match="is no checkpoint"):
         resume_model(data_set, tmp_path / "checkpoint.safetensors")
