@@ -47,10 +47,12 @@ class Table:
 
 OURS, PAPERS = "Reflight", "RefGlass-GS"
 
+LONGER = 4
+
 
 def tables(scale: Scale) -> tuple[Table, ...]:
     """All that are trained."""
-    return (_plans(), _methods(), _shapes(scale), _ablations())
+    return (_plans(), _methods(), _longer(scale), _shapes(scale), _ablations())
 
 
 def _plans() -> Table:
@@ -91,6 +93,28 @@ def _methods() -> Table:
         (ST, UST),
         cases,
         (Above(PAPERS, others, 3.0), Above(OURS, (PAPERS,), 0.0)),
+    )
+
+
+def _longer(scale: Scale) -> Table:
+    config = scale.config
+    limit_s = None if config.time_limit_s is None else LONGER * config.time_limit_s
+    settings = {
+        "iterations": LONGER * config.iterations,
+        "time_limit_s": limit_s,
+        "reflections": {"steps": LONGER * config.reflections.steps},
+    }
+    cases = []
+    for title, method in (("GaussianShader", "gaussian-shader"), (PAPERS, "refglass-gs"), (OURS, "reflight")):
+        cases += [Case(title, method), Case(f"{title}, longer", method, settings)]
+    return Table(
+        "3b",
+        "What more time brings",
+        f"Not in the paper. Methods of Table 3, and the same with {LONGER} times as many steps, also of light alone, "
+        "and as much time.",
+        (ST,),
+        tuple(cases),
+        (Above(f"{PAPERS}, longer", ("GaussianShader, longer",), 3.0),),
     )
 
 
