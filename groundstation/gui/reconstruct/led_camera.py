@@ -33,6 +33,7 @@ class LedCamera(QObject):
         view.orbited.connect(self._orbit)
         view.turned.connect(self._turn)
         view.moved.connect(self._move)
+        view.flown.connect(self._fly)
 
     def _orbit(self, right_rad: float, up_rad: float) -> None:
         if self.camera is not None:
@@ -46,6 +47,11 @@ class LedCamera(QObject):
         if self.camera is not None:
             far_m = self.distance_m
             self.distance_m = max(NEAREST_M, far_m * (1.0 - min(forward, MOST_FORWARD)))
+            self._lead(moved(self.camera, far_m * right, far_m * up, far_m * forward))
+
+    def _fly(self, right: float, up: float, forward: float) -> None:
+        if self.camera is not None:
+            far_m = self.distance_m
             self._lead(moved(self.camera, far_m * right, far_m * up, far_m * forward))
 
     def _lead(self, camera: PosedPhoto) -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QElapsedTimer, QEvent, QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import (
     QColor,
+    QFocusEvent,
     QImage,
     QKeyEvent,
     QMouseEvent,
@@ -29,6 +32,26 @@ STEP_KEY = 0.06
 """Share of the distance to what is looked at, that a key goes."""
 
 STEP_WHEEL = 0.12
+FLYING: dict[Qt.Key, tuple[int, int, int]] = {
+    Qt.Key.Key_W: (0, 0, 1),
+    Qt.Key.Key_S: (0, 0, -1),
+    Qt.Key.Key_A: (-1, 0, 0),
+    Qt.Key.Key_D: (1, 0, 0),
+    Qt.Key.Key_E: (0, 1, 0),
+    Qt.Key.Key_Q: (0, -1, 0),
+}
+"""Keys that fly as long as they are held: to the right, up, forward."""
+
+SHARE_S = 0.5
+"""Of the distance to what is looked at, that is flown in a second."""
+
+FASTER = 4.0
+"""With Shift."""
+
+FLIGHT_MS = 33
+LONGEST_S = 0.2
+"""Of one step: a window that was busy must not leap."""
+
 GRAB_PX = 10.0
 """On either side of the line, that it is taken hold of by; wider for fingers than it is drawn."""
 
@@ -60,6 +83,14 @@ class Mark:
     text: str = ""
 
 
+def flight(held: Collection[Qt.Key], seconds: float, is_fast: bool) -> tuple[float, float, float]:
+    """How far held keys fly in some seconds: right, up, forward, in shares of the distance to what is looked at."""
+    right, up, forward = (float(sum(FLYING[key][axis] for key in held)) for axis in range(3))
+    length = math.hypot(right, up, forward)
+    share = SHARE_S * min(seconds, LONGEST_S) * (FASTER if is_fast else 1.0) / max(length, 1.0)
+    return share * right, share * up, share * forward
+
+
 class ModelView(QWidget):
     """Shows one picture, or two that are divided by an upright line.
 
@@ -69,6 +100,8 @@ class ModelView(QWidget):
         Fly around what is looked at, or look elsewhere: radians to the right and up.
     moved(float, float, float)
         Go to the right, up and forward, in shares of the distance to what is looked at.
+    flown(float, float, float)
+        The same with what is looked at: it stays as far away.
     homeAsked()
         Back to where the photo was taken.
     valueChanged(float)
@@ -81,6 +114,7 @@ class ModelView(QWidget):
     orbited = Signal(float, float)
     turned = Signal(float, float)
     moved = Signal(float, float, float)
+    flown = Signal(float, float, float)
     homeAsked = Signal()  # noqa: N815  (Qt's own way of naming)
     valueChanged = Signal(float)  # noqa: N815
     clicked = Signal(float, float)
@@ -95,6 +129,10 @@ class ModelView(QWidget):
         self._line, self._grabbed, self._holds_line = 0.5, QPointF(), False
         self._pressed: QPointF | None = None
         self._marks: tuple[Mark, ...] = ()
+        self._held: set[Qt.Key] = set()
+        self._is_fast = False
+        self._since, self._steps = QElapsedTimer(), QTimer(self, interval=FLIGHT_MS)
+        self._steps.timeout.connect(self._fly)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)
         self.setMinimumSize(QSize(240, 160))
@@ -305,9 +343,27 @@ class ModelView(QWidget):
         """Come nearer, go away."""
         self.moved.emit(0.0, 0.0, STEP_WHEEL * event.angleDelta().y() / 120.0)
 
+    def event(self, event: QEvent) -> bool:
+        """Keys that fly are no shortcuts of the window while the view has the keyboard."""
+        if event.type() is QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and _flies(event):
+            event.accept()
+            return True
+        return super().event(event)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Arrows orbit, with Shift they shift, with Ctrl they turn; plus and minus come nearer and go; 0 is home."""
+        """W, A, S, D, E, Q fly while they are held, with Shift faster.
+
+        Arrows orbit, with Shift they shift, with Ctrl they turn; plus and minus come nearer and go; 0 is home.
+        """
         key, mods = Qt.Key(event.key()), event.modifiers()
+        self._is_fast = bool(mods & Qt.KeyboardModifier.ShiftModifier)
+        if _flies(event):
+            if not event.isAutoRepeat():
+                self._held.add(key)
+                if not self._steps.isActive():
+                    self._since.start()
+                    self._steps.start()
+            return
         ways = {
             Qt.Key.Key_Left: (-1.0, 0.0),
             Qt.Key.Key_Right: (1.0, 0.0),
@@ -331,8 +387,34 @@ class ModelView(QWidget):
         else:
             super().keyPressEvent(event)
 
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Fly on with the keys that are still held."""
+        self._is_fast = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+        if not event.isAutoRepeat() and event.key() in self._held:
+            self._fly()
+            self._held.discard(Qt.Key(event.key()))
+        if not self._held:
+            self._steps.stop()
+        super().keyReleaseEvent(event)
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:  # noqa: N802
+        """Whoever has the keyboard now hears of keys that are let go."""
+        self._held.clear()
+        self._steps.stop()
+        super().focusOutEvent(event)
+
+    def _fly(self) -> None:
+        way = flight(self._held, 1e-3 * self._since.restart(), self._is_fast)
+        if any(way):
+            self.flown.emit(*way)
+
     def _is_at_line(self, at: QPointF) -> bool:
         if self._left is None or self._right is None:
             return False
         room = self.room()
         return abs(at.x() - room.left() - self._line * room.width()) <= GRAB_PX
+
+
+def _flies(event: QKeyEvent) -> bool:
+    others = event.modifiers() & ~(Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.KeypadModifier)
+    return event.key() in FLYING and others == Qt.KeyboardModifier.NoModifier

@@ -1,20 +1,40 @@
 """Widgets of the Reconstruct tab by themselves."""
 
+import math
+from pathlib import Path
+
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QImage, QWheelEvent
+from hypothesis import given
+from hypothesis import strategies as st
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QFocusEvent, QImage, QKeyEvent, QWheelEvent
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 
 from groundstation.gui.reconstruct.choice_form import ChoiceForm
+from groundstation.gui.reconstruct.led_camera import LedCamera
 from groundstation.gui.reconstruct.lines_plot import Line, LinesPlot, between
 from groundstation.gui.reconstruct.looks import image_of
-from groundstation.gui.reconstruct.model_view import GRAB_PX, STEP_WHEEL, TURN_RAD_KEY, TURN_RAD_PX, ModelView
+from groundstation.gui.reconstruct.model_view import (
+    FASTER,
+    FLIGHT_MS,
+    FLYING,
+    GRAB_PX,
+    LONGEST_S,
+    SHARE_S,
+    STEP_WHEEL,
+    TURN_RAD_KEY,
+    TURN_RAD_PX,
+    ModelView,
+    flight,
+)
 from groundstation.gui.reconstruct.names import layer_names
 from groundstation.gui.reconstruct.progress_page import ProgressPage
 from groundstation.gui.reconstruct.small_pictures import SIDE_PX, SmallPictures
 from groundstation.services.reconstruct_choices import TrainChoice
 from groundstation.services.reconstruct_curves import ThinCurve
+from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.modelling.layer_names import LAYERS, PICTURE
 from tests.gui.driving import turn_until
 
@@ -28,6 +48,7 @@ def view(application):
     view.orbited.connect(lambda *way: view.heard.append(("orbited", *way)))
     view.turned.connect(lambda *way: view.heard.append(("turned", *way)))
     view.moved.connect(lambda *way: view.heard.append(("moved", *way)))
+    view.flown.connect(lambda *way: view.heard.append(("flown", *way)))
     view.homeAsked.connect(lambda: view.heard.append(("home",)))
     yield view
     view.hide()
@@ -53,6 +74,68 @@ def plain(colour, width=200, height=150):
 def test_keys_lead_the_camera(view, key, modifier, heard):
     QTest.keyClick(view, key, modifier)
     assert view.heard == [heard]
+
+
+def test_held_keys_fly_until_they_are_let_go(application, view):
+    QTest.keyPress(view, Qt.Key.Key_W)
+    turn_until(application, lambda: len(view.heard) >= 3)
+    QTest.keyPress(view, Qt.Key.Key_D)
+    turn_until(application, lambda: view.heard[-1][1] > 0.0)
+    assert view.heard[-1][1] == view.heard[-1][3]
+    QTest.keyRelease(view, Qt.Key.Key_W)
+    n = len(view.heard)
+    turn_until(application, lambda: len(view.heard) > n)
+    assert all(name == "flown" and forward >= 0.0 == up for name, _, up, forward in view.heard)
+    assert view.heard[-1][3] == 0.0
+    QTest.keyRelease(view, Qt.Key.Key_D)
+    n = len(view.heard)
+    QTest.qWait(3 * FLIGHT_MS)
+    assert len(view.heard) == n
+
+
+def test_flight_ends_where_the_keyboard_goes_elsewhere(application, view):
+    QTest.keyPress(view, Qt.Key.Key_S)
+    turn_until(application, lambda: view.heard)
+    QApplication.sendEvent(view, QFocusEvent(QEvent.Type.FocusOut))
+    n = len(view.heard)
+    QTest.qWait(3 * FLIGHT_MS)
+    assert len(view.heard) == n
+
+
+def test_keys_that_fly_are_no_shortcuts_and_others_are(view):
+    for key, modifier, is_taken in (
+        (Qt.Key.Key_W, Qt.KeyboardModifier.NoModifier, True),
+        (Qt.Key.Key_W, Qt.KeyboardModifier.ShiftModifier, True),
+        (Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier, False),
+        (Qt.Key.Key_F, Qt.KeyboardModifier.NoModifier, False),
+    ):
+        asked = QKeyEvent(QEvent.Type.ShortcutOverride, key, modifier)
+        asked.ignore()
+        QApplication.sendEvent(view, asked)
+        assert asked.isAccepted() == is_taken
+
+
+@given(st.sets(st.sampled_from(list(FLYING))), st.floats(0.0, 10.0), st.booleans())
+def test_flight_is_as_fast_in_every_direction_and_never_leaps(held, seconds, is_fast):
+    length = math.hypot(*flight(held, seconds, is_fast))
+    fastest = SHARE_S * min(seconds, LONGEST_S) * (FASTER if is_fast else 1.0)
+    assert length == pytest.approx(fastest) or length == 0.0
+    # Opposite keys are none at all.
+    assert not any(flight(list(FLYING), seconds, is_fast))
+    alone = [flight([key], 0.1, False) for key in FLYING]
+    assert np.allclose(np.sum(alone, axis=0), 0.0)
+    assert len(set(alone)) == len(FLYING)
+
+
+def test_what_is_flown_to_stays_as_far_away(view):
+    led = LedCamera(view)
+    lens = Intrinsics(640, 480, 500.0, 500.0, 320.0, 240.0)
+    led.camera, led.distance_m = PosedPhoto("a", Path("a"), lens, Pose(np.zeros(3), np.eye(3))), 10.0
+    view.flown.emit(0.1, 0.2, 0.3)
+    assert np.allclose(led.camera.pose.position_enu_m, [1.0, -2.0, 3.0])
+    assert led.distance_m == 10.0
+    view.moved.emit(0.0, 0.0, 0.5)
+    assert led.distance_m == 5.0
 
 
 def test_shift_and_arrows_shift(view):
