@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -28,12 +29,23 @@ ROOM = 1.15
 LEAST_DISTANCE_M = 3.0
 
 
+Level = Literal["panel", "facade", "building"]
+"""Of what records are of."""
+
+
 @dataclass(frozen=True, slots=True)
 class PanelRow:
-    """A panel of the scene, and its facade."""
+    """A panel of the scene, and its facade.
+
+    Parameters
+    ----------
+    facade_id
+        GlobalId of the facade.
+    """
 
     element: GsElement
     facade: str
+    facade_id: str
 
     @property
     def global_id(self) -> str:
@@ -51,6 +63,22 @@ class PanelRow:
         corners = np.array(self.element.corners_enu_m)
         edges = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
         return float(edges[0] + edges[2]) / 2.0, float(edges[1] + edges[3]) / 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """What records are of.
+
+    Parameters
+    ----------
+    panel
+        Where it is one.
+    """
+
+    level: Level
+    global_id: str
+    name: str
+    panel: PanelRow | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +110,17 @@ class SceneCard:
     def by_number(self) -> dict[int, PanelRow]:
         """Panels by their numbers in the model."""
         return {panel.element.panel: panel for panel in self.panels}
+
+    def subject(self, level: Level, selected: str) -> Subject | None:
+        """A panel by its GlobalId, its facade (or the only one there is), or the building; None where there is none."""
+        if level == "building":
+            return Subject(level, self.global_id, self.name)
+        panel = self.by_global_id.get(selected)
+        if level == "panel":
+            return None if panel is None else Subject(level, panel.global_id, panel.name, panel)
+        if panel is None and len({each.facade_id for each in self.panels}) == 1:
+            panel = self.panels[0]
+        return None if panel is None else Subject(level, panel.facade_id, panel.facade)
 
     @cached_property
     def quads(self) -> Quads:
@@ -115,7 +154,7 @@ def read_card(folder: Path) -> SceneCard:
         There is none, or its description is damaged.
     """
     stored = StoredScene(folder)
-    panels = tuple(PanelRow(element, head.name) for head in stored.heads for element in head.elements)
+    panels = tuple(PanelRow(element, head.name, head.global_id) for head in stored.heads for element in head.elements)
     at = datetime.fromtimestamp((folder / DESCRIPTION).stat().st_mtime, UTC)
     return SceneCard(folder, stored.name, stored.global_id, stored.origin, panels, stored.n_gaussians, at)
 

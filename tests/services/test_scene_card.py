@@ -19,7 +19,7 @@ def folder(tmp_path):
 
 
 def element(corners):
-    return PanelRow(GsElement(global_id_of("x", "y"), "y", 0, corners, 0, 0), "A")
+    return PanelRow(GsElement(global_id_of("x", "y"), "y", 0, corners, 0, 0), "A", global_id_of("x", "A"))
 
 
 def turned(corners, turn):
@@ -39,6 +39,25 @@ def test_a_card_has_all_panels_with_their_facades(folder):
     assert card.panels[0].size_m == pytest.approx((1.35, 1.8))
     assert (is_scene(folder), is_model(folder)) == (True, False)
     assert (card.n_gaussians, card.name, card.origin) == (scene.n_gaussians, scene.name, scene.origin)
+
+
+def test_records_are_of_a_panel_its_facade_or_the_building(folder, tmp_path):
+    card, scene = read_card(folder), made_scene()
+    second = scene.components[1]
+    panel = second.elements[0].global_id
+    subjects = [card.subject(level, panel) for level in ("panel", "facade", "building")]
+    assert [(each.global_id, each.name) for each in subjects] == [
+        (panel, "B-0000"),
+        (second.global_id, "B"),
+        (scene.global_id, "made"),
+    ]
+    assert [each.panel for each in subjects] == [card.by_global_id[panel], None, None]
+    assert {each.global_id for each in subjects} <= {row.global_id for row in object_rows(StoredScene(folder))}
+    # Where nothing is chosen, only the building is known, and a facade that there is no other of.
+    assert card.subject("panel", "") is card.subject("facade", "") is None
+    assert card.subject("building", "").global_id == scene.global_id
+    write_scene(made_scene(((3, 1),)), tmp_path / "alone.gsscene")
+    assert read_card(tmp_path / "alone.gsscene").subject("facade", "").name == "A"
 
 
 def test_a_folder_without_a_scene_is_refused(tmp_path):

@@ -22,7 +22,7 @@ from groundstation.services.reconstruct_messages import (
     Tints,
 )
 from groundstation.services.reconstruct_process import ModelProcess
-from groundstation.services.scene_card import SceneCard, is_model, is_scene, read_card, scenes_beside
+from groundstation.services.scene_card import Level, SceneCard, Subject, is_model, is_scene, read_card, scenes_beside
 from groundstation.services.scene_records import book_of_scene, user_name, with_file
 from planning.errors import GroundStationError
 from planning.findings import Severity
@@ -42,6 +42,8 @@ class ModelDesk(QObject):
         Another one was read.
     selectionChanged()
         Another panel, or none.
+    subjectChanged()
+        Records of something else are looked at: of a facade, or the building.
     recordsChanged()
         Something was written.
     coloursChanged()
@@ -51,6 +53,7 @@ class ModelDesk(QObject):
 
     sceneChanged = Signal()  # noqa: N815  (Qt's own way of naming)
     selectionChanged = Signal()  # noqa: N815
+    subjectChanged = Signal()  # noqa: N815
     recordsChanged = Signal()  # noqa: N815
     coloursChanged = Signal()  # noqa: N815
     seen = Signal(object)
@@ -65,6 +68,7 @@ class ModelDesk(QObject):
         self.card: SceneCard | None = None
         self.others: tuple[Path, ...] = ()
         self.selected = ""
+        self.level: Level = "panel"
         self.colour_by = ""
         self.colouring: Colouring = NO_COLOURS
         self.is_reading = False
@@ -136,6 +140,17 @@ class ModelDesk(QObject):
             self.selected = global_id
             self.selectionChanged.emit()
 
+    def look_at(self, level: Level) -> None:
+        """Turn to records of the panel, of its facade, or of the building."""
+        if level != self.level:
+            self.level = level
+            self.subjectChanged.emit()
+
+    @property
+    def subject(self) -> Subject | None:
+        """What records are looked at of."""
+        return None if self.card is None else self.card.subject(self.level, self.selected)
+
     def colour(self, by: str) -> None:
         """Colour panels by something (see `colouring`)."""
         self.colour_by = by
@@ -167,11 +182,11 @@ class ModelDesk(QObject):
         return self.card is not None and self._book_path.is_file()
 
     def entries(self, kind: type[Entry]) -> tuple[Any, ...]:
-        """Of the selected panel."""
-        return self.entries_of(kind, self.selected) if self.selected else ()
+        """Of what is looked at."""
+        return self.entries_of(kind, self.subject.global_id) if self.subject is not None else ()
 
     def entries_of(self, kind: type[Entry], global_id: str) -> tuple[Any, ...]:
-        """Of a panel."""
+        """Of a panel, a facade, or the building."""
         try:
             with self._reading() as book:
                 return () if book is None else book.entries(kind, global_id)

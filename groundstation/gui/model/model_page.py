@@ -85,12 +85,14 @@ class ModelPage(QObject):
         records.putAsked.connect(desk.put)
         records.removeAsked.connect(desk.remove)
         records.undoAsked.connect(desk.undo)
+        records.levelChanged.connect(desk.look_at)
         records.reportAsked.connect(self._make_report)
         self.report.done.connect(self._report_done)
         self.report.failed.connect(self._report_failed)
         self.pane.saveAsked.connect(self._save_picture)
         desk.sceneChanged.connect(self._show_scene)
         desk.selectionChanged.connect(self._show_selection)
+        desk.subjectChanged.connect(self._show_subject)
         desk.recordsChanged.connect(self._show_records)
         desk.coloursChanged.connect(self._show_colours)
         self._workspace.unitsChanged.connect(self._units_changed)
@@ -181,6 +183,7 @@ class ModelPage(QObject):
         if words and card is not None:
             notes = {hit.global_id: hit.text for hit in reversed(self.desk.search(words)) if hit.kind != "object"}
             folded = words.casefold()
+            notes = {panel.global_id: notes[panel.facade_id] for panel in panels if panel.facade_id in notes} | notes
             panels = tuple(
                 panel for panel in panels if folded in panel.name.casefold() or panel.global_id in {*notes, words}
             )
@@ -188,10 +191,11 @@ class ModelPage(QObject):
         self.side.show_colours(self.desk.colouring)
 
     def _show_selection(self) -> None:
-        card = self.desk.card
-        panel = None if card is None else card.by_global_id.get(self.desk.selected)
         self.side.select(self.desk.selected)
-        self.records.show_panel(panel, self._workspace.units)
+        self._show_subject()
+
+    def _show_subject(self) -> None:
+        self.records.show_subject(self.desk.level, self.desk.subject, self._workspace.units)
         self._show_entries()
 
     def _show_records(self) -> None:

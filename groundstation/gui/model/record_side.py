@@ -1,13 +1,14 @@
-"""The right side: the panel that is chosen, and its records by kind, to be read, added, changed and taken out."""
+"""The right side: the panel that is chosen, its facade or the building, and its records by kind, to be edited."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, QLocale, Qt, Signal
+from PySide6.QtCore import QCoreApplication, QLocale, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
+    QComboBox,
     QDialog,
     QFormLayout,
     QGridLayout,
@@ -22,7 +23,7 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.model.record_dialog import RecordDialog
 from groundstation.gui.model.record_words import choice_words, field_words, kind_words
-from groundstation.services.scene_card import PanelRow
+from groundstation.services.scene_card import Level, Subject
 from groundstation.services.units import UnitSystem, area_unit, length_unit
 from reconstruction.records.entries import Attribute, Defect, Document, Entry, Inspection, Maintenance
 
@@ -38,24 +39,27 @@ KIND_TITLES: dict[type[Any], Callable[[], str]] = {
 
 
 class RecordSide(QWidget):
-    """Shows a panel and its records.
+    """Shows a panel, a facade or the building, and its records.
 
     Signals
     -------
     putAsked(Entry, Path or None), removeAsked(Entry)
     undoAsked(), reportAsked()
+    levelChanged(str)
+        Records of a panel, a facade or the building are wanted.
     """
 
     putAsked = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
     removeAsked = Signal(object)  # noqa: N815
     undoAsked = Signal()  # noqa: N815
     reportAsked = Signal()  # noqa: N815
+    levelChanged = Signal(str)  # noqa: N815
 
     def __init__(self, words: Callable[[str], str], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._words = words
-        self._panel: PanelRow | None = None
-        self._units = UnitSystem.METRIC
+        self._subject: Subject | None = None
+        self.level = QComboBox()
         self.title, self.facade, self.size, self.global_id = (QLabel() for _ in range(4))
         self.tree, self.kinds = QTreeWidget(), QMenu(self)
         self._groups: dict[type[Any], QTreeWidgetItem] = {}
@@ -63,21 +67,26 @@ class RecordSide(QWidget):
         self.remove, self.undo = QPushButton(self.tr("Take out")), QPushButton(self.tr("Undo"))
         self.report = QPushButton(self.tr("Report as PDF ..."))
         self._make()
-        self.show_panel(None, UnitSystem.METRIC)
+        self.show_subject("panel", None, UnitSystem.METRIC)
 
-    def show_panel(self, panel: PanelRow | None, units: UnitSystem) -> None:
-        """Say which panel is chosen."""
-        self._panel, self._units = panel, units
-        if panel is None:
+    def show_subject(self, level: Level, subject: Subject | None, units: UnitSystem) -> None:
+        """Say what records are of; None where no panel is chosen that would tell."""
+        self._subject = subject
+        with QSignalBlocker(self.level):
+            self.level.setCurrentIndex(self.level.findData(level))
+        if subject is None:
             self.title.setText(self.tr("No panel is chosen. Click one in the picture, or in the list."))
         else:
-            self.title.setText(panel.name)
+            self.title.setText(subject.name)
+        panel = None if subject is None else subject.panel
         width_m, height_m = (0.0, 0.0) if panel is None else panel.size_m
         self.facade.setText("" if panel is None else panel.facade)
-        self.global_id.setText("" if panel is None else panel.global_id)
+        self.global_id.setText("" if subject is None else subject.global_id)
         unit, area = length_unit(units), area_unit(units)
         size = self.tr("{0} x {1}, {2}").format(unit.text(width_m), unit.text(height_m), area.text(width_m * height_m))
         self.size.setText("" if panel is None else size)
+        for label in (self.facade, self.size):
+            self._facts.setRowVisible(label, level == "panel")
         self._enable()
 
     def show_entries(self, found: dict[type[Any], tuple[Any, ...]]) -> None:
@@ -101,9 +110,9 @@ class RecordSide(QWidget):
 
     def put_asked_of(self, kind: type[Any], entry: Entry | None = None) -> None:
         """Ask for a new record of a kind, or for what is to be changed."""
-        if self._panel is None:
+        if self._subject is None:
             return
-        dialog = RecordDialog(kind, self._panel.global_id, entry, self._words, self)
+        dialog = RecordDialog(kind, self._subject.global_id, entry, self._words, self)
         if dialog.exec() == QDialog.DialogCode.Accepted:
             self.putAsked.emit(dialog.found, dialog.file)
         dialog.deleteLater()
@@ -116,7 +125,13 @@ class RecordSide(QWidget):
         self.tree.setWordWrap(True)
         self.tree.setRootIsDecorated(False)
         self.tree.setIndentation(12)
-        self.tree.setAccessibleName(self.tr("Records of the panel"))
+        self.tree.setAccessibleName(self.tr("Records"))
+        for level, text in (
+            ("panel", self.tr("the panel")),
+            ("facade", self.tr("its facade")),
+            ("building", self.tr("the building")),
+        ):
+            self.level.addItem(text, level)
         for kind, title in KIND_TITLES.items():
             group = QTreeWidgetItem([title()])
             font = group.font(0)
@@ -127,8 +142,9 @@ class RecordSide(QWidget):
             self.kinds.addAction(f"{kind_words(kind)} ...").setData(kind)
         self.tree.currentItemChanged.connect(self._enable)
         self.tree.itemActivated.connect(self._change)
-        facts = QFormLayout()
+        self._facts = facts = QFormLayout()
         for name, label in (
+            (self.tr("Records of"), self.level),
             (self.tr("Facade"), self.facade),
             (self.tr("Size"), self.size),
             (self.tr("GlobalId"), self.global_id),
@@ -151,13 +167,17 @@ class RecordSide(QWidget):
         self.remove.clicked.connect(self._remove)
         self.undo.clicked.connect(self.undoAsked)
         self.report.clicked.connect(self.reportAsked)
+        self.level.currentIndexChanged.connect(self._level_chosen)
 
     def _enable(self) -> None:
-        has_panel = self._panel is not None
-        has_entry = has_panel and self.entry() is not None
-        for button, is_on in ((self.add, has_panel), (self.change, has_entry), (self.remove, has_entry)):
+        has_subject = self._subject is not None
+        has_entry = has_subject and self.entry() is not None
+        for button, is_on in ((self.add, has_subject), (self.change, has_entry), (self.remove, has_entry)):
             button.setEnabled(is_on)
-        self.report.setEnabled(has_panel)
+        self.report.setEnabled(self._subject is not None and self._subject.panel is not None)
+
+    def _level_chosen(self) -> None:
+        self.levelChanged.emit(self.level.currentData())
 
     def _add(self, action: QAction) -> None:
         self.put_asked_of(action.data())

@@ -4544,8 +4544,24 @@ Take it over?</source>
         <translation>{0} x {1}, {2}</translation>
     </message>
     <message>
-        <source>Records of the panel</source>
-        <translation>Einträge zur Scheibe</translation>
+        <source>Records</source>
+        <translation>Einträge</translation>
+    </message>
+    <message>
+        <source>the panel</source>
+        <translation>der Scheibe</translation>
+    </message>
+    <message>
+        <source>its facade</source>
+        <translation>ihrer Fassade</translation>
+    </message>
+    <message>
+        <source>the building</source>
+        <translation>dem Gebäude</translation>
+    </message>
+    <message>
+        <source>Records of</source>
+        <translation>Einträge zu</translation>
     </message>
     <message>
         <source>Facade</source>

@@ -130,6 +130,39 @@ def test_records_are_kept_found_and_taken_back(opened):
     assert opened.desk.entries(Defect) == ()
 
 
+def choose_level(page, level):
+    page.records.level.setCurrentIndex(page.records.level.findData(level))
+
+
+def test_facades_and_the_building_have_records_too(opened):
+    card, records = opened.desk.card, opened.records
+    choose_level(opened, "building")
+    assert records.title.text() == card.name
+    assert records.add.isEnabled()
+    assert not records.report.isEnabled()
+    records.putAsked.emit(Inspection(card.global_id, "2026-02-01", "K. Roth", "all of it"), None)
+    assert "2026-02-01: all of it, K. Roth" in tree_texts(opened)
+    choose_level(opened, "facade")
+    assert not records.add.isEnabled()
+    assert "Inspections" in tree_texts(opened)
+    panel = card.panels[2]
+    opened.desk.select(panel.global_id)
+    assert (records.title.text(), records.global_id.text()) == (panel.facade, panel.facade_id)
+    assert not records.size.isVisibleTo(opened.left)
+    records.putAsked.emit(Document(panel.facade_id, "drawings of the posts", "plan", "posts.pdf"), None)
+    assert any("drawings of the posts" in text for text in tree_texts(opened))
+    # Another panel of the facade has the same; the panel itself has none of them.
+    opened.desk.select(card.panels[3].global_id)
+    assert any("drawings of the posts" in text for text in tree_texts(opened))
+    choose_level(opened, "panel")
+    assert records.title.text() == card.panels[3].name
+    assert records.size.isVisibleTo(opened.left)
+    assert not any("drawings" in text for text in tree_texts(opened))
+    opened.side.search.setText("posts")
+    opened._search.timeout.emit()
+    assert names(opened) == [each.name for each in card.panels if each.facade_id == panel.facade_id]
+
+
 def tree_texts(page):
     tree = page.records.tree
     groups = [tree.topLevelItem(row) for row in range(tree.topLevelItemCount())]
