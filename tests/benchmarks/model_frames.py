@@ -1,0 +1,142 @@
+"""How long pictures of finished models take, by Gaussians, pixels and what panels mirror, and what coarse ones lack."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from functools import partial
+
+import cv2
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from reconstruction.modelling.model import SceneModel
+from reconstruction.modelling.render import render_view
+from reconstruction.reflections.config import ReflectionConfig
+from reconstruction.reflections.photo_set import PanelPlanes
+from reconstruction.reflections.reflective_panels import ModelName
+from reconstruction.reflections.training import untrained_panels
+from reconstruction.scores.image_metrics import psnr_db
+from reconstruction.splatting.sky import Sky
+from reconstruction.splatting.splats import NO_PANEL, Splats
+from reconstruction.splatting.views import View
+from tests.benchmarks.harness import Benchmark, Context, Row
+from tests.reconstruction.objects.made_scene import pane
+
+WALL_M, GROUND_M = (60.0, 40.0), 120.0
+COLUMNS, ROWS = 40, 20
+"""Panels of the wall."""
+
+NUMBERS, QUICK_NUMBERS = (10_000, 100_000, 1_000_000), (2_000,)
+WIDTHS, QUICK_WIDTHS = (160, 320, 640, 1280), (40, 80)
+LIGHTS: tuple[ModelName, ...] = ("environment-map", "mlp")
+MOST_S = 0.1
+"""Of a picture while the model is led about, which has as many pixels as that allows."""
+
+LED_WIDTH = 320
+REPEATS = 3
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """Least of some repeats, all threads."""
+    numbers, widths = (QUICK_NUMBERS, QUICK_WIDTHS) if context.is_quick else (NUMBERS, WIDTHS)
+    first: dict[int, float] = {}
+    for n in numbers:
+        model = building(n)
+        fine = picture(model, widths[-1])
+        for width in widths:
+            seconds = _least_s(model, width)
+            against = seconds / first.setdefault(width, seconds)
+            target = _target(width, n, seconds)
+            yield Row(_name(n), _what(width), round(1000 * seconds, 1), "ms", against, _name(numbers[0]), *target)
+        for width in widths[:-1]:
+            coarse = cv2.resize(picture(model, width), fine.shape[1::-1], interpolation=cv2.INTER_LINEAR)
+            quality = psnr_db(float(np.square(coarse - fine).mean()))
+            yield Row(_name(n), f"{_what(width)}, against {widths[-1]} wide", round(quality, 1), "dB")
+    n, plain_s = numbers[0], {width: _least_s(building(numbers[0]), width) for width in widths[1:3]}
+    for light in LIGHTS:
+        model = building(n, light)
+        for width, without_s in plain_s.items():
+            seconds = _least_s(model, width)
+            name = f"{_name(n)}, panels that mirror: {light}"
+            yield Row(name, _what(width), round(1000 * seconds, 1), "ms", seconds / without_s, "without")
+
+
+def building(n: int, light: ModelName | None = None) -> SceneModel:
+    """A wall of panels and the ground before it, evenly covered by discs whose colours change along both."""
+    rng = np.random.default_rng(0)
+    n_wall = n // 2
+    width, height = WALL_M
+    wall = np.column_stack([rng.uniform(0, width, n_wall), np.zeros(n_wall), rng.uniform(0, height, n_wall)])
+    ground = rng.uniform((-GROUND_M / 2, -GROUND_M, 0), (width + GROUND_M / 2, 0, 0), (n - n_wall, 3))
+    areas = np.repeat([width * height, GROUND_M * (width + GROUND_M)], [n_wall, n - n_wall])
+    sizes = 0.7 * np.sqrt(areas / (n / 2))
+    upright = (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
+    means = np.concatenate([wall, ground])
+    waves = np.sin(means @ rng.normal(scale=1.5, size=(3, 3))) + 0.3 * rng.normal(size=(n, 3))
+    columns, rows = np.floor(wall[:, 0] / width * COLUMNS), np.floor(wall[:, 2] / height * ROWS)
+    panels = np.concatenate([rows * COLUMNS + columns, np.full(n - n_wall, NO_PANEL)])
+    as_floats = partial(torch.tensor, dtype=torch.float32)
+    splats = Splats.of(
+        as_floats(means),
+        as_floats(np.repeat([upright, (1.0, 0.0, 0.0, 0.0)], [n_wall, n - n_wall], axis=0)),
+        as_floats(np.column_stack([sizes, sizes])),
+        torch.full((n,), 0.9),
+        as_floats(np.clip(0.5 + 0.2 * waves, 0.0, 1.0)),
+        torch.tensor(panels).int(),
+    )
+    corners = np.array(
+        [pane(k % COLUMNS, k // COLUMNS, width / COLUMNS, height / ROWS) for k in range(COLUMNS * ROWS)], np.float64
+    )
+    planes = PanelPlanes(corners)
+    glass = None
+    if light is not None:
+        generator = torch.Generator().manual_seed(0)
+        means_of_panels = torch.full((len(corners), 3), 0.2)
+        glass = untrained_panels(planes, light, ReflectionConfig(), means_of_panels, generator).light
+    return SceneModel(splats, Sky(), glass, planes, np.zeros(3), 1.0).eval()
+
+
+def picture(model: SceneModel, width: int) -> NDArray[np.float32]:
+    """As the Model tab shows it at first: the wall, from in front."""
+    height, focal = 3 * width // 4, 1.0 * width
+    from_world = np.eye(4)
+    from_world[:3, :3] = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
+    from_world[:3, 3] = -from_world[:3, :3] @ (0.5 * WALL_M[0], -65.0, 0.45 * WALL_M[1])
+    view = View(width, height, focal, focal, width / 2, height / 2, torch.tensor(from_world))
+    return render_view(model, view).display
+
+
+def _least_s(model: SceneModel, width: int) -> float:
+    found = []
+    for _ in range(REPEATS):
+        begun = time.perf_counter()
+        picture(model, width)
+        found.append(time.perf_counter() - begun)
+    return min(found)
+
+
+def _target(width: int, n: int, seconds: float) -> tuple[str, bool] | tuple[()]:
+    if (width, n) != (LED_WIDTH, NUMBERS[-1]):
+        return ()
+    return f"at most {1000 * MOST_S:g} ms", seconds <= MOST_S
+
+
+def _name(n: int) -> str:
+    return f"{n} Gaussians"
+
+
+def _what(width: int) -> str:
+    return f"{width} x {3 * width // 4}"
+
+
+BENCHMARK = Benchmark(
+    "model-frames",
+    "Pictures of finished models: time against pixels and Gaussians",
+    "A wall of 800 panels and the ground before it, evenly covered by discs; the more there are, the smaller they are. "
+    "Pictures as the Model tab shows them, with all threads, and what coarse ones, made larger, lack against the "
+    "finest. Light that panels mirror is that of untrained models, which takes as long.",
+    measure,
+)
