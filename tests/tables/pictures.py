@@ -1,4 +1,4 @@
-"""A picture for each table and scene: the first unseen photo, and how each model shows it."""
+"""A picture for each table and scene: the unseen photo that shows most glass, and how each model shows it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from reconstruction.reflections.photo_set import read_photo_set
 from tests.tables.definitions import Table
 from tests.tables.scales import Scale
-from tests.tables.trainings import Case
+from tests.tables.trainings import Case, shown_photo
 
 WIDE_PX, LABEL_PX = 256, 18
 """Of each part, and of the line below it."""
@@ -20,8 +20,8 @@ COLUMNS = 4
 
 
 def picture_of(work: Path, scene: str, scale: Scale, case: Case) -> Path:
-    """Where the first unseen view of a case goes, until all are drawn beside each other."""
-    return work / f"{scene}-{case.made_with(scene, scale)}.png"
+    """Where the view of a case goes, until all are drawn beside each other."""
+    return work / f"{scene}-{case.made_with(scene, scale)}-most-glass.png"
 
 
 def draw(table: Table, scene: str, scale: Scale, truth: Path, work: Path, folder: Path) -> None:
@@ -33,16 +33,16 @@ def draw(table: Table, scene: str, scale: Scale, truth: Path, work: Path, folder
             parts.append(_labelled(_read(path), case.title))
     if not parts:
         return
-    parts.insert(0, _labelled(_first_photo(truth), "photo"))
+    parts.insert(0, _labelled(_photo(truth), "photo"))
     blank = np.full_like(parts[0], 255)
     parts += [blank] * (-len(parts) % COLUMNS)
     rows = [np.hstack(parts[start : start + COLUMNS]) for start in range(0, len(parts), COLUMNS)]
     cv2.imwrite(str(folder / f"{table.number}-{scene}-{scale.name}.png"), np.vstack(rows))
 
 
-def _first_photo(folder: Path) -> NDArray[np.uint8]:
+def _photo(folder: Path) -> NDArray[np.uint8]:
     source = read_photo_set(folder)
-    return np.ascontiguousarray(source.picture(source.photos[0])[..., ::-1])
+    return np.ascontiguousarray(source.picture(shown_photo(source))[..., ::-1])
 
 
 def _read(path: Path) -> NDArray[np.uint8]:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from reconstruction.cameras import PosedPhoto
 from reconstruction.modelling.config import TrainConfig, config_of
 from reconstruction.modelling.render import png_of, render_view
 from reconstruction.modelling.saved import TrainedModel
@@ -94,7 +95,7 @@ def trained_and_scored(
     weights
         Of LPIPS; none leave it out.
     picture
-        Where the first unseen view goes, as a PNG file; None for nowhere.
+        Where `shown_photo` goes, as a PNG file; None for nowhere.
     """
     scale = SCALES[scale_name]
     learned, unseen = (photos_in(work, each) for each in case.photos(scene, scale))
@@ -105,7 +106,7 @@ def trained_and_scored(
     scores = score_views(trained, source, [photo.name for photo in source.photos], lpips, threads=1)
     known = [score for score in scores if score.facade.psnr_db is not None]
     if picture is not None:
-        picture.write_bytes(first_view(trained, source))
+        picture.write_bytes(shown_view(trained, source))
     return Result(
         scene,
         case.title,
@@ -127,10 +128,15 @@ def _mean(scores: list[ViewScores], name: str) -> float:
     return statistics.fmean(float(getattr(score.facade, name)) for score in scores)
 
 
+def shown_photo(source: PhotoSet) -> PosedPhoto:
+    """The one that shows most glass."""
+    return max(source.photos, key=lambda photo: int((source.panel_numbers(photo) >= 0).sum()))
+
+
 @torch.no_grad()
-def first_view(trained: TrainedModel, source: PhotoSet) -> bytes:
-    """The first unseen view as the model shows it, PNG."""
-    photo = source.photos[0]
+def shown_view(trained: TrainedModel, source: PhotoSet) -> bytes:
+    """`shown_photo` as the model shows it, PNG."""
+    photo = shown_photo(source)
     view = View.of(replace(photo, intrinsics=photo.intrinsics.straight()), trained.model.origin_enu_m)
     gain = source.exposure / trained.record.exposure * source.own_exposures.get(photo.name, 1.0)
     return png_of(np.round(255.0 * render_view(trained.model, view, (), gain).display).astype(np.uint8))
