@@ -71,7 +71,12 @@ METHODS: dict[str, Method] = {
         "this program, docs/reflections.md",
         "splats and the light that panels mirror, by the model that the scene calls for: near things are a scene that "
         "mirrored rays march through",
-        settings={"light": "auto", "geometry": "panels", "losses": {"normal_prior": 0.1}},
+        settings={
+            "light": "auto",
+            "geometry": "panels",
+            "losses": {"normal_prior": 0.1},
+            "rates": {"glass_geometry": 1.0},
+        },
         knows_panels=True,
     ),
     "refglass-gs": Method(

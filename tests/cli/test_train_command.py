@@ -82,7 +82,7 @@ def test_a_training_that_was_cancelled_goes_on(reflight, glass, tmp_path, monkey
     assert done.status == 1
     assert "--resume goes on with it" in done.err
     assert [path.name for path in out.iterdir()] == ["checkpoint.safetensors"]
-    assert "go on with its training" in reflight("score", out, glass / "data").error
+    assert "resume its training" in reflight("score", out, glass / "data").error
     again = reflight("train", glass / "data", "-o", out, *quick(glass), "--method", "2dgs")
     assert "holds a training that was interrupted" in again.error
     assert "leave --preset out" in reflight("train", glass / "data", "-o", out, *quick(glass), "--resume").error
@@ -100,7 +100,7 @@ def test_cancelled_while_it_learns_light_alone_it_goes_on_too(reflight, glass, t
     done = cancelled(monkeypatch, reflight, "learning reflections", 3, glass / "data", "-o", out, *quick(glass), *light)
     assert done.status == 1
     assert "--resume goes on with it" in done.err
-    assert "go on with its training" in reflight("score", out, glass / "data").error
+    assert "resume its training" in reflight("score", out, glass / "data").error
     assert "leave --start out" in reflight("train", glass, "-o", out, "--resume", "--start", "a.ply").error
     done = reflight("train", glass / "data", "-o", out, "--resume", "--json")
     assert (done.json["light"], done.json["iterations"]) == ("environment-map", 6)
