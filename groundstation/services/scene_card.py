@@ -75,7 +75,6 @@ class Subject:
         Where it is one.
     """
 
-    level: Level
     global_id: str
     name: str
     panel: PanelRow | None = None
@@ -114,13 +113,13 @@ class SceneCard:
     def subject(self, level: Level, selected: str) -> Subject | None:
         """A panel by its GlobalId, its facade (or the only one there is), or the building; None where there is none."""
         if level == "building":
-            return Subject(level, self.global_id, self.name)
+            return Subject(self.global_id, self.name)
         panel = self.by_global_id.get(selected)
         if level == "panel":
-            return None if panel is None else Subject(level, panel.global_id, panel.name, panel)
+            return None if panel is None else Subject(panel.global_id, panel.name, panel)
         if panel is None and len({each.facade_id for each in self.panels}) == 1:
             panel = self.panels[0]
-        return None if panel is None else Subject(level, panel.facade_id, panel.facade)
+        return None if panel is None else Subject(panel.facade_id, panel.facade)
 
     @cached_property
     def quads(self) -> Quads:
