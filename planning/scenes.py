@@ -39,16 +39,13 @@ def panel_grid(facade_id: str, rectangle: Rectangle, n_rows: int, n_columns: int
     """
     origin, right, up = (np.array(corner) for corner in rectangle)
     across, along = right - origin, up - origin
-    half_gap = 0.5 * gap_m * np.array([1.0 / np.linalg.norm(across), 1.0 / np.linalg.norm(along)])
-    panels: list[Panel] = []
-    for row in range(n_rows):
-        for column in range(n_columns):
-            u = np.array([column, column + 1]) / n_columns + half_gap[0] * np.array([1, -1])
-            v = np.array([row, row + 1]) / n_rows + half_gap[1] * np.array([1, -1])
-            corners = [
-                origin + a * across + b * along for a, b in ((u[0], v[0]), (u[1], v[0]), (u[1], v[1]), (u[0], v[1]))
-            ]
-            panels.append(_panel(f"{facade_id}-{len(panels):04d}", corners))
+    gap_u, gap_v = 0.5 * gap_m / np.linalg.norm(across), 0.5 * gap_m / np.linalg.norm(along)
+    rows, columns = (index.ravel()[:, None] for index in np.mgrid[:n_rows, :n_columns])
+    u0, u1 = columns / n_columns + gap_u, (columns + 1) / n_columns - gap_u
+    v0, v1 = rows / n_rows + gap_v, (rows + 1) / n_rows - gap_v
+    places = ((u0, v0), (u1, v0), (u1, v1), (u0, v1))
+    corners = np.stack([origin + u * across + v * along for u, v in places], axis=1)
+    panels = [_panel(f"{facade_id}-{number:04d}", each) for number, each in enumerate(corners.tolist())]
     return Facade(facade_id, tuple(panels))
 
 

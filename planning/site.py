@@ -71,25 +71,43 @@ class Panel:
             raise ValueError("id: expected a name, got an empty text")
         for i, corner in enumerate(self.corners_enu_m):
             check_point(corner, f"corners_enu_m[{i}]")
-        corners = np.array(self.corners_enu_m)
-        area_vector = 0.5 * np.cross(corners[2] - corners[0], corners[3] - corners[1])
-        area = float(np.linalg.norm(area_vector))
+        # Plain numbers: NumPy takes ten times as long for four points, and large sites have thousands of panels.
+        corners = self.corners_enu_m
+        area_vector = _scaled(0.5, _cross(_minus(corners[2], corners[0]), _minus(corners[3], corners[1])))
+        area = math.hypot(*area_vector)
         if area < MIN_PANEL_AREA_M2:
             raise ValueError(
                 f"corners_enu_m: panel '{self.id}' has an area of {area:.2g} m2, so it has no normal; expected four "
                 "corners in order around the pane"
             )
-        warp = float(np.abs((corners - corners.mean(axis=0)) @ (area_vector / area)).max())
+        x, y, z = (0.25 * sum(values) for values in zip(*corners, strict=True))
+        warp = max(abs(_dot(_minus(corner, (x, y, z)), area_vector)) for corner in corners) / area
         if warp > max(MAX_PANEL_WARP_M, 0.02 * math.sqrt(area)):
             raise ValueError(
                 f"corners_enu_m: panel '{self.id}' is not flat, a corner lies {warp:.2f} m off its mean plane; split it"
             )
-        edges = np.roll(corners, -1, axis=0) - corners
-        turns = np.cross(edges, np.roll(edges, -1, axis=0)) @ area_vector
-        if (turns < -1e-9 * area**2).any():
+        edges = [_minus(corners[(i + 1) % 4], corners[i]) for i in range(4)]
+        turns = (_dot(_cross(edges[i], edges[(i + 1) % 4]), area_vector) for i in range(4))
+        if min(turns) < -1e-9 * area**2:
             raise ValueError(
                 f"corners_enu_m: panel '{self.id}' is not convex or its corners are not in order around the pane"
             )
+
+
+def _minus(a: Vec3, b: Vec3) -> Vec3:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _cross(a: Vec3, b: Vec3) -> Vec3:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _dot(a: Vec3, b: Vec3) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _scaled(factor: float, a: Vec3) -> Vec3:
+    return factor * a[0], factor * a[1], factor * a[2]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ import tempfile
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -60,6 +61,7 @@ OpenWindow = Callable[[WindowWish], int]
 """Opens the window and returns the exit status once it is closed."""
 
 
+@cache
 def build_parser() -> argparse.ArgumentParser:
     """Parser with every module of `groundstation.cli.commands` as a command; none of them imports anything heavy."""
     parser = _Parser(

@@ -16,12 +16,39 @@ from tests.benchmarks.harness import Benchmark, Context, Row
 ROOT = Path(__file__).resolve().parents[2]
 
 
+class Measured(NamedTuple):
+    """What a process printed, its wall time, and the largest resident memory of it and of any that it began."""
+
+    printed: str
+    seconds: float
+    peak_mib: float
+
+
 class Finished(NamedTuple):
-    """What a command printed as JSON, its wall time, and the largest resident memory of any of its processes."""
+    """What a command printed as JSON, with time and memory of `Measured`."""
 
     content: dict[str, Any]
     seconds: float
     peak_mib: float
+
+
+def run_measured(arguments: Sequence[str | Path]) -> Measured:
+    """Run Python with arguments, in the repository's folder.
+
+    Raises
+    ------
+    RuntimeError
+        It failed; the message is what it wrote to stderr.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "measured.json"
+        helper = [sys.executable, "-m", "tests.benchmarks.measured_process", str(path)]
+        command = [*helper, sys.executable, *map(str, arguments)]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        measured = json.loads(path.read_text("utf-8"))
+    if measured["status"]:
+        raise RuntimeError(done.stderr.strip())
+    return Measured(done.stdout, measured["seconds"], measured["peak_mib"])
 
 
 def run_command(arguments: Sequence[str | Path]) -> Finished:
@@ -32,15 +59,8 @@ def run_command(arguments: Sequence[str | Path]) -> Finished:
     RuntimeError
         It failed; the message is what it wrote to stderr.
     """
-    command = [sys.executable, "app.py", *map(str, arguments), "--json"]
-    with tempfile.TemporaryDirectory() as folder:
-        measured_path = Path(folder) / "measured.json"
-        helper = [sys.executable, "-m", "tests.benchmarks.measured_process", str(measured_path)]
-        done = subprocess.run([*helper, *command], cwd=ROOT, capture_output=True, text=True, check=True)
-        measured = json.loads(measured_path.read_text("utf-8"))
-    if measured["status"]:
-        raise RuntimeError(done.stderr.strip())
-    return Finished(json.loads(done.stdout), measured["seconds"], measured["peak_mib"])
+    done = run_measured(["app.py", *arguments, "--json"])
+    return Finished(json.loads(done.printed), done.seconds, done.peak_mib)
 
 
 def measure(context: Context) -> Iterator[Row]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +13,7 @@ import numpy as np
 from planning.photo_files.folder import read_photos
 from reconstruction.photos.decode import Scale, grey_picture
 from reconstruction.photos.quality import DEFAULT_LIMITS, photo_quality
-from tests.benchmarks.fresh_process import ROOT
+from tests.benchmarks.fresh_process import run_measured
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.reconstruction.photos.pictures import facade, moved, write
 
@@ -66,16 +64,10 @@ def _write_small(folder: Path, n: int) -> None:
 
 def _checked_in_a_process(folder: Path, n: int) -> tuple[float, float]:
     """Wall time, s, and largest memory, MiB."""
-    with tempfile.TemporaryDirectory() as name:
-        measured_path = Path(name) / "measured.json"
-        helper = [sys.executable, "-m", "tests.benchmarks.measured_process", str(measured_path)]
-        done = subprocess.run(
-            [*helper, sys.executable, "-c", CHECK, str(folder)], cwd=ROOT, capture_output=True, text=True, check=True
-        )
-        measured = json.loads(measured_path.read_text("utf-8"))
-    if measured["status"] or json.loads(done.stdout) != n:
-        raise RuntimeError(done.stderr.strip() or f"expected {n} photos checked, got {done.stdout}")
-    return measured["seconds"], measured["peak_mib"]
+    done = run_measured(["-c", CHECK, folder])
+    if json.loads(done.printed) != n:
+        raise RuntimeError(f"expected {n} photos checked, got {done.printed}")
+    return done.seconds, done.peak_mib
 
 
 def _large(folder: Path, n: int) -> Iterator[Row]:

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,6 +16,7 @@ from reconstruction.scenes.effects import decide_effects
 from reconstruction.scenes.lens_effects import grey_levels, metered_exposure
 from reconstruction.scenes.record import Scene
 from reconstruction.scenes.renderer import Renderer, RenderSettings
+from tests.benchmarks.fresh_process import run_measured
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 
 SIZE_PX, QUICK_SIZE_PX = (512, 384), (96, 72)
@@ -28,7 +26,6 @@ TRUTH_SAMPLES = 8
 SAMPLES: tuple[int, ...] = (1, 2, 3, 4)
 A_SECOND, NEAR_DB, FAR_DB = 1.0, 3.0, 0.1
 TOWER_PX, TOWER_PHOTOS, MEMORY_GB = 5280, 600, 4.0
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def measure(context: Context) -> Iterator[Row]:
@@ -78,20 +75,13 @@ def _near_field(name: str, scene: Scene, photo: PosedPhoto, truth: NDArray[np.fl
 
 def _tower(width_px: int) -> Iterator[Row]:
     """What a large job takes."""
-    with tempfile.TemporaryDirectory() as name:
-        path = Path(name) / "measured.json"
-        command = [sys.executable, "-m", "tests.benchmarks.tower_photo", str(width_px)]
-        helper = [sys.executable, "-m", "tests.benchmarks.measured_process", str(path)]
-        done = subprocess.run([*helper, *command], cwd=ROOT, capture_output=True, text=True, check=True)
-        process = json.loads(path.read_text("utf-8"))
-    if process["status"]:
-        raise RuntimeError(done.stderr.strip())
-    photo = json.loads(done.stdout)
+    done = run_measured(["-m", "tests.benchmarks.tower_photo", str(width_px)])
+    photo = json.loads(done.printed)
     scene = f"tower of 3640 panels, {width_px} x {photo['height_px']} pixels"
     yield Row(scene, "a photo with its files, on all cores", photo["wall_s"], "s")
     yield Row(scene, "processor time of a photo with its files", photo["cpu_s"], "s")
     yield Row(scene, f"processor time of {TOWER_PHOTOS} photos", TOWER_PHOTOS * photo["cpu_s"] / 3600.0, "h")
-    peak_gb = process["peak_mib"] * 2**20 / 1e9
+    peak_gb = done.peak_mib * 2**20 / 1e9
     yield Row(
         scene, "largest memory of the process", peak_gb, "GB", None, "", f"under {MEMORY_GB:g} GB", peak_gb < MEMORY_GB
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from reconstruction.modelling.config import TrainConfig
 from reconstruction.modelling.presets import preset
-from reconstruction.reflections.config import ReflectionConfig
+from reconstruction.reflections.config import GridSettings, ReflectionConfig
 from reconstruction.reflections.reflection_mlp import MlpShape
 
 LEAST_STEPS = 1000
@@ -67,19 +67,19 @@ SMALL = _scale(
     "small",
     (510, 128, 60),
     TrainConfig(
-        time_limit_s=600.0,
-        light_share=0.6,
+        time_limit_s=1800.0,
+        light_share=0.4,
         n_splats=8000,
         max_splats=20_000,
-        reflections=ReflectionConfig(steps=3500, passes=60.0),
+        reflections=ReflectionConfig(steps=20_000, batch=2048, passes=60.0, grid=GridSettings(batch_share=1.5)),
         score_every_s=60.0,
     ),
     (128, 256),
     (4, 6),
-    (6, 8, 10, 12),
-    4,
+    (3, 5, 7, 9),
+    5,
 )
-"""Hours of two cores; each training 600 s of one."""
+"""A day of two cores; each training 1800 s of one at most."""
 
 SMOKE = _scale(
     "smoke",
