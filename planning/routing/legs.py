@@ -18,7 +18,7 @@ from scipy.spatial.distance import cdist
 from planning.errors import InfeasibleError
 from planning.jit import chunks
 from planning.progress import QUIET, Monitor
-from planning.routing.roadmap import MOST_NEIGHBOURS, LegMetric, Roadmap
+from planning.routing.roadmap import MOST_NEIGHBOURS, LegMetric, Roadmap, unique_pairs
 
 Array = NDArray[np.float64]
 
@@ -159,9 +159,9 @@ def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], me
     a = np.repeat(np.arange(n), nearest.shape[1])
     direct = np.stack([a, nearest.ravel()], axis=1)
     direct = direct[straight[direct[:, 0], direct[:, 1]]]
-    edges = np.unique(np.concatenate([column, joined, np.sort(direct, axis=1), roadmap.edges + n]), axis=0)
-    weight = np.maximum(metric(all_points[edges[:, 1]] - all_points[edges[:, 0]]), 1e-9)
     size = len(all_points)
+    edges = unique_pairs(np.concatenate([column, joined, np.sort(direct, axis=1), roadmap.edges + n]), size)
+    weight = np.maximum(metric(all_points[edges[:, 1]] - all_points[edges[:, 0]]), 1e-9)
     return csr_array(coo_array((weight, (edges[:, 0], edges[:, 1])), shape=(size, size)))
 
 

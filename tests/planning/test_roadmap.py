@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from planning.routing.roadmap import Roadmap, build_roadmap
+from planning.routing.roadmap import Roadmap, build_roadmap, unique_pairs
 from planning.scenes import SCENES
 from planning.site import Airspace
 from planning.space import FreeSpace, free_space
@@ -85,6 +87,15 @@ def test_pairs_of_points_and_nodes_are_near_and_clear() -> None:
     for i in (0, 1):
         nearest = np.argsort(np.linalg.norm(roadmap.nodes_enu_m - points[i], axis=1))[:10]
         assert set(pairs[pairs[:, 0] == i, 1]) <= set(nearest)
+
+
+@given(n=st.integers(1, 9), data=st.data())
+def test_pairs_are_in_order_and_each_once(n: int, data: st.DataObject) -> None:
+    number = st.integers(0, n - 1)
+    pairs = np.array(data.draw(st.lists(st.tuples(number, number))), dtype=np.int64).reshape(-1, 2)
+    found = unique_pairs(pairs, n)
+    assert found.dtype == np.int64
+    np.testing.assert_array_equal(found, np.unique(pairs, axis=0))
 
 
 def test_same_seed_same_roadmap() -> None:
