@@ -52,7 +52,7 @@ AS_PAPER: dict[str, Any] = {
     "light": "mlp",
     "geometry": "splats",
     "losses": {"normal_prior": 1.0},
-    "rates": {"glass_geometry": 0.1, "light": 0.5},
+    "rates": {"glass_geometry": 0.1},
 }
 """Place and normal of what mirrors come from the splats, held by the normal prior and by small steps."""
 
@@ -75,7 +75,7 @@ METHODS: dict[str, Method] = {
             "light": "auto",
             "geometry": "panels",
             "losses": {"normal_prior": 0.1},
-            "rates": {"glass_geometry": 1.0, "light": 0.25},
+            "rates": {"glass_geometry": 1.0},
         },
         knows_panels=True,
     ),

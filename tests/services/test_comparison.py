@@ -19,19 +19,24 @@ from planning.scenes import write_scene
 from planning.site import Origin
 from tests.planning.insight.cases import plan, prepared, scene
 
-PLAN = plan("single-panel")
-FEWER = replace(PLAN, viewpoints=PLAN.viewpoints[:3], sorties=())
+
+def planned():
+    return plan("single-panel")
+
+
+def fewer():
+    return replace(planned(), viewpoints=planned().viewpoints[:3], sorties=())
 
 
 def test_open_plans_are_compared_on_the_site_as_it_was_prepared():
-    found = compare(scene("single-panel"), [PLAN, FEWER], ["all", "some"], prepared("single-panel"))
-    again = compare(scene("single-panel"), [PLAN, FEWER], ["all", "some"])
+    found = compare(scene("single-panel"), [planned(), fewer()], ["all", "some"], prepared("single-panel"))
+    again = compare(scene("single-panel"), [planned(), fewer()], ["all", "some"])
     assert found.names == ("all", "some")
     assert [row.values for row in found.rows] == [row.values for row in again.rows]
 
 
 def test_summaries_are_json_and_name_the_better_plan():
-    found = compare(scene("single-panel"), [PLAN, FEWER], ["all", "some"], prepared("single-panel"))
+    found = compare(scene("single-panel"), [planned(), fewer()], ["all", "some"], prepared("single-panel"))
     summary = json.loads(json.dumps(comparison_summary(found), allow_nan=False))
     assert summary["plans"] == ["all", "some"]
     rows = {(row["code"], row["subject"]): row for row in summary["rows"]}
@@ -59,19 +64,19 @@ def test_summaries_are_json_and_name_the_better_plan():
 )
 def test_plans_of_another_place_are_refused(changes, message):
     with pytest.raises(InputError, match=message):
-        compare(scene("single-panel"), [PLAN, replace(FEWER, **changes)], ["all", "some"])
+        compare(scene("single-panel"), [planned(), replace(fewer(), **changes)], ["all", "some"])
 
 
 def test_one_plan_alone_is_refused():
     with pytest.raises(InputError, match="expected two plans or more to compare, got 1"):
-        compare(scene("single-panel"), [PLAN], ["all"])
+        compare(scene("single-panel"), [planned()], ["all"])
 
 
 def test_files_are_named_by_their_names_or_by_paths_where_those_are_alike(tmp_path):
     site = write_scene("single-panel", tmp_path)
     (tmp_path / "old").mkdir()
     paths = [tmp_path / "a.plan.json", tmp_path / "b.json", tmp_path / "old" / "b.json"]
-    for path, its_plan in zip(paths, (PLAN, FEWER, PLAN), strict=True):
+    for path, its_plan in zip(paths, (planned(), fewer(), planned()), strict=True):
         write_plan(path, its_plan)
     assert compare_files(paths[:2], site).names == ("a", "b")
     assert compare_files(paths[1:], site).names == (str(paths[1]), str(paths[2]))
@@ -81,7 +86,7 @@ def test_files_are_named_by_their_names_or_by_paths_where_those_are_alike(tmp_pa
 
 def entries(*titles_and_methods):
     return tuple(
-        PlanEntry(f"p{number}", title, replace(PLAN, method=method))
+        PlanEntry(f"p{number}", title, replace(planned(), method=method))
         for number, (title, method) in enumerate(titles_and_methods)
     )
 

@@ -24,6 +24,8 @@ class Result:
         None where no weights were given.
     seconds
         Of processor time.
+    views
+        Share of a view's pixels that shows glass, and PSNR, of each: `0.312:27.41 0.094:25.80`.
     """
 
     scene: str
@@ -39,6 +41,7 @@ class Result:
     n_steps: int
     n_splats: int
     machine: str
+    views: str = ""
 
     @property
     def key(self) -> tuple[str, str, int]:

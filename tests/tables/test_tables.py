@@ -92,6 +92,7 @@ def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):
     assert [line.split(" | ")[0] for line in lines] == [
         "| our plan, RefGlass-GS",
         "| RefGlass-GS",
+        "| RefGlass-GS",
         "| 4: Dim = 256, Layer = 6, L = 8, w/ skip, w/ staged",
         "| RefGlass-GS",
     ]
@@ -135,6 +136,10 @@ def test_plans_are_flown_photographed_learned_from_and_scored(tmp_path):
     kept = read_results(tmp_path / "tables" / "results.csv")
     assert {each.case for each in kept} == {case.title for case in tables(SMOKE)[0].cases}
     assert all(5.0 < each.psnr_db < 40.0 and each.n_steps == 12 for each in kept)
+    for each in kept:
+        views = [tuple(map(float, view.split(":"))) for view in each.views.split()]
+        assert all(0.0 <= share <= 1.0 for share, _ in views)
+        assert sum(psnr_db for _, psnr_db in views) / len(views) == pytest.approx(each.psnr_db, abs=0.01)
     assert (tmp_path / "tables" / "2-planar-smoke.png").is_file()
     before = (tmp_path / "tables" / "results.csv").read_bytes()
     assert main(arguments) == 0

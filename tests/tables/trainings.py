@@ -18,7 +18,7 @@ from reconstruction.cameras import PosedPhoto
 from reconstruction.modelling.config import TrainConfig, config_of
 from reconstruction.modelling.render import png_of, render_view
 from reconstruction.modelling.saved import TrainedModel
-from reconstruction.modelling.score import ViewScores, score_views
+from reconstruction.modelling.score import score_views
 from reconstruction.modelling.stopwatch import Stopwatch
 from reconstruction.modelling.train import train_model
 from reconstruction.reflections.photo_set import PhotoSet, read_photo_set
@@ -104,7 +104,9 @@ def trained_and_scored(
     source = read_photo_set(unseen)
     lpips = read_lpips_weights(weights) if weights else None
     scores = score_views(trained, source, [photo.name for photo in source.photos], lpips, threads=1)
-    known = [score for score in scores if score.facade.psnr_db is not None]
+    scores = tuple(score for score in scores if score.facade.psnr_db is not None)
+    shares = shares_of_glass(source)
+    by_view = [(shares[score.name], float(score.facade.psnr_db or 0.0)) for score in scores]
     if picture is not None:
         picture.write_bytes(shown_view(trained, source))
     return Result(
@@ -113,24 +115,27 @@ def trained_and_scored(
         seed,
         scale.name,
         case.made_with(scene, scale),
-        round(_mean(known, "psnr_db"), 3),
-        round(min(float(score.facade.psnr_db or 0.0) for score in known), 3),
-        round(_mean(known, "ssim"), 4),
-        None if lpips is None else round(statistics.fmean(score.facade_lpips or 0.0 for score in known), 4),
+        round(statistics.fmean(psnr_db for _, psnr_db in by_view), 3),
+        round(min(psnr_db for _, psnr_db in by_view), 3),
+        round(statistics.fmean(score.facade.ssim or 0.0 for score in scores), 4),
+        None if lpips is None else round(statistics.fmean(score.facade_lpips or 0.0 for score in scores), 4),
         round(trained.seconds, 1),
         trained.n_steps,
         trained.n_splats,
         machine(),
+        " ".join(f"{share:.3f}:{psnr_db:.2f}" for share, psnr_db in by_view),
     )
 
 
-def _mean(scores: list[ViewScores], name: str) -> float:
-    return statistics.fmean(float(getattr(score.facade, name)) for score in scores)
+def shares_of_glass(source: PhotoSet) -> dict[str, float]:
+    """Of each photo's pixels, by its name."""
+    return {photo.name: float((source.panel_numbers(photo) >= 0).mean()) for photo in source.photos}
 
 
 def shown_photo(source: PhotoSet) -> PosedPhoto:
     """The one that shows most glass."""
-    return max(source.photos, key=lambda photo: int((source.panel_numbers(photo) >= 0).sum()))
+    shares = shares_of_glass(source)
+    return max(source.photos, key=lambda photo: shares[photo.name])
 
 
 @torch.no_grad()

@@ -12,11 +12,13 @@ from planning.insight.flight_profile import keep_extremes, sortie_profile
 from planning.plan import FlightRules, Sortie
 from tests.planning.insight.cases import plan
 
-PLAN = plan("kiosk")
+
+def planned():
+    return plan("kiosk")
 
 
 def profile_of(number=0, **changes):
-    changed = replace(PLAN, **changes)
+    changed = replace(planned(), **changes)
     return sortie_profile(changed, changed.sorties[number])
 
 
@@ -24,7 +26,7 @@ def profile_of(number=0, **changes):
 @pytest.mark.parametrize("jerk", [None, 1.0])
 def test_the_flight_passes_every_vertex_at_rest_and_takes_as_long_as_planned(in_flight, jerk):
     rules = FlightRules(turn_in_flight=in_flight)
-    aircraft = replace(PLAN.aircraft, max_jerk_m_s3=jerk)
+    aircraft = replace(planned().aircraft, max_jerk_m_s3=jerk)
     found = profile_of(rules=rules, aircraft=aircraft)
     for times in (found.arrival_s, found.departure_s):
         at = found.at(times)
@@ -32,22 +34,22 @@ def test_the_flight_passes_every_vertex_at_rest_and_takes_as_long_as_planned(in_
         np.testing.assert_allclose(at.speed_m_s, 0.0, atol=1e-6)
     np.testing.assert_allclose(found.arrival_s[1:] - found.departure_s[:-1], found.ramps.duration_s, atol=1e-9)
     if not in_flight and jerk is None:
-        assert found.duration_s + rules.takeoff_landing_s == pytest.approx(PLAN.sorties[0].duration_s, abs=0.01)
-    assert found.at(found.departure_s[-1:]).distance_m[0] == pytest.approx(PLAN.sorties[0].length_m, abs=0.01)
+        assert found.duration_s + rules.takeoff_landing_s == pytest.approx(planned().sorties[0].duration_s, abs=0.01)
+    assert found.at(found.departure_s[-1:]).distance_m[0] == pytest.approx(planned().sorties[0].length_m, abs=0.01)
 
 
 def test_photos_are_taken_at_rest_at_their_viewpoints_after_settling():
     found = profile_of()
-    by_id = {viewpoint.id: viewpoint for viewpoint in PLAN.viewpoints}
+    by_id = {viewpoint.id: viewpoint for viewpoint in planned().viewpoints}
     at = found.at(found.photo_s)
-    assert found.photo_ids == PLAN.sorties[0].viewpoint_ids
+    assert found.photo_ids == planned().sorties[0].viewpoint_ids
     for position, viewpoint_id in zip(at.positions_enu_m, found.photo_ids, strict=True):
         assert position == pytest.approx(by_id[viewpoint_id].position_enu_m, abs=1e-4)
     np.testing.assert_allclose(at.speed_m_s, 0.0, atol=1e-9)
     stop = np.searchsorted(found.departure_s, found.photo_s)
     waited = found.photo_s - found.arrival_s[stop]
-    assert (waited >= PLAN.rules.settle_s - 1e-9).all()
-    np.testing.assert_allclose(found.departure_s[stop] - found.photo_s, PLAN.rules.photo_s)
+    assert (waited >= planned().rules.settle_s - 1e-9).all()
+    np.testing.assert_allclose(found.departure_s[stop] - found.photo_s, planned().rules.photo_s)
 
 
 def test_samples_rise_in_time_and_hold_the_top_speed_of_every_leg():
@@ -77,7 +79,7 @@ def test_times_before_and_after_the_flight_are_at_home():
 
 
 def test_paths_without_legs_or_without_their_viewpoints_have_no_profile():
-    sortie = PLAN.sorties[0]
+    sortie = planned().sorties[0]
     assert profile_of(sorties=(Sortie((), (), 0.0, 0.0),), viewpoints=()) is None
     assert profile_of(sorties=(replace(sortie, path_enu_m=sortie.path_enu_m[:2]),)) is None
 
