@@ -154,10 +154,10 @@ def _shapes(scale: Scale) -> Table:
         "4",
         "Architecture of the Reflection MLP",
         "One factor of case 4 changed at a time. At this scale networks are smaller and orders lower than the paper's, "
-        "in the same steps.",
+        "in the same time.",
         (UST,),
         cases,
-        (Above(cases[3].title, others, 0.0),),
+        tuple(Above(cases[3].title, (each,), 0.0) for each in others),
     )
 
 
