@@ -63,7 +63,10 @@ OpenWindow = Callable[[WindowWish], int]
 
 @cache
 def build_parser() -> argparse.ArgumentParser:
-    """Parser with every module of `groundstation.cli.commands` as a command; none of them imports anything heavy."""
+    """Parser with every module of `groundstation.cli.commands` as a command; none of them imports anything heavy.
+
+    The same one each time: making it takes longer than most of what tests ask of it.
+    """
     parser = _Parser(
         prog="app.py",
         description="Reflight plans, checks and exports the second flight over a reflective glass facade. "
