@@ -25,8 +25,9 @@ Written by `make tables` (`python -m tests.tables`); do not edit by hand. `--onl
 part, and keeps the others; `--scale paper` is for a computer with CUDA; `--cluster ADDRESS` shares the work over a Dask
 cluster; `--lpips FILE` adds LPIPS. PSNR and SSIM are of the facades of unseen views, drawn at random among all places
 that can be flown to, mean over views and then over seeds; each view's PSNR, and how much of it is glass, are in
-[tables/results.csv](tables/results.csv) of the later trainings. Seconds are those of a processor's core, without rendering photos. The paper's
-numbers are of its real photos, with other sites, cameras and times: orders can be compared, values cannot.
+[tables/results.csv](tables/results.csv) of the later trainings. Seconds are those of a processor's core, without
+rendering photos. The paper's numbers are of its real photos, with other sites, cameras and times: orders can be
+compared, values cannot.
 """
 
 
