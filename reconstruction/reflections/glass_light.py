@@ -92,9 +92,17 @@ class GlassLight(nn.Module):
         return (light.reshape(n, k, 3) * weights[..., None]).sum(dim=1), (cosines.reshape(n, k) * weights).sum(dim=1)
 
     def parameter_groups(self, config: ReflectionConfig) -> list[dict[str, Any]]:
-        """For an optimiser: parameters and their learning rates."""
-        network = isinstance(self.light, ReflectionMlp)
-        groups = [{"params": [*self.light.parameters()], "lr": config.mlp_rate if network else config.table_rate}]
+        """For AdamW: parameters, `params`, with their learning rates, `lr`, and `weight_decay` where it is not 0."""
+        groups: list[dict[str, Any]]
+        if isinstance(self.light, ReflectionMlp):
+            hidden = [layer.weight for layer in self.light.hidden]
+            others = [*(layer.bias for layer in self.light.hidden), *self.light.last.parameters()]
+            groups = [
+                {"params": hidden, "lr": config.mlp_rate, "weight_decay": config.mlp_decay},
+                {"params": others, "lr": config.mlp_rate},
+            ]
+        else:
+            groups = [{"params": [*self.light.parameters()], "lr": config.table_rate}]
         own = [value for value in (self.tilts, self.bows, self.moves) if value is not None]
         return [*groups, {"params": own, "lr": config.grid.tilt_rate}] if own else groups
 

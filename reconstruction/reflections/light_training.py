@@ -309,7 +309,8 @@ def _optimiser(
         own += [panels.reflectivity, panels.base_reflectance]
         groups += panels.light.parameter_groups(config)
     groups.append({"params": own, "lr": config.panel_rate})
-    optimiser = torch.optim.Adam([{**group, "rate": group["lr"]} for group in groups], betas=BETAS, fused=True)
+    groups = [{**group, "rate": group["lr"]} for group in groups]
+    optimiser = torch.optim.AdamW(groups, betas=BETAS, weight_decay=0.0, fused=True)
     for group in optimiser.param_groups if before is not None else ():
         for value in group["params"]:
             if before is not None and value in before.state:

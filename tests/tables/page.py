@@ -50,8 +50,9 @@ def _setup(scale: Scale) -> str:
     return (
         f"Scale `{scale.name}`: {scale.n_views} photos of {scale.width_px} x {3 * scale.width_px // 4} pixels to learn "
         f"from, {scale.n_unseen} to be scored on; each training {longest}, splats from {config.n_splats} to "
-        f"{config.max_splats}; Reflection MLP {shape.layers} x {shape.width}, orders {shape.position_order} (place) "
-        f"and {shape.direction_order} (direction) unless something else is said.\n"
+        f"{config.max_splats}; Reflection MLP {shape.layers} x {shape.width}, L = {shape.position_order}, unless "
+        "something else is said. Settings of Reflight, of RefGlass-GS and of its ablations were chosen by trials on "
+        "these scenes; those of the others are their papers' where these give any.\n"
     )
 
 

@@ -7,6 +7,7 @@ from tests.tables.definitions import Above, tables
 from tests.tables.page import gap_db, write_page
 from tests.tables.results import Result, keep, of_case, read_results
 from tests.tables.scales import PAPER, SCALES, SMALL, SMOKE
+from tests.tables.trainings import Case
 
 TABLE_5 = tables(SMALL)[-1]
 
@@ -37,6 +38,14 @@ def test_a_case_is_another_one_with_other_settings_or_photos_but_not_with_anothe
     assert case.config(SMALL, 1) == replace(case.config(SMALL, 0), seed=1)
     assert case.made_with("planar", SMALL) != made_with != case.made_with("curved", SMOKE)
     assert replace(case, settings={"rates": {"means": 1e-3}}).made_with("curved", SMALL) != made_with
+
+
+def test_a_method_s_own_settings_of_a_scale_come_before_the_case_s():
+    scale = replace(SMALL, own={"2dgs": {"rates": {"means": 1e-3, "scales": 1e-3}}})
+    case = Case("2DGS", "2dgs", {"rates": {"means": 2e-3}})
+    rates = case.config(scale, 0).rates
+    assert (rates.means, rates.scales) == (2e-3, 1e-3)
+    assert Case("3DGS", "3dgs").config(scale, 0).rates == SMALL.config.rates
 
 
 def test_paper_scale_has_the_paper_s_network_and_steps():
@@ -93,7 +102,7 @@ def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):
         "| our plan, RefGlass-GS",
         "| RefGlass-GS",
         "| RefGlass-GS",
-        "| 4: Dim = 256, Layer = 6, L = 8, w/ skip, w/ staged",
+        "| 4: Dim = 256, Layer = 6, L = 4, w/ skip, w/ staged",
         "| RefGlass-GS",
     ]
 

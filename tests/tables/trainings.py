@@ -44,7 +44,7 @@ class Case:
     method
         Of `METHODS`.
     settings
-        Of `TrainConfig`, as in TOML, that differ from the scale's and the method's.
+        Of `TrainConfig`, as in TOML, that differ from the method's and the scale's.
     planner
         Of the photos that are learned from.
     paper
@@ -61,7 +61,8 @@ class Case:
         """Of its trainings."""
         base = replace(scale.config, seed=seed)
         named = config_of({"method": self.method}, base, Path(self.title))
-        return config_of(dict(self.settings), named, Path(self.title))
+        of_scale = config_of(dict(scale.own.get(self.method, {})), named, Path(self.title))
+        return config_of(dict(self.settings), of_scale, Path(self.title))
 
     def photos(self, scene: str, scale: Scale) -> tuple[Photos, Photos]:
         """To learn from, and to be scored on."""

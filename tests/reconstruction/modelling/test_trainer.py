@@ -172,6 +172,15 @@ def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):
     assert_same(whole, second)
 
 
+def test_an_mlp_s_weights_decay_in_the_joint_training_and_nothing_else_does(make):
+    light = replace(TINY, mlp_decay=0.7)
+    trainer = make(replace(CONFIG, method="refglass-gs", light="mlp", reflections=light))
+    decays = [group for group in trainer.optimiser.param_groups if group["weight_decay"] != 0.0]
+    assert [(group["name"], group["weight_decay"]) for group in decays] == [("light 0", 0.7)]
+    hidden = trainer.model.light.light.hidden
+    assert {id(value) for value in decays[0]["params"]} == {id(layer.weight) for layer in hidden}
+
+
 def test_with_other_seeds_trainings_differ(make):
     one, other = make(), make(replace(CONFIG, seed=1))
     one.run(Watching())

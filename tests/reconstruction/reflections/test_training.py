@@ -156,6 +156,29 @@ def test_an_mlp_whose_rates_are_too_high_dies_and_its_health_says_so(plain):
     assert train_reflections(rays, planes, "environment-map", SHORT).health is None
 
 
+def test_decay_shrinks_weights_of_an_mlp_s_hidden_layers_and_nothing_else(plain):
+    rays, _, planes = plain
+    for model in ("mlp", "environment-map"):
+        panels = new_panels(rays, planes, model, SMALL, torch.Generator().manual_seed(0))
+        light = panels.light
+        before = {name: value.detach().clone() for name, value in light.named_parameters()}
+        optimiser = torch.optim.AdamW(light.parameter_groups(replace(SMALL, mlp_decay=2.0)), weight_decay=0.0)
+        for value in light.parameters():
+            value.grad = torch.zeros_like(value)
+        optimiser.step()
+        for name, value in light.named_parameters():
+            is_hidden = ".hidden." in name and name.endswith("weight")
+            assert torch.allclose(value, before[name] * (1.0 - 2.0 * SMALL.mlp_rate if is_hidden else 1.0), rtol=1e-6)
+
+
+def test_with_decay_an_mlp_is_less_good_at_what_it_learned_from_and_not_at_the_rest(tmp_path):
+    rays, unseen, planes = split_of(tmp_path / "photos", near, N_LEARNED)
+    config = replace(SMALL, steps=400, passes=1000.0)
+    plain, decayed = (train_reflections(rays, planes, "mlp", replace(config, mlp_decay=each)) for each in (0.0, 1.0))
+    assert score(plain, rays) > score(decayed, rays) + 0.8
+    assert score(decayed, unseen) > score(plain, unseen) - 0.2
+
+
 def test_black_white_and_single_colours_are_learned_without_a_number_that_is_none(plain):
     rays, _, planes = plain
     for value in (0, 255):
@@ -261,6 +284,8 @@ def test_rates_rise_over_the_warm_up_and_fall_to_their_last_share():
         {"threads": 0},
         {"memory_bytes": 0},
         {"mlp_rate": 0.0},
+        {"mlp_decay": -0.1},
+        {"mlp_decay": float("nan")},
         {"table_rate": float("nan")},
         {"passes": 0.0},
         {"panel_rate": float("inf")},
