@@ -52,9 +52,9 @@ AS_PAPER: dict[str, Any] = {
     "light": "mlp",
     "geometry": "splats",
     "losses": {"normal_prior": 1.0},
-    "rates": {"glass_geometry": 0.1, "light": 0.5},
+    "rates": {"glass_geometry": 0.1, "light": 0.15},
 }
-"""Place and normal of what mirrors come from the splats, held by the normal prior and by small steps; light follows."""
+"""Place and normal of what mirrors come from the splats, held by the normal prior; they and light go small steps."""
 
 LIGHT_FIRST = "light is learned alone first, from rays of glass that the refined panels give"
 

@@ -43,7 +43,7 @@ def write_page(path: Path, tables: Sequence[Table], scale: Scale, results: Seque
 
 def _setup(scale: Scale) -> str:
     config = scale.config
-    shape = config.reflections.mlp
+    shape = Case("of RefGlass-GS", "refglass-gs").config(scale, 0).reflections.mlp
     longest = f"{config.iterations} steps"
     if config.time_limit_s is not None:
         longest += f" of the joint training, or {config.time_limit_s:g} s of processor in all, whichever comes first"

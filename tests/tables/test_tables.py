@@ -102,7 +102,6 @@ def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):
         "| our plan, RefGlass-GS",
         "| RefGlass-GS",
         "| RefGlass-GS",
-        "| 4: Dim = 256, Layer = 6, L = 4, w/ skip, w/ staged",
         "| RefGlass-GS",
     ]
 
