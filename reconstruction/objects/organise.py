@@ -20,6 +20,7 @@ from reconstruction.modelling.record import ModelRecord, PanelRecord
 from reconstruction.modelling.saved import GAINS, TrainedModel, description_of, tensors_of, trained_of
 from reconstruction.objects.gs_scene import GsAuxiliary, GsComponent, GsElement, GsGaussian, GsScene
 from reconstruction.records.global_ids import global_id_of, is_global_id
+from reconstruction.splatting.panel_of_splats import panels_by_place
 from reconstruction.splatting.splats import NO_PANEL
 
 BACKGROUND = "background"
@@ -74,6 +75,8 @@ class PanelGlobalIds:
 def organised(trained: TrainedModel, source_ids: Mapping[str, str] | None = None) -> GsScene:
     """A model as objects: a component for each facade, an element for each panel, and the background.
 
+    Where its method knows no panels, splats belong to those on which they lie.
+
     Parameters
     ----------
     source_ids
@@ -82,6 +85,9 @@ def organised(trained: TrainedModel, source_ids: Mapping[str, str] | None = None
     record, tensors = _named(trained.record), tensors_of(trained)
     splats = {name.removeprefix(OF_SPLATS): _plain(tensors[name]) for name in tensors if name.startswith(OF_SPLATS)}
     panels = splats.pop(PANELS)
+    if not record.config.trained_by.knows_panels:
+        corners_m = np.array([panel.corners_enu_m for panel in record.site.panels]).reshape(-1, 4, 3)
+        panels = panels_by_place(splats["means"], corners_m - np.array(record.origin_enu_m))
     ids = PanelGlobalIds.of(record, source_ids)
     rows = np.argsort(panels, kind="stable").astype(np.int32)
     ends = np.searchsorted(panels[rows], np.arange(len(record.site.panels) + 1))
@@ -139,7 +145,10 @@ def put_together(scene: GsScene, path: Path) -> TrainedModel:
     for part in scene.auxiliary:
         # Reading gives arrays that nobody may write to, and weights are written to.
         tensors |= {name: torch.from_numpy(value.copy()) for name, value in part.tensors.items()}
-    return trained_of(scene.training, tensors, path)
+    trained = trained_of(scene.training, tensors, path)
+    if not trained.record.config.trained_by.knows_panels:
+        trained.model.splats.panels.fill_(NO_PANEL)
+    return trained
 
 
 def _named(record: ModelRecord) -> ModelRecord:

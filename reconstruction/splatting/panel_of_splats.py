@@ -13,6 +13,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from scipy import sparse
+from scipy.spatial import cKDTree
 from torch import Tensor
 
 from planning.progress import QUIET, Monitor
@@ -66,6 +67,34 @@ def assign_panels(
     found = np.where(is_seen, heaviest - 1, splats.panels.cpu().numpy())
     found = np.where(_is_on_pane(splats, found, corners_m), found, NO_PANEL)
     return torch.from_numpy(found.astype(np.int32)).to(splats.panels)
+
+
+def panels_by_place(means_m: NDArray[np.float32], corners_m: NDArray[np.float64]) -> NDArray[np.int32]:
+    """Panels on which splats lie, shape (n,); `NO_PANEL` where they lie on none, the nearest plane where on several.
+
+    For splats of which no photo tells, and that were never told of panels. A frame before a pane is taken for it.
+
+    Parameters
+    ----------
+    means_m
+        Shape (n, 3), in the frame of the corners.
+    corners_m
+        Of convex panels, one way around, shape (m, 4, 3).
+    """
+    found, nearest_m = np.full(len(means_m), NO_PANEL, np.int32), np.full(len(means_m), ON_PANE_M)
+    if not len(means_m) or not len(corners_m):
+        return found
+    middles, normals = corners_m.mean(axis=1), unit_normals(corners_m)
+    reach_m = np.linalg.norm(corners_m - middles[:, None], axis=2).max(axis=1) + ON_PANE_M
+    near = cKDTree(means_m).query_ball_point(middles, reach_m)
+    for number, (rows, corners, normal) in enumerate(zip(near, corners_m, normals, strict=True)):
+        rows = np.array(rows, int)
+        from_corners = means_m[rows, None].astype(float) - corners
+        off_m = np.abs(from_corners[:, 0] @ normal)
+        inwards = np.cross(normal, np.roll(corners, -1, axis=0) - corners)
+        lies = ((from_corners * inwards).sum(axis=2) >= 0.0).all(axis=1) & (off_m <= nearest_m[rows])
+        found[rows[lies]], nearest_m[rows[lies]] = number, off_m[lies]
+    return found
 
 
 def _weights(

@@ -26,7 +26,9 @@ def test_a_model_that_went_through_objects_and_files_is_the_same_bits(data_set, 
     model = trained
     if method != "reflight":
         model = train_model(data_set, config_of({"method": method}, replace(CONFIG, light="auto"), HERE))
-    write_scene(organised(model), tmp_path / "scene")
+    scene = organised(model)
+    assert all(element.stop > element.start for _, element in scene.elements)
+    write_scene(scene, tmp_path / "scene")
     back = put_together(read_scene(tmp_path / "scene"), HERE)
     before, after = tensors_of(model), tensors_of(back)
     assert before.keys() == after.keys()

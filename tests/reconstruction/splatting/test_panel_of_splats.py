@@ -3,8 +3,11 @@ import itertools
 import numpy as np
 import pytest
 import torch
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from reconstruction.splatting.panel_of_splats import assign_panels
+from reconstruction.splatting.panel_of_splats import ON_PANE_M, assign_panels, panels_by_place
 from reconstruction.splatting.rasteriser import rasterise
 from tests.reconstruction.splatting.learned_scenes import views_around, wall
 
@@ -79,3 +82,30 @@ def test_layers_of_another_size_or_site_are_wrong_calls(scene):
         assign_panels(splats, [(view, panels[1:])], CORNERS)
     with pytest.raises(ValueError, match="expected numbers below 3"):
         assign_panels(splats, [(view, panels)], CORNERS[:3])
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+def test_by_their_places_splats_are_on_the_panel_that_they_were_put_on(seed):
+    rng = np.random.default_rng(seed)
+    turn = Rotation.random(random_state=rng.integers(2**31)).as_matrix()
+    corners = (CORNERS[:, :: rng.choice([-1, 1])] @ turn.T) + rng.uniform(-50, 50, 3)
+    truth = rng.integers(0, len(corners), 60)
+    u, v = rng.uniform(0.02, 0.98, (2, 60, 1))
+    first, second, _, fourth = corners[truth].transpose(1, 0, 2)
+    normals = np.cross(second - first, fourth - first)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    off_m = rng.uniform(-2 * ON_PANE_M, 2 * ON_PANE_M, (60, 1))
+    means = first + u * (second - first) + v * (fourth - first) + off_m * normals
+    found = panels_by_place(means.astype(np.float32), corners)
+    clear = np.abs(np.abs(off_m[:, 0]) - ON_PANE_M) > 1e-3
+    expected = np.where(np.abs(off_m[:, 0]) < ON_PANE_M, truth, -1)
+    assert (found == expected)[clear].all()
+
+
+def test_by_their_places_splats_beside_all_panels_are_on_none_and_between_two_planes_on_the_nearer():
+    pane = CORNERS[:1]
+    behind = pane + np.array([0.0, 0.2, 0.0])
+    means = np.array([(-1.1, 0.05, 0), (-1.1, 0.18, 0), (-0.9, 0.0, 0), (-1.1, 0.0, 1.0)], np.float32)
+    assert panels_by_place(means, np.concatenate([pane, behind])).tolist() == [0, 1, -1, -1]
+    assert panels_by_place(means[:0], pane).shape == (0,)
+    assert panels_by_place(means, pane[:0]).tolist() == [-1] * 4
