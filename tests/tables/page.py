@@ -77,7 +77,7 @@ def _section(table: Table, scale: Scale, results: Sequence[Result], folder: Path
             yield from _held(table, scene, scale, results)
         picture = f"{table.number}-{scene}-{scale.name}.png"
         if (folder / picture).is_file():
-            yield f"![Table {table.number}, {scene}: photo, and the first seed of each]({PICTURES}/{picture})\n"
+            yield f"![Table {table.number}, {scene}: photo, and models of the first seed]({PICTURES}/{picture})\n"
 
 
 def _line(case: Case, scene: str, scale: Scale, results: Sequence[Result]) -> str:

@@ -18,6 +18,9 @@ WIDE_PX, LABEL_PX = 256, 18
 
 COLUMNS = 4
 
+LEAST_CASES = 2
+"""One alone compares nothing."""
+
 
 def picture_of(work: Path, scene: str, scale: Scale, case: Case) -> Path:
     """Where the view of a case goes, until all are drawn beside each other."""
@@ -25,13 +28,13 @@ def picture_of(work: Path, scene: str, scale: Scale, case: Case) -> Path:
 
 
 def draw(table: Table, scene: str, scale: Scale, truth: Path, work: Path, folder: Path) -> None:
-    """Write the picture of a table and scene, of the cases that were trained here; an older one stays if none was."""
+    """Write the picture of a table and scene, of the cases that were trained here; an older one stays for one alone."""
     parts = []
     for case in table.cases:
         path = picture_of(work, scene, scale, case)
         if path.is_file():
             parts.append(_labelled(_read(path), case.title))
-    if not parts:
+    if len(parts) < LEAST_CASES:
         return
     parts.insert(0, _labelled(_photo(truth), "photo"))
     blank = np.full_like(parts[0], 255)
