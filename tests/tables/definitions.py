@@ -156,8 +156,8 @@ def _shapes(scale: Scale) -> Table:
         "4",
         "Architecture of the Reflection MLP",
         "One factor of case 4 changed at a time. At this scale networks are smaller and orders lower than the paper's, "
-        "in the same time. Light is learned as the scale has it: longer, in larger batches, without decay, and with "
-        "larger steps beside splats than in the other tables, so case 4 is not their RefGlass-GS.",
+        "in the same time. Light is learned with the scale's settings and not with RefGlass-GS's own (at `small`: many "
+        "small batches, decay, a network of 6 x 128), so case 4 is not the RefGlass-GS of the other tables.",
         (UST,),
         cases,
         tuple(Above(cases[3].title, (each,), 0.0) for each in others),
