@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +41,13 @@ def n_gaussians(scene: GsScene) -> int:
 def are_discs(scene: GsScene) -> bool:
     """Whether Gaussians have two sizes."""
     return all(component.gaussians.values["log_scales"].shape[1] == FLAT for component in scene.components)
+
+
+def is_antialiased(scene: GsScene) -> bool:
+    """Whether what is drawn larger than it is has to be as much more transparent, as when it was learned."""
+    config = scene.training.get("config")
+    raster = config.get("raster") if isinstance(config, Mapping) else None
+    return isinstance(raster, Mapping) and raster.get("antialiased") is True
 
 
 def log_scales(ellipsoids: Ellipsoids) -> NDArray[np.float32]:

@@ -8,7 +8,7 @@ What stands before a panel is cut off; frames and walls between panels are in no
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from planning.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
+from reconstruction.exports.gaussian_blocks import is_antialiased
 from reconstruction.exports.glb import FLOAT, INDICES, UINT16, VERTICES, GlbBuffer, limits_of, write_glb
 from reconstruction.exports.gltf import component_extras, frame_of, scene_extras
 from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, attributes_of, plain
@@ -110,10 +111,11 @@ def write_mesh(
         raise InputError(f"{path}: not written: there are no panels; choose other components")
     views = [_view(scene, element, path, options) for element in elements]
     atlas = _packed(elements, views, path, options)
+    raster = RasterSettings(antialiased=is_antialiased(scene))
     buffer = GlbBuffer()
     images = [
         {"bufferView": buffer.add(content), "mimeType": "image/png", "name": f"panels {page + 1}"}
-        for page, content in enumerate(_pages(model, views, atlas, options, monitor))
+        for page, content in enumerate(_pages(model, views, atlas, options, raster, monitor))
     ]
     write_glb(path, _content(scene, views, atlas, images, attributes, buffer, path), buffer)
     return WrittenMesh(path, path.stat().st_size, len(elements), len(atlas.pages))
@@ -147,7 +149,12 @@ def _packed(elements: Sequence[GsElement], views: Sequence[PanelView], path: Pat
 
 
 def _pages(
-    model: SceneModel, views: Sequence[PanelView], atlas: Atlas, options: MeshOptions, monitor: Monitor
+    model: SceneModel,
+    views: Sequence[PanelView],
+    atlas: Atlas,
+    options: MeshOptions,
+    raster: RasterSettings,
+    monitor: Monitor,
 ) -> list[bytes]:
     """PNG files; one page at a time is in memory."""
     found, done = [], 0
@@ -158,15 +165,15 @@ def _pages(
                 monitor.report("rendering panels", done, len(views))
                 rows = slice(place.y_px, place.y_px + each.view.height_px)
                 columns = slice(place.x_px, place.x_px + each.view.width_px)
-                picture[rows, columns] = _picture(model, each, options)
+                picture[rows, columns] = _picture(model, each, options, raster)
                 done += 1
         found.append(cv2.imencode(".png", picture[..., ::-1])[1].tobytes())
     return found
 
 
-def _picture(model: SceneModel, each: PanelView, options: MeshOptions) -> NDArray[np.uint8]:
+def _picture(model: SceneModel, each: PanelView, options: MeshOptions, raster: RasterSettings) -> NDArray[np.uint8]:
     """Display values, shape (h, w, 3), red first."""
-    settings = RasterSettings(near_m=max(0.5 * each.distance_m, each.distance_m - options.in_front_m))
+    settings = replace(raster, near_m=max(0.5 * each.distance_m, each.distance_m - options.in_front_m))
     display = render_view(model, each.view, settings=settings).display
     return np.asarray(np.rint(255.0 * np.nan_to_num(display)), np.uint8)
 

@@ -16,7 +16,14 @@ from planning.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import LEAST_SEEN, Compressed
 from reconstruction.exports.ellipsoids import Ellipsoids
-from reconstruction.exports.gaussian_blocks import are_discs, blocks_of, expect_some, log_scales, n_gaussians
+from reconstruction.exports.gaussian_blocks import (
+    are_discs,
+    blocks_of,
+    expect_some,
+    is_antialiased,
+    log_scales,
+    n_gaussians,
+)
 from reconstruction.exports.turned_axes import Axes
 from reconstruction.objects.gs_scene import GsScene
 from reconstruction.splatting.ply import MEAN_COLOUR, NORMAL, PANEL, PLACE, ROTATION, SIZES, Kind
@@ -107,7 +114,8 @@ def _tables(blocks: Iterator[Ellipsoids], row: np.dtype[Any], kind: Kind, degree
 
 
 def _comments(scene: GsScene, kind: Kind, axes: Axes) -> list[str]:
-    lines = [f"SplatRenderMode: {kind}"] if kind == "2dgs" else []
+    mode = "2dgs" if kind == "2dgs" else "mip" if is_antialiased(scene) else ""
+    lines = [f"SplatRenderMode: {mode}"] if mode else []
     lines += [f"site: {' '.join(scene.name.split())}", f"axes: {axes}"]
     lines += ["origin of the places in the site's east, north, up, metres: " + _numbers(scene.origin_enu_m)]
     if scene.origin is not None:

@@ -26,6 +26,7 @@ from reconstruction.exports.gaussian_blocks import (
     are_discs,
     blocks_of,
     expect_some,
+    is_antialiased,
     log_scales,
     morton_order,
     n_gaussians,
@@ -99,7 +100,10 @@ def write_sog(
     if max(image_size(n)) > LONGEST_SIDE_PX:
         raise InputError(f"{path}: not written: {n} Gaussians are more than fit into an image; write single facades")
     meta: dict[str, Any] = {"version": VERSION, "asset": _asset(scene, axes), "count": n}
-    if are_discs(scene):
+    # One of both: who knows of antialiasing draws the third size, which is next to nothing, too.
+    if is_antialiased(scene):
+        meta["model"] = "antialiased"
+    elif are_discs(scene):
         meta["model"] = "2dgs"
     images: dict[str, bytes] = {}
     step = _put_means(found, meta, images)

@@ -18,7 +18,14 @@ from planning.json_file import write_atomically
 from planning.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
-from reconstruction.exports.gaussian_blocks import are_discs, blocks_of, expect_some, morton_order, n_gaussians
+from reconstruction.exports.gaussian_blocks import (
+    are_discs,
+    blocks_of,
+    expect_some,
+    is_antialiased,
+    morton_order,
+    n_gaussians,
+)
 from reconstruction.exports.spz_packing import STREAMS, fraction_bits, n_resized, packed, sizes_of
 from reconstruction.exports.turned_axes import Axes
 from reconstruction.objects.gs_scene import GsScene
@@ -30,6 +37,9 @@ VERSION = 3
 
 HEADER = struct.Struct("<4sIIBBBB")
 """Magic, version, count, degree, bits after the binary point, flags, reserved."""
+
+ANTIALIASED = 1
+"""Of the flags."""
 
 GZIP = 31
 """zlib's name for a window of 32 KiB in a gzip stream."""
@@ -98,7 +108,7 @@ def spz_of(
             streams[name][rows] = values
         resized += n_resized(block, n_sizes)
         start += len(block)
-    header = HEADER.pack(MAGIC, VERSION, n, compression.degree, fraction, 0, 0)
+    header = HEADER.pack(MAGIC, VERSION, n, compression.degree, fraction, ANTIALIASED * is_antialiased(scene), 0)
     content = _gzipped([header, *(streams[name].data.cast("B") for name in STREAMS if streams[name].size)], monitor)
     return content, Compressed(path, len(content), n, n_gaussians(scene) - n, resized, 2.0 ** -(fraction + 1))
 

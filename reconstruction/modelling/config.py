@@ -25,6 +25,8 @@ Device = Literal["cpu", "cuda"]
 
 DensifyWish = Literal["adaptive", "mcmc", "none"]
 
+ANTIALIASED = RasterSettings(antialiased=True)
+
 
 @dataclass(frozen=True, slots=True)
 class LossWeights:
@@ -173,7 +175,8 @@ class TrainConfig:
     reduce
         Pixels of a photo, along each side, that one is made of before it is learned from.
     raster
-        Settings of the rasteriser, but for its threads.
+        Settings of the rasteriser, but for its threads. Splats are antialiased, other than in 2DGS and 3DGS: frames are
+        finer than a pixel in many photos (`python -m tests.tables --only 3b`).
     held_out
         Share of the views that are kept for scoring, chosen by their names and `seed`.
     memory_bytes
@@ -204,7 +207,7 @@ class TrainConfig:
     degree_every: float = 0.0
     window_px: int = 256 * 192
     reduce: int = 1
-    raster: RasterSettings = field(default_factory=RasterSettings)
+    raster: RasterSettings = ANTIALIASED
     losses: LossWeights = field(default_factory=LossWeights)
     rates: Rates = field(default_factory=Rates)
     held_out: float = 0.15

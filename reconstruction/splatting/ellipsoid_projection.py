@@ -51,14 +51,21 @@ def project_ellipsoids(means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: 
     """
     camera = view.cam_from_world.to(means)
     x, y, z = (means @ camera[:3, :3].T + camera[:3, 3]).unbind(-1)
+    row_x, row_y = rows_of(means, quats_wxyz, scales, view)
+    centres = torch.stack([view.fx_px * x / z + view.cx_px, view.fy_px * y / z + view.cy_px], dim=-1)
+    return Projected(centres, z, _root(row_x, row_y, blur_px), torch.zeros_like(centres))
+
+
+def rows_of(means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View) -> tuple[Tensor, Tensor]:
+    """The two rows of J W R S, each shape (n, 3), px: without blur, Sigma' is what they have with each other."""
+    camera = view.cam_from_world.to(means)
+    x, y, z = (means @ camera[:3, :3].T + camera[:3, 3]).unbind(-1)
     axes = camera[:3, :3] @ rotations(quats_wxyz) * scales[:, None, :]
     left, right, top, bottom = slope_limits(view)
     across, down = (x / z).clamp(left, right), (y / z).clamp(top, bottom)
-    # Rows of J W R S: Sigma' is what they have with each other.
     row_x = (view.fx_px / z)[:, None] * (axes[:, 0] - across[:, None] * axes[:, 2])
     row_y = (view.fy_px / z)[:, None] * (axes[:, 1] - down[:, None] * axes[:, 2])
-    centres = torch.stack([view.fx_px * x / z + view.cx_px, view.fy_px * y / z + view.cy_px], dim=-1)
-    return Projected(centres, z, _root(row_x, row_y, blur_px), torch.zeros_like(centres))
+    return row_x, row_y
 
 
 def _root(row_x: Tensor, row_y: Tensor, blur_px: float) -> Tensor:

@@ -22,6 +22,7 @@ import torch
 from torch import Tensor
 
 from planning.errors import InputError
+from reconstruction.splatting.footprints import shown_opacities
 from reconstruction.splatting.projection import depths_of, rotations
 from reconstruction.splatting.raster import SOLID, Raster, RasterSettings
 from reconstruction.splatting.views import View
@@ -109,6 +110,7 @@ def rasterise_gsplat(
         depths = plane_channels(means, quats_wxyz, view)
     if screen_offsets is not None:
         projected = _moved(projected, screen_offsets)
+    opacities = _shown(means, quats_wxyz, scales, opacities, view, settings)
     picture, alphas = _blend(torch.cat([features, depths], dim=1), opacities, projected, view)
     fixed = projected.detached()
 
@@ -124,6 +126,16 @@ def rasterise_gsplat(
         accumulated_weights(again, means),
         projected.radii_px[0].amax(dim=-1).to(means),
     )
+
+
+def _shown(
+    means: Tensor, quats_wxyz: Tensor, scales: Tensor, opacities: Tensor, view: View, settings: RasterSettings
+) -> Tensor:
+    """Opacities that splats are drawn with; in float64, where nothing of what is before the camera overflows."""
+    rows = torch.nonzero(depths_of(means.detach(), view) > settings.near_m).squeeze(-1)
+    shapes = means[rows].double(), quats_wxyz[rows].double(), scales[rows].double()
+    shown = shown_opacities(*shapes, opacities[rows].double(), view, settings)
+    return opacities.index_put((rows,), shown.to(opacities))
 
 
 def _projected_discs(

@@ -103,8 +103,9 @@ def _projected(
     found = np.empty((n, N_GEOMETRY), np.float32), np.empty(n), np.empty((n, 4), np.int32), np.empty(n, np.float32)
     shared = means, quats, scales, opacities, offsets, camera, lens, size
     least_change = settings.least_depth_change(min(view.fx_px, view.fy_px))
-    of_discs = np.array([settings.near_m, settings.min_alpha, settings.low_pass_px, settings.reach, least_change])
-    of_ellipsoids = np.array([settings.near_m, settings.min_alpha, settings.blur_px])
+    both = settings.near_m, settings.min_alpha
+    of_discs = np.array([*both, settings.low_pass_px, settings.reach, least_change, _over_smallest(settings)])
+    of_ellipsoids = np.array([*both, settings.blur_px, settings.antialiased])
     slopes = np.array(slope_limits(view))
 
     def project(start: int, stop: int) -> None:
@@ -127,17 +128,24 @@ def _take_back(
     found: list[Floats],
 ) -> None:
     """From the slots to gradients of the inputs, which begin as 0."""
-    means, quats, scales = inputs[:3]
+    means, quats, scales, opacities = inputs[:4]
     (camera, lens), slopes = _camera_of(view), np.array(slope_limits(view))
+    shapes, least = (means, quats, scales, opacities, camera, lens), settings.min_alpha
 
     def of_splats(start: int, stop: int) -> None:
         places = tiles.slots, tiles.places, slots, start, stop
         if scales.shape[1] == SOLID:
-            gradients_of_ellipsoids(means, quats, scales, camera, lens, settings.blur_px, slopes, *places, *found)
+            blur_px, antialiased = settings.blur_px, settings.antialiased
+            gradients_of_ellipsoids(*shapes, least, blur_px, antialiased, slopes, *places, *found)
         else:
-            gradients_of_splats(means, quats, scales, geometry, camera, lens, *places, *found)
+            gradients_of_splats(*shapes, geometry, least, _over_smallest(settings), *places, *found)
 
-    run_on_threads(of_splats, chunks(len(means), SPLATS_AT_ONCE), settings.threads)
+    run_on_threads(of_splats, chunks(len(scales), SPLATS_AT_ONCE), settings.threads)
+
+
+def _over_smallest(settings: RasterSettings) -> float:
+    """1 / the area of the low-pass filter, by standard deviations; 0 where discs stay as opaque as they are."""
+    return 1.0 / settings.low_pass_px**2 if settings.antialiased else 0.0
 
 
 def _camera_of(view: View) -> tuple[Array, Array]:

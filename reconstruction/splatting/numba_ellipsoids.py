@@ -33,6 +33,8 @@ from reconstruction.splatting.numba_projection import (
     outline_of,
     place_disc,
     rotation_columns,
+    shown_opacity,
+    slopes_of_shown,
 )
 from reconstruction.splatting.numba_splat_gradients import (
     CENTRE_X,
@@ -45,6 +47,9 @@ from reconstruction.splatting.numba_splat_gradients import (
 
 NO_DOT = 1e30
 """1 / sigma^2 of a low-pass filter that never counts."""
+
+LEAST_SQUARE = 1e-60
+"""Of a picture's area without blur, px^4: far below what is ever drawn."""
 
 Axes = tuple[Triple, Triple, Triple]
 Slopes = tuple[float, float, bool, bool]
@@ -128,11 +133,12 @@ def project_ellipsoids(
     scales
         Shape (n, 3).
     limits
-        Nearest depth, least alpha, and the blur's standard deviation.
+        Nearest depth, least alpha, the blur's standard deviation, and 1 where what the blur makes larger is as much
+        more transparent.
     slope_limits
         Of x / z and y / z in J, shape (4,).
     """
-    near_m, least, blur2 = limits[0], limits[1], limits[2] * limits[2]
+    near_m, least, blur2, antialiased = limits[0], limits[1], limits[2] * limits[2], limits[3] > 0.0
     for i in range(start, stop):
         boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = 0, 0, 0, 0
         radii[i] = 0.0
@@ -150,14 +156,16 @@ def project_ellipsoids(
             cx, cy = cx + offsets[i, 0], cy + offsets[i, 1]
         if max(abs(cx), abs(cy)) > WIDEST_PX:
             continue
-        xx, xy, _, determinant = _covariance(row_x, row_y, blur2)
+        xx, xy, across, determinant = _covariance(row_x, row_y, blur2)
+        share = math.sqrt(_dot(across, across) / determinant) if antialiased else 1.0
+        shown = shown_opacity(opacity, share, least)
         j_xu, root = math.sqrt(xx), math.sqrt(determinant)
         j_yu, j_yv = xy / j_xu, root / j_xu
-        reach = math.sqrt(max(2.0 * math.log(opacity / least), 0.0))
+        reach = math.sqrt(max(2.0 * math.log(shown / least), 0.0))
         box, outline = outline_of((j_xu, 0.0, j_yu, j_yv), (0.0, 0.0), reach)
         if max(box[1] - box[0], box[3] - box[2]) >= LARGEST_OUTLINE_PX:
             outline = (0.0, 0.0, 0.0, WIDEST_PX, 0.0)
-        if not place_disc((cx, cy, z), box, outline, 0.0, opacity, size, i, geometry, depths, boxes, radii):
+        if not place_disc((cx, cy, z), box, outline, 0.0, shown, size, i, geometry, depths, boxes, radii):
             continue
         geometry[i, J_XU], geometry[i, J_XV] = 1.0 / j_yv, 0.0
         geometry[i, J_YU], geometry[i, J_YV] = j_yu / root, 1.0 / j_xu
@@ -165,27 +173,32 @@ def project_ellipsoids(
 
 
 @inline
-def _back_through_covariance(row_x: Triple, row_y: Triple, blur2: float, g: Array) -> tuple[Triple, Triple]:
-    """From the gradients of the geometry to those of the two rows.
+def _back_through_covariance(
+    row_x: Triple, row_y: Triple, blur2: float, g: Array, g_share: float
+) -> tuple[Triple, Triple]:
+    """From the gradients of the geometry, and of the share of what is drawn that is its own, to those of the two rows.
 
-    The geometry is sqrt(xx / d), xy / sqrt(xx d) and 1 / sqrt(xx), d the determinant.
+    The geometry is sqrt(xx / d), xy / sqrt(xx d) and 1 / sqrt(xx), d the determinant; the share is |a x b| / sqrt(d).
     """
     xx, xy, across, determinant = _covariance(row_x, row_y, blur2)
+    square = max(_dot(across, across), LEAST_SQUARE)
+    g_square = 0.5 * g_share / math.sqrt(square * determinant)
     over_xx, over_d = 1.0 / xx, 1.0 / determinant
     by_xu, by_yv = g[J_XU] * math.sqrt(xx * over_d), g[J_YV] * math.sqrt(over_xx)
     g_xy = g[J_YU] * math.sqrt(over_xx * over_d)
     g_xx = 0.5 * over_xx * (by_xu - by_yv - g_xy * xy)
-    g_d = -0.5 * over_d * (by_xu + g_xy * xy)
+    g_d = -0.5 * over_d * (by_xu + g_xy * xy + g_share * math.sqrt(square * over_d))
+    g_cross = g_d + g_square
     by_x, by_y = _cross(row_y, across), _cross(across, row_x)
     g_row_x = (
-        2.0 * (g_xx * row_x[0] + g_d * (by_x[0] + blur2 * row_x[0])) + g_xy * row_y[0],
-        2.0 * (g_xx * row_x[1] + g_d * (by_x[1] + blur2 * row_x[1])) + g_xy * row_y[1],
-        2.0 * (g_xx * row_x[2] + g_d * (by_x[2] + blur2 * row_x[2])) + g_xy * row_y[2],
+        2.0 * ((g_xx + g_d * blur2) * row_x[0] + g_cross * by_x[0]) + g_xy * row_y[0],
+        2.0 * ((g_xx + g_d * blur2) * row_x[1] + g_cross * by_x[1]) + g_xy * row_y[1],
+        2.0 * ((g_xx + g_d * blur2) * row_x[2] + g_cross * by_x[2]) + g_xy * row_y[2],
     )
     g_row_y = (
-        2.0 * g_d * (by_y[0] + blur2 * row_y[0]) + g_xy * row_x[0],
-        2.0 * g_d * (by_y[1] + blur2 * row_y[1]) + g_xy * row_x[1],
-        2.0 * g_d * (by_y[2] + blur2 * row_y[2]) + g_xy * row_x[2],
+        2.0 * (g_d * blur2 * row_y[0] + g_cross * by_y[0]) + g_xy * row_x[0],
+        2.0 * (g_d * blur2 * row_y[1] + g_cross * by_y[1]) + g_xy * row_x[1],
+        2.0 * (g_d * blur2 * row_y[2] + g_cross * by_y[2]) + g_xy * row_x[2],
     )
     return g_row_x, g_row_y
 
@@ -207,9 +220,12 @@ def gradients_of_ellipsoids(
     means: Floats,
     quats_wxyz: Floats,
     scales: Floats,
+    opacities: Floats,
     camera: Array,
     lens: Array,
+    least: float,
     blur_px: float,
+    antialiased: bool,
     slope_limits: Array,
     firsts: NDArray[np.int64],
     places: NDArray[np.int32],
@@ -237,7 +253,13 @@ def gradients_of_ellipsoids(
         g_depth, g_opacities[i] = np.float64(sums[width - 2]), sums[width - 1]
         g_offsets[i, 0], g_offsets[i, 1] = g[CENTRE_X], g[CENTRE_Y]
         (x, y, z), quat, axes, slopes, row_x, row_y = _see(means, quats_wxyz, scales, camera, lens, slope_limits, i)
-        g_row_x, g_row_y = _back_through_covariance(row_x, row_y, blur_px * blur_px, g)
+        _, _, across, determinant = _covariance(row_x, row_y, blur_px * blur_px)
+        share = math.sqrt(_dot(across, across) / determinant) if antialiased else 1.0
+        by_opacity, by_share = slopes_of_shown(opacities[i], share, least)
+        by_share *= antialiased
+        g_opacities[i] *= by_opacity
+        g_share = np.float64(sums[width - 1]) * by_share
+        g_row_x, g_row_y = _back_through_covariance(row_x, row_y, blur_px * blur_px, g, g_share)
         over_z = 1.0 / z
         s_1, s_2, s_3 = scales[i, 0] * over_z, scales[i, 1] * over_z, scales[i, 2] * over_z
         along_1, across_1, down_1, g_1 = _back_to_axis(axes[0], slopes, lens, s_1, g_row_x[0], g_row_y[0])

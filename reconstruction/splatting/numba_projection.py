@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from planning.jit import inline, kernel
 from reconstruction.splatting.projection import LEAST_NORM
+from reconstruction.splatting.raster import FAINTEST
 from reconstruction.splatting.torch_twin import LEAST_AREA_PX2, LIMITS_WIDENED, MOST_CHANGE
 
 Array = NDArray[np.float64]
@@ -148,6 +149,26 @@ def outline_of(jacobian: Four, slopes: Pair, reach: float) -> tuple[Four, Outlin
 
 
 @inline
+def disc_share(area: float, over_smallest: float) -> float:
+    """Of what is drawn that is the disc's own, see `footprints`; 1 where `over_smallest` is 0."""
+    return min(abs(area) * over_smallest, 1.0) if over_smallest > 0.0 else 1.0
+
+
+@inline
+def shown_opacity(opacity: float, share: float, least: float) -> float:
+    """That a splat is drawn with, by the opacity below which it does not count."""
+    return min(opacity, max(opacity * share, FAINTEST * least))
+
+
+@inline
+def slopes_of_shown(opacity: float, share: float, least: float) -> Pair:
+    """Changes of `shown_opacity` with the opacity and with the share."""
+    if opacity * share > FAINTEST * least:
+        return share, opacity
+    return (1.0 if opacity <= FAINTEST * least else 0.0), 0.0
+
+
+@inline
 def _first_pixel(low: float, size: int) -> int:
     """The first pixel, of `size`, whose middle is not before a place."""
     return max(math.ceil(min(max(low - 0.5 - SLACK_PX, -1.0), size + 1.0)), 0)
@@ -230,13 +251,14 @@ def project_splats(
     camera, lens, size
         Model's frame to camera axes, shape (4, 4); fx, fy, cx, cy; width, height.
     limits
-        Nearest depth, least alpha, standard deviation of the low-pass filter, reach and least change of depth.
+        Nearest depth, least alpha, standard deviation of the low-pass filter, reach, least change of depth, and 1 /
+        the disc's area, standard deviations, below which it is the more transparent; 0 where it never is.
     geometry, depths
         Shapes (n, 24) and (n,).
     boxes
         Half-open ranges of columns and rows, shape (n, 4): left, right, top, bottom.
     """
-    near_m, least, low_pass, far_reach, least_change = limits
+    near_m, least, low_pass, far_reach, least_change, over_smallest = limits
     for i in range(start, stop):
         boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = 0, 0, 0, 0
         radii[i] = 0.0
@@ -253,9 +275,10 @@ def project_splats(
             cx, cy = cx + offsets[i, 0], cy + offsets[i, 1]
         j_xu, j_xv, j_yu, j_yv = jacobian
         area = j_xu * j_yv - j_xv * j_yu
+        shown = shown_opacity(opacity, disc_share(area, over_smallest), least)
         has_disc = abs(area) >= LEAST_AREA_PX2
         steepness = math.sqrt(slopes[0] * slopes[0] + slopes[1] * slopes[1])
-        reach = math.sqrt(max(2.0 * math.log(opacity / least), 0.0))
+        reach = math.sqrt(max(2.0 * math.log(shown / least), 0.0))
         box, outline = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, WIDEST_PX, 0.0, 0.0)
         if has_disc:
             outline = (0.0, 0.0, 0.0, WIDEST_PX, 0.0)
@@ -267,7 +290,7 @@ def project_splats(
                     outline = exact
         dot = low_pass * reach
         box = (min(box[0], -dot), max(box[1], dot), min(box[2], -dot), max(box[3], dot))
-        if not place_disc((cx, cy, z), box, outline, dot, opacity, size, i, geometry, depths, boxes, radii):
+        if not place_disc((cx, cy, z), box, outline, dot, shown, size, i, geometry, depths, boxes, radii):
             continue
         change = min(max(far_reach * steepness, least_change) * LIMITS_WIDENED, MOST_CHANGE)
         nearest = z / near_m - 1.0

@@ -5,6 +5,8 @@ What the squares found is added up splat by splat in a fixed order; the formulas
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,7 +26,9 @@ from reconstruction.splatting.numba_projection import (
     Pair,
     Quat,
     Triple,
+    disc_share,
     see,
+    slopes_of_shown,
 )
 
 CENTRE_X, CENTRE_Y, OF_FEATURES = 6, 7, 8
@@ -101,9 +105,12 @@ def gradients_of_splats(
     means: Floats,
     quats_wxyz: Floats,
     scales: Floats,
-    geometry: Floats,
+    opacities: Floats,
     camera: Array,
     lens: Array,
+    geometry: Floats,
+    least: float,
+    over_smallest: float,
     firsts: NDArray[np.int64],
     places: NDArray[np.int32],
     slots: Floats,
@@ -116,7 +123,13 @@ def gradients_of_splats(
     g_features: Floats,
     g_offsets: Floats,
 ) -> None:
-    """Add up the slots of splats `start` to `stop`, and take them back to the parameters; the last six begin as 0."""
+    """Add up the slots of splats `start` to `stop`, and take them back to the parameters; the last six begin as 0.
+
+    Parameters
+    ----------
+    least, over_smallest
+        The least alpha, and the last of `project_splats`' limits.
+    """
     n_features, width = g_features.shape[1], slots.shape[1]
     sums, g = np.empty(width, np.float32), np.empty(N_LANES)
     for i in range(start, stop):
@@ -133,6 +146,18 @@ def gradients_of_splats(
         g_jacobian, g_slopes = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0)
         if geometry[i, J_XU] != EDGE_ON_JACOBIAN:
             g_jacobian, g_slopes = _back_through_disc(jacobian, (q_u, q_v), g)
+        area = jacobian[0] * jacobian[3] - jacobian[1] * jacobian[2]
+        share = disc_share(area, over_smallest)
+        by_opacity, by_share = slopes_of_shown(opacities[i], share, least)
+        g_opacities[i] *= by_opacity
+        if share < 1.0:
+            g_area = np.float64(sums[width - 1]) * by_share * math.copysign(over_smallest, area)
+            g_jacobian = (
+                g_jacobian[0] + g_area * jacobian[3],
+                g_jacobian[1] - g_area * jacobian[2],
+                g_jacobian[2] - g_area * jacobian[1],
+                g_jacobian[3] + g_area * jacobian[0],
+            )
         # x / z and y / z appear in the middle's pixel and in the Jacobian; the rest is divided by z.
         over_z = 1.0 / z
         ux, vx = g_jacobian[0] * lens[0], g_jacobian[1] * lens[0]

@@ -13,6 +13,9 @@ FLAT_ENOUGH_RAD = math.radians(80.0)
 FLAT, SOLID = 2, 3
 """Sizes of a disc and of an ellipsoid."""
 
+FAINTEST = 2.0
+"""Times `min_alpha`: below that itself, surfaces of small splats would vanish from afar."""
+
 LEAST_ALPHA = 1e-4
 """Of `min_alpha`: as far as the compiled exponential reaches."""
 
@@ -28,6 +31,9 @@ class RasterSettings:
         al., 2024, Eq. 11) has sqrt(1/2).
     blur_px
         Standard deviation of what ellipsoids are blurred by in the picture; 3DGS (Kerbl et al., 2023) has sqrt(0.3).
+    antialiased
+        Whether what is drawn larger than it is, by the low-pass filter or the blur, is as much more transparent; see
+        `shown_opacities`. In 2DGS and 3DGS it is not, and what is finer than a pixel grows with its distance.
     near_m
         Splats whose middle is nearer than this, along the optical axis, are not drawn, and what is nearer of the others
         is cut off.
@@ -47,6 +53,7 @@ class RasterSettings:
 
     low_pass_px: float = math.sqrt(0.5)
     blur_px: float = math.sqrt(0.3)
+    antialiased: bool = False
     near_m: float = 0.1
     min_alpha: float = 1.0 / 255.0
     max_alpha: float = 0.99
@@ -69,6 +76,11 @@ class RasterSettings:
             raise ValueError(f"tile_px: expected 8, 16, ... 64, got {self.tile_px}")
         if self.threads < 0:
             raise ValueError(f"threads: expected 0 or more, got {self.threads}")
+
+    @property
+    def faintest(self) -> float:
+        """Opacity that antialiasing leaves at least, unless there was less before."""
+        return FAINTEST * self.min_alpha
 
     @property
     def reach(self) -> float:

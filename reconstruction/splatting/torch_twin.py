@@ -11,6 +11,7 @@ import torch
 from torch import Tensor
 
 from reconstruction.splatting.ellipsoid_projection import project_ellipsoids
+from reconstruction.splatting.footprints import shown_opacities
 from reconstruction.splatting.projection import Projected, depths_of, project
 from reconstruction.splatting.raster import SOLID, Raster, RasterSettings
 from reconstruction.splatting.views import View
@@ -49,6 +50,7 @@ def rasterise_torch(
     is_solid = scales.shape[1] == SOLID
     shapes = means[drawn], quats_wxyz[drawn], scales[drawn]
     projected = project_ellipsoids(*shapes, view, settings.blur_px) if is_solid else project(*shapes, view)
+    shown = shown_opacities(*shapes, opacities[drawn], view, settings)
     if screen_offsets is not None:
         shifted = projected.centres_px + screen_offsets[drawn].to(means.dtype)
         projected = Projected(shifted, projected.depths_m, projected.jacobians_px, projected.slopes)
@@ -59,9 +61,9 @@ def rasterise_torch(
     votes: dict[int, Tensor] = {}
     for place, index in enumerate(drawn.tolist()):
         if is_solid:
-            image = _ellipsoid_image(projected, place, opacities[index], x, y, settings)
+            image = _ellipsoid_image(projected, place, shown[place], x, y, settings)
         else:
-            image = _splat_image(projected, place, opacities[index], x, y, min(view.fx_px, view.fy_px), settings)
+            image = _splat_image(projected, place, shown[place], x, y, min(view.fx_px, view.fy_px), settings)
         is_open = through.detach() >= settings.min_transmittance
         alpha = torch.where(is_open, image.alpha, torch.zeros_like(x))
         weight = through * alpha

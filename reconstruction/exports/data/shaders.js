@@ -80,6 +80,7 @@ const SPLAT_VERTEX = `${CAMERA}${LIGHT}
 precision highp usampler2D;
 uniform usampler2D uData;
 uniform sampler2D uColours;
+uniform bool uAntialiased; // what the low-pass makes larger is as much more transparent (Yu et al., 2024)
 uniform float uBefore;    // above 0: of what lies on no pane and before this depth, how much it hides
 layout(location = 0) in uint aIndex;
 flat out vec4 vColour;
@@ -114,12 +115,16 @@ void main() {
   float largest = 3.4 * (uFocal / p.z * max(sizes.x, max(sizes.y, sizes.z)) * (1.0 + length(limit)) + 1.0);
   if (any(greaterThan(abs(uFocal * p.xy / p.z), 0.5 * uSize + largest))) return;
   vec2 tangent = clamp(p.xy / p.z, -limit, limit);
-  mat2 spread = mat2(0.3, 0.0, 0.0, 0.3);
+  mat2 spread = mat2(0.0);
   for (int i = 0; i < 3; i++) {
     vec3 c = sizes[i] * (axes[i] * uCam);
     vec2 t = uFocal / p.z * (c.xy - tangent * c.z);
     spread += outerProduct(t, t);
   }
+  float sharp = determinant(spread);
+  spread += mat2(0.3, 0.0, 0.0, 0.3);
+  float share = uAntialiased ? sqrt(clamp(sharp / determinant(spread), 0.0, 1.0)) : 1.0;
+  opacity = min(opacity, max(opacity * share, 2.0 / 255.0)); // surfaces of small ones do not vanish from afar
   float middle = 0.5 * (spread[0][0] + spread[1][1]);
   float half_ = 0.5 * (spread[0][0] - spread[1][1]);
   float far = sqrt(half_ * half_ + spread[0][1] * spread[0][1]);
