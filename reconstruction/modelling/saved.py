@@ -110,12 +110,14 @@ def save_model(trained: TrainedModel, folder: Path) -> None:
 
 
 def _comments(record: ModelRecord) -> list[str]:
-    """What a PLY file says about where it belongs."""
-    origin = record.site.origin
+    """What a PLY file says about how it is to be drawn, and about where it belongs."""
+    config, origin = record.config, record.site.origin
+    is_mip = config.raster.antialiased and config.trained_by.primitive == "ellipsoids"
+    lines = ["SplatRenderMode: mip"] * is_mip + [f"site: {record.site.name}"]
     if origin is None:
-        return [f"site: {record.site.name}"]
+        return lines
     place = f"{origin.lat_deg!r} {origin.lon_deg!r} {origin.ellipsoid_height_m!r}"
-    return [f"site: {record.site.name}", f"site origin, WGS 84 lat lon ellipsoid height: {place}"]
+    return [*lines, f"site origin, WGS 84 lat lon ellipsoid height: {place}"]
 
 
 def read_model(folder: Path) -> TrainedModel:

@@ -12,6 +12,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from reconstruction.modelling.config import ANTIALIASED
 from reconstruction.modelling.model import SceneModel
 from reconstruction.modelling.render import render_view
 from reconstruction.reflections.config import ReflectionConfig
@@ -106,7 +107,7 @@ def picture(model: SceneModel, width: int) -> NDArray[np.float32]:
     from_world[:3, :3] = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
     from_world[:3, 3] = -from_world[:3, :3] @ (0.5 * WALL_M[0], -65.0, 0.45 * WALL_M[1])
     view = View(width, height, focal, focal, width / 2, height / 2, torch.tensor(from_world))
-    return render_view(model, view).display
+    return render_view(model, view, settings=ANTIALIASED).display
 
 
 def _least_s(model: SceneModel, width: int) -> float:

@@ -25,7 +25,7 @@ from reconstruction.exports.sog import write_sog
 from reconstruction.exports.sog_reading import read_sog
 from reconstruction.exports.spz import write_spz
 from reconstruction.exports.spz_reading import read_spz
-from reconstruction.modelling.config import TrainConfig
+from reconstruction.modelling.config import ANTIALIASED, TrainConfig
 from reconstruction.modelling.model import SceneModel
 from reconstruction.modelling.render import render_view
 from reconstruction.modelling.saved import TrainedModel
@@ -144,7 +144,7 @@ def _picking(trained: TrainedModel, source: PhotoSet) -> Row:
         )
         straight = replace(photo, intrinsics=photo.intrinsics.straight())
         view = View.of(straight, np.asarray(trained.record.origin_enu_m))
-        depth = render_view(trained.model, view, ("depth",)).layers["depth"]
+        depth = render_view(trained.model, view, ("depth",), settings=trained.record.config.raster).layers["depth"]
         found, is_glass = panel_map(quads, straight, depth), glass > 0
         n_right += int((found[is_glass] == truth[is_glass].astype(int) - 1).sum())
         n_glass += int(is_glass.sum())
@@ -170,7 +170,7 @@ def pictures(ellipsoids: Ellipsoids, model: SceneModel, views: Sequence[View]) -
     found = []
     for view in views:
         colours = light_of_display(display_colours(means, sh, view.position_m, 3))
-        raster = rasterise(means, quats, scales, opacities, colours, view)
+        raster = rasterise(means, quats, scales, opacities, colours, view, settings=ANTIALIASED)
         light = raster.features + model.sky.behind(view.directions(), raster.alphas)
         found.append(display_from_linear(light).clamp(0.0, 1.0).numpy())
     return np.stack(found)

@@ -145,4 +145,5 @@ def shown_view(trained: TrainedModel, source: PhotoSet) -> bytes:
     photo = shown_photo(source)
     view = View.of(replace(photo, intrinsics=photo.intrinsics.straight()), trained.model.origin_enu_m)
     gain = source.exposure / trained.record.exposure * source.own_exposures.get(photo.name, 1.0)
-    return png_of(np.round(255.0 * render_view(trained.model, view, (), gain).display).astype(np.uint8))
+    found = render_view(trained.model, view, (), gain, trained.record.config.raster)
+    return png_of(np.round(255.0 * found.display).astype(np.uint8))

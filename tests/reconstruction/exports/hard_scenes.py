@@ -1,5 +1,7 @@
 """Scenes that formats may stumble over, and what several tests of formats ask."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from planning.errors import OperationCancelled
@@ -16,6 +18,11 @@ def scene_with(n=40, **columns):
         for component in scene.components:
             component.gaussians.values[name][:] = value
     return scene
+
+
+def antialiased(scene, is_on=True):
+    """The scene, as if it had been learned so."""
+    return replace(scene, training={**scene.training, "config": {"raster": {"antialiased": is_on}}})
 
 
 def spread(scene, furthest_m, seed=0):

@@ -9,7 +9,7 @@ from reconstruction.exports.ply_export import write_ply
 from reconstruction.exports.turned_axes import turned
 from reconstruction.splatting.ply import ODD, read_splats
 from reconstruction.splatting.ply_file import read_blocks, read_header
-from tests.reconstruction.exports.hard_scenes import Interrupted, quaternion_errors, scene_with
+from tests.reconstruction.exports.hard_scenes import Interrupted, antialiased, quaternion_errors, scene_with
 from tests.reconstruction.objects.made_scene import made_scene
 
 START = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"]
@@ -27,7 +27,14 @@ def test_columns_stand_in_the_order_that_programs_go_by(tmp_path, kind, n_sizes,
     assert [name for name, _ in header.columns] == expected
     assert {kind for _, kind in header.columns} == {"<f4"}
     assert ("SplatRenderMode: 2dgs" in header.comments) == (kind == "2dgs")
+    assert "SplatRenderMode: mip" not in header.comments
     assert (done.n_gaussians, done.n_bytes) == (header.n_rows, path.stat().st_size)
+
+
+@pytest.mark.parametrize("is_on", [True, False])
+def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on):
+    write_ply(antialiased(made_scene(), is_on), tmp_path / "model.ply", "3dgs")
+    assert ("SplatRenderMode: mip" in read_header(tmp_path / "model.ply").comments) == is_on
 
 
 @pytest.mark.parametrize("axes", ["y-up", "y-down", "enu"])

@@ -16,7 +16,14 @@ from reconstruction.exports.compression import PRESETS, Compression
 from reconstruction.exports.sog import palette_size, write_sog
 from reconstruction.exports.sog_images import image_of
 from reconstruction.exports.sog_reading import read_sog
-from tests.reconstruction.exports.hard_scenes import Interrupted, in_order, quaternion_errors, scene_with, spread
+from tests.reconstruction.exports.hard_scenes import (
+    Interrupted,
+    antialiased,
+    in_order,
+    quaternion_errors,
+    scene_with,
+    spread,
+)
 from tests.reconstruction.objects.made_scene import made_scene
 
 ALL = Compression(palette=65_536, gaussians_each=1, least_opacity=0.0)
@@ -83,6 +90,12 @@ def test_a_file_holds_what_the_specification_says(tmp_path):
     np.testing.assert_allclose(read.sh[:, 0], found["colours"], atol=1e-6)
     np.testing.assert_allclose(read.sh[:, 1:].reshape(len(read), -1), found["rest"], atol=1e-6)
     assert json.loads(members(path)["meta.json"])["model"] == "2dgs"
+
+
+@pytest.mark.parametrize(("is_on", "model"), [(True, "antialiased"), (False, "2dgs")])
+def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on, model):
+    write_sog(antialiased(made_scene(), is_on), tmp_path / "model.sog")
+    assert json.loads(members(tmp_path / "model.sog")["meta.json"])["model"] == model
 
 
 @settings(max_examples=12, deadline=None)

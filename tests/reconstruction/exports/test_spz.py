@@ -15,8 +15,24 @@ from planning.errors import InputError, OperationCancelled
 from reconstruction.exports.compression import PRESETS, Compression
 from reconstruction.exports.spz import write_spz
 from reconstruction.exports.spz_reading import read_spz
-from tests.reconstruction.exports.hard_scenes import Interrupted, in_order, quaternion_errors, scene_with, spread
+from tests.reconstruction.exports.hard_scenes import (
+    Interrupted,
+    antialiased,
+    in_order,
+    quaternion_errors,
+    scene_with,
+    spread,
+)
 from tests.reconstruction.objects.made_scene import made_scene
+
+
+@pytest.mark.parametrize("is_on", [True, False])
+def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on):
+    write_spz(antialiased(made_scene(), is_on), tmp_path / "model.spz", ALL)
+    flags = gzip.decompress((tmp_path / "model.spz").read_bytes())[14]
+    assert flags == int(is_on)
+    assert len(read_spz(tmp_path / "model.spz")) > 0
+
 
 ALL = Compression(first_bits=8, further_bits=8, least_opacity=0.0)
 

@@ -8,6 +8,7 @@ import pytest
 from reconstruction.exports.ellipsoids import ellipsoids_of_all
 from reconstruction.objects.gs_scene import GsComponent, GsElement
 from reconstruction.records.global_ids import global_id_of
+from tests.reconstruction.exports.hard_scenes import antialiased
 from tests.reconstruction.exports.test_ellipsoids import standard_harmonics
 from tests.reconstruction.exports.web_browser import axes_of, chromium, opened
 from tests.reconstruction.objects.made_scene import gaussians, made_scene
@@ -30,8 +31,11 @@ def display(light_):
     return np.where(light_ <= 0.0031308, 12.92 * light_, 1.055 * np.maximum(light_, 1e-9) ** (1 / 2.4) - 0.055)
 
 
-def drawn(found, degree, camera):
-    """Slow reference: every Gaussian at every pixel, from far to near (Zwicker et al., 2001; Kerbl et al., 2023)."""
+def drawn(found, degree, camera, is_antialiased=False):
+    """Slow reference: every Gaussian at every pixel, from far to near (Zwicker et al., 2001; Kerbl et al., 2023).
+
+    Antialiased as Yu et al. (2024) have it, but for the least opacity.
+    """
     width, height, focal = camera["width"], camera["height"], camera["focal"]
     axes = axes_of(camera)
     points = (found.means_m.astype(float) - camera["eye"]) @ axes.T
@@ -57,12 +61,36 @@ def drawn(found, degree, camera):
         limit = 1.3 * np.array([width, height]) / (2 * focal)
         tx, ty = np.clip([x / z, y / z], -limit, limit)
         jacobian = focal / z * np.array([[1, 0, -tx], [0, 1, -ty]])
-        inverse = np.linalg.inv(jacobian @ axes @ spread @ axes.T @ jacobian.T + 0.3 * np.eye(2))
+        sharp = jacobian @ axes @ spread @ axes.T @ jacobian.T
+        blurred = sharp + 0.3 * np.eye(2)
+        inverse, opacity = np.linalg.inv(blurred), found.opacities[i]
+        if is_antialiased:
+            share = np.sqrt(max(np.linalg.det(sharp), 0.0) / np.linalg.det(blurred))
+            opacity = min(opacity, max(opacity * share, 2 / 255))
         d = np.stack([xs - width / 2 - focal * x / z, ys - height / 2 - focal * y / z], axis=-1)
-        alpha = found.opacities[i] * np.exp(-0.5 * np.einsum("hwi,ij,hwj->hw", d, inverse, d))
+        alpha = opacity * np.exp(-0.5 * np.einsum("hwi,ij,hwj->hw", d, inverse, d))
         alpha = np.where(alpha < 1 / 255, 0.0, np.minimum(alpha, 0.99))[..., None]
         picture = picture * (1 - alpha) + colours[i] * alpha
     return display(picture)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("is_on", [True, False])
+def test_what_is_finer_than_a_pixel_is_as_much_more_transparent_where_it_was_learned_so(browser, tmp_path, is_on):
+    scene = antialiased(made_scene(sizes=((10, 10),), n_background=60, seed=1), is_on)
+    for component in scene.components:
+        component.gaussians.values["means"][:] *= 0.8
+        component.gaussians.values["log_scales"][:] -= 1.5
+        component.gaussians.values["sh"][:] *= 0.4
+    opened(browser, tmp_path / "page", scene, size=(260, 330), degree=0)
+    browser.run("reflight.look(...arguments)", [0, -9, 0], 0, 0)
+    browser.settled()
+    shown, camera = browser.pixels() / 255.0, browser.run("return reflight.camera()")
+    found = ellipsoids_of_all(scene.components)
+    expected, other = (drawn(found, 0, camera, each) for each in (is_on, not is_on))
+    assert psnr(shown, expected) > 42.0
+    assert psnr(shown, other) < psnr(shown, expected) - 3.0
+    assert browser.errors() == []
 
 
 def psnr(a, b):

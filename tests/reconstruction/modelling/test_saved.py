@@ -82,6 +82,13 @@ def test_the_record_knows_the_site(saved, data_set):
     assert sorted({*content["learned"], *content["held_out"]}) == [f"p{k:02d}.png" for k in range(8)]
 
 
+def test_models_of_before_antialiasing_are_drawn_as_they_were_learned(saved, trained):
+    assert trained.record.config.raster.antialiased
+    assert read_model(saved).record.config.raster.antialiased
+    changed(saved, lambda content: content["config"]["raster"].pop("antialiased"))
+    assert not read_model(saved).record.config.raster.antialiased
+
+
 def test_a_model_that_is_written_over_stays_whole_until_the_end(saved, trained, monkeypatch):
     with torch.no_grad():
         other = replace(trained, n_steps=99)
