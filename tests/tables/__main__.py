@@ -15,7 +15,7 @@ from planning.jit import n_threads
 from planning.sweep import sweep
 from tests.tables.definitions import Table, tables
 from tests.tables.page import write_page
-from tests.tables.photos import Photos, photos_in
+from tests.tables.photos import Photos, photos_in, site_file
 from tests.tables.pictures import draw, picture_of
 from tests.tables.results import keep, read_results
 from tests.tables.scales import SCALES, Scale
@@ -37,6 +37,8 @@ def main(arguments: Sequence[str]) -> int:
     chosen = [table for table in tables(scale) if table.number in options.only]
     jobs = _jobs(chosen, scale, options, folder)
     photos = dict.fromkeys(each for job in jobs for each in job[0].photos(job[1], scale))
+    for scene in dict.fromkeys(each.scene for each in photos):
+        site_file(options.work, scene)
     sweep(photos_in, [(options.work, each) for each in photos], n_processes=options.jobs, address=options.cluster)
     for start in range(0, len(jobs), options.jobs):
         some = jobs[start : start + options.jobs]

@@ -159,7 +159,7 @@ def _shapes(scale: Scale) -> Table:
         "Architecture of the Reflection MLP",
         "One factor of case 4 changed at a time. At this scale networks are smaller and orders lower than the paper's, "
         "in the same time. Light is learned with the scale's settings and not with RefGlass-GS's own (at `small`: many "
-        "small batches, decay, a network of 6 x 128), and splats are not antialiased, so case 4 is not the RefGlass-GS of "
+        "small batches, decay, a network of 6 x 128), and splats are not antialiased: case 4 is not the RefGlass-GS of "
         "the other tables.",
         (UST,),
         cases,

@@ -94,7 +94,7 @@ def photos_in(work: Path, photos: Photos) -> Path:
 def _flown(work: Path, photos: Photos) -> tuple[Path, Path | None]:
     """Files of the plan, and of the flight where there is one; made if they are not there yet."""
     plan_path, flight_path = (work / f"{photos.flight_name}.{kind}.json" for kind in ("plan", "flight"))
-    site, is_unseen = _site_file(work, photos.scene), photos.planner == "unseen"
+    site, is_unseen = site_file(work, photos.scene), photos.planner == "unseen"
     request = PlanRequest(
         method="noto" if photos.planner == "noto" else "greedy",
         n_views=photos.n_views,
@@ -111,7 +111,8 @@ def _flown(work: Path, photos: Photos) -> tuple[Path, Path | None]:
     return plan_path, None if is_unseen else flight_path
 
 
-def _site_file(work: Path, scene: str) -> Path:
+def site_file(work: Path, scene: str) -> Path:
+    """Of a scene, which all its photos have in common; made if it is not there yet, and not by several at once."""
     folder = work / f"{scene}-site"
     if not (folder / SITE_FILE).is_file():
         photograph_files(SceneWish(scene, n_square=1, width_px=SITE_WIDTH_PX, n_points=0), folder, 1)
