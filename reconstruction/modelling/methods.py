@@ -1,7 +1,8 @@
 """Methods that a model can be trained with: what each is, where it is from, and what of it we made simpler.
 
 All are written from their papers, on the same rasteriser, start, photos, exposure, sky and densification, so that a
-difference between two is one of the methods. This module loads nothing, for lists on the command line.
+difference between two is one of the methods. All have antialiased splats (`raster.antialiased`), which none of the
+papers has. This module loads nothing, for lists on the command line.
 """
 
 from __future__ import annotations

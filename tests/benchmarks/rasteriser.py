@@ -29,7 +29,7 @@ MAIN: tuple[Size, int] = (SIZES[0], 20_000)
 AGAINST_TORCH = ((SIZES[0], 5_000), MAIN)
 QUICK: tuple[Size, int] = ((64, 48), 1_000)
 
-MOST_MS, LEAST_RATIO, MOST_AGAINST_DISCS = 25.0, 25.0, 1.3
+MOST_MS, LEAST_RATIO, MOST_AGAINST_DISCS, MOST_AGAINST_PLAIN = 25.0, 25.0, 1.3, 1.1
 REPEATS, TORCH_REPEATS = 9, 2
 
 
@@ -82,6 +82,12 @@ def measure(context: Context) -> Iterator[Row]:
             what = "3-D Gaussians there and back, processor time"
             against = is_met if is_main else ("", None)
             yield Row(name, what, round(solid.processor, 1), "ms", ratio, "discs", *against)
+            antialiased = _compiled_times(scene, 0, repeats, is_antialiased=True)
+            ratio = antialiased.processor / times.processor
+            is_met = (f"{MOST_AGAINST_PLAIN:g} times as long at most", ratio <= MOST_AGAINST_PLAIN)
+            against = is_met if is_main else ("", None)
+            what = "antialiased there and back, processor time"
+            yield Row(name, what, round(antialiased.processor, 1), "ms", ratio, "plain discs", *against)
         if context.is_quick or (size, n) in AGAINST_TORCH:
             yield from _against_torch(name, scene, times, is_main)
     if len(found) > 1:
@@ -114,13 +120,14 @@ def as_ellipsoids(scene: Scene) -> Scene:
     return Scene((means, quats, solid, *others), scene.view, scene.wanted)
 
 
-def _compiled(scene: Scene, threads: int) -> Raster:
-    return rasterise(*scene.inputs, scene.view, settings=RasterSettings(threads=threads), backend="numba")
+def _compiled(scene: Scene, threads: int, is_antialiased: bool = False) -> Raster:
+    settings = RasterSettings(threads=threads, antialiased=is_antialiased)
+    return rasterise(*scene.inputs, scene.view, settings=settings, backend="numba")
 
 
-def _compiled_times(scene: Scene, threads: int, repeats: int) -> Times:
+def _compiled_times(scene: Scene, threads: int, repeats: int, is_antialiased: bool = False) -> Times:
     def there() -> tuple[Tensor, Tensor, Tensor]:
-        raster = _compiled(scene, threads)
+        raster = _compiled(scene, threads, is_antialiased)
         return raster.features, raster.alphas, raster.depths
 
     there()
