@@ -21,7 +21,7 @@ from reconstruction.exports.spz import write_spz
 from reconstruction.exports.spz_reading import read_spz
 from reconstruction.exports.turned_axes import turned
 from reconstruction.splatting.ply_file import read_blocks, read_header
-from tests.reconstruction.exports.hard_scenes import in_order
+from tests.reconstruction.exports.hard_scenes import antialiased, in_order
 from tests.reconstruction.exports.test_turned_axes import covariances
 from tests.reconstruction.objects.made_scene import made_scene
 
@@ -137,6 +137,20 @@ def test_splat_transform_reads_our_sog_as_discs(scene, tmp_path):
     out = converted(path, tmp_path / "out.ply")
     assert "SplatRenderMode: 2dgs" in read_header(out).comments
     assert_same(of_ply(out), turned(read_sog(path), "y-down"))
+
+
+@pytest.mark.parametrize("is_on", [True, False])
+@pytest.mark.parametrize("name", ["a.ply", "a.sog", "a.spz"])
+def test_splat_transform_knows_which_splats_are_antialiased(scene, tmp_path, name, is_on):
+    path, learned_so = tmp_path / name, antialiased(scene, is_on)
+    if name == "a.ply":
+        write_ply(learned_so, path, "3dgs")
+    elif name == "a.sog":
+        write_sog(learned_so, path)
+    else:
+        write_spz(learned_so, path)
+    out = converted(path, tmp_path / "out.ply")
+    assert ("SplatRenderMode: mip" in read_header(out).comments) == is_on
 
 
 def test_splat_transform_reads_our_spz(scene, tmp_path):
