@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 import torch
@@ -94,21 +95,25 @@ def test_without_cuda_or_gsplat_the_message_says_so() -> None:
 
 
 @on_cuda
+@pytest.mark.parametrize("is_antialiased", [False, True])
 @pytest.mark.parametrize("made", [random_splats, random_ellipsoids])
-def test_gsplat_s_raster_is_the_defined_one(made: Callable[..., MadeSplats]) -> None:
+def test_gsplat_s_raster_is_the_defined_one(made: Callable[..., MadeSplats], is_antialiased: bool) -> None:
+    settings = RasterSettings(antialiased=is_antialiased)
     view = turned_view(64, 48, 50.0)
     splats = made(200, view, 3, channels=7)
     splats = splats.changed(opacities=splats.opacities.clamp(max=0.9))
     labels = torch.arange(200, dtype=torch.int32) % 40
     inputs = [t.float().cuda().requires_grad_() for t in splats.tensors]
     offsets = torch.zeros(200, 2, device="cuda", requires_grad=True)
-    raster = rasterise(*inputs, view, screen_offsets=offsets, labels=labels.cuda(), backend="gsplat")
+    shared: dict[str, Any] = {"screen_offsets": offsets, "labels": labels.cuda(), "settings": settings}
+    raster = rasterise(*inputs, view, **shared, backend="gsplat")
     g = seeded(1)
     total = (raster.features * torch.randn(raster.features.shape, generator=g).cuda()).sum()
     (total + (raster.alphas * torch.randn(raster.alphas.shape, generator=g).cuda()).sum()).backward()
     truth_inputs = [t.clone().requires_grad_() for t in splats.tensors]
     truth_offsets = torch.zeros(200, 2, dtype=torch.float64, requires_grad=True)
-    truth = rasterise(*truth_inputs, view, screen_offsets=truth_offsets, labels=labels, backend="torch")
+    shared = {"screen_offsets": truth_offsets, "labels": labels, "settings": settings}
+    truth = rasterise(*truth_inputs, view, **shared, backend="torch")
     g = seeded(1)
     total = (truth.features * torch.randn(truth.features.shape, generator=g)).sum()
     (total + (truth.alphas * torch.randn(truth.alphas.shape, generator=g)).sum()).backward()
