@@ -10,18 +10,25 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from groundstation.services.reconstruct_places import MODEL
 from planning.json_file import expect_format, read_json
 from planning.site import Origin
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.objects.gs_scene import GsElement
+from reconstruction.objects.opening import middle_of, opening_place, outward, places_of
 from reconstruction.objects.picking import Quads
 from reconstruction.objects.store import DESCRIPTION, FORMAT, StoredScene
+
+Array = NDArray[np.float64]
 
 SIZE_PX = 1280, 960
 FIELD_RAD = math.radians(60.0)
 """Across, of the first view."""
+
+WIDEST_RAD = math.radians(100.0)
+"""Across, from where photos were taken near the facade."""
 
 ROOM = 1.15
 """Around what the first view shows."""
@@ -90,6 +97,8 @@ class SceneCard:
         In their order of facades.
     written_at
         When its description was written.
+    places_enu_m
+        Where its photos were taken, shape (k, 3); none where that is not known.
     """
 
     folder: Path
@@ -99,6 +108,7 @@ class SceneCard:
     panels: tuple[PanelRow, ...]
     n_gaussians: int
     written_at: datetime
+    places_enu_m: Array
 
     @cached_property
     def by_global_id(self) -> dict[str, PanelRow]:
@@ -128,10 +138,16 @@ class SceneCard:
 
     @cached_property
     def first_view(self) -> PosedPhoto:
-        """From in front of the facade that has most panels, so that all of it is seen."""
+        """From in front of the facade that has most panels, so that all of it is seen.
+
+        Where it is known where photos were taken, it is from there, as nothing stood in the way.
+        """
         names = [panel.facade for panel in self.panels]
         largest = max(dict.fromkeys(names), key=names.count) if names else ""
-        return view_of(tuple(panel for panel in self.panels if panel.facade == largest))
+        shown = tuple(panel for panel in self.panels if panel.facade == largest)
+        corners = np.array([panel.element.corners_enu_m for panel in shown]).reshape(-1, 4, 3)
+        place = opening_place(corners, self.places_enu_m, math.tan(0.5 * FIELD_RAD) / ROOM)
+        return view_of(shown) if place is None else _view_from(place, corners)
 
 
 def is_scene(folder: Path) -> bool:
@@ -155,7 +171,8 @@ def read_card(folder: Path) -> SceneCard:
     stored = StoredScene(folder)
     panels = tuple(PanelRow(element, head.name, head.global_id) for head in stored.heads for element in head.elements)
     at = datetime.fromtimestamp((folder / DESCRIPTION).stat().st_mtime, UTC)
-    return SceneCard(folder, stored.name, stored.global_id, stored.origin, panels, stored.n_gaussians, at)
+    places = places_of(stored.training)
+    return SceneCard(folder, stored.name, stored.global_id, stored.origin, panels, stored.n_gaussians, at, places)
 
 
 def scenes_beside(folder: Path) -> tuple[Path, ...]:
@@ -179,22 +196,30 @@ def view_of(panels: tuple[PanelRow, ...]) -> PosedPhoto:
     lens = Intrinsics(width, height, focal_px, focal_px, 0.5 * width, 0.5 * height)
     if not len(corners):
         return PosedPhoto("", Path(), lens, Pose(np.zeros(3), _rotation(np.array([0.0, 1.0, 0.0]))))
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
-    length = float(np.linalg.norm(normal))
+    normal = outward(corners)
     # Panels all around a building have no side in common: look at them from the south.
-    forward = -normal / length if length > 1e-9 else np.array([0.0, 1.0, 0.0])
-    rotation = _rotation(forward)
-    points = corners.reshape(-1, 3)
-    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    inside = (points - middle) @ rotation.T
+    forward = np.array([0.0, 1.0, 0.0]) if normal is None else -normal
+    rotation, middle = _rotation(forward), middle_of(corners)
+    inside = (corners.reshape(-1, 3) - middle) @ rotation.T
     tangents = np.array([0.5 * width / focal_px, 0.5 * height / focal_px]) / ROOM
     distance_m = max(LEAST_DISTANCE_M, float((np.abs(inside[:, :2]) / tangents - inside[:, 2:]).max()))
     return PosedPhoto("", Path(), lens, Pose(middle - distance_m * forward, rotation))
 
 
-def _rotation(
-    forward: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
-) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _view_from(place_enu_m: Array, corners_enu_m: Array) -> PosedPhoto:
+    """A camera at a place that looks at the middle of panels, with a field as wide as they need, up to `WIDEST_RAD`."""
+    width, height = SIZE_PX
+    towards = middle_of(corners_enu_m) - place_enu_m
+    rotation = _rotation(towards / np.linalg.norm(towards))
+    inside = (corners_enu_m.reshape(-1, 3) - place_enu_m) @ rotation.T
+    tangents = ROOM * np.abs(inside[:, :2] / np.maximum(inside[:, 2:], 1e-9)).max(axis=0)
+    usual, widest = (0.5 * width / math.tan(0.5 * field) for field in (FIELD_RAD, WIDEST_RAD))
+    focal_px = float(np.clip(np.min(0.5 * np.array([width, height]) / tangents), widest, usual))
+    lens = Intrinsics(width, height, focal_px, focal_px, 0.5 * width, 0.5 * height)
+    return PosedPhoto("", Path(), lens, Pose(place_enu_m, rotation))
+
+
+def _rotation(forward: Array) -> Array:
     """Camera axes (right, down, forward) as rows; north is up where it looks straight down."""
     up = np.array([0.0, 0.0, 1.0]) if abs(forward[2]) < 0.999 else np.array([0.0, 1.0, 0.0])
     right = np.cross(forward, up)

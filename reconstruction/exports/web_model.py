@@ -11,6 +11,12 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from reconstruction.exports.ellipsoids import Ellipsoids
 from reconstruction.objects.gs_scene import GsElement, GsScene
+from reconstruction.objects.opening import middle_of, opening_place, outward, places_of
+
+Array = NDArray[np.float64]
+
+HALF_FIELD = 0.46
+"""Tangent of half the page's field of view, with some room."""
 
 
 def panes_of(gaussians: Ellipsoids, elements: Sequence[GsElement]) -> NDArray[np.int32]:
@@ -53,26 +59,34 @@ def described_panes(scene: GsScene, elements: Sequence[GsElement]) -> dict[str, 
 def first_view(scene: GsScene, elements: Sequence[GsElement], gaussians: Ellipsoids) -> dict[str, Any]:
     """Where to look at first: at the panels from before them, else at the Gaussians from the south.
 
-    A place in metres, the radius of what is to be seen around it, and a heading in radians.
+    A place in metres, the radius of what is to be seen around it, and a heading in radians. Where it is known where
+    photos were taken, the eye is there, and what is looked at is the facade that has most panels.
     """
-    heading = 0.0
+    heading, origin = 0.0, np.asarray(scene.origin_enu_m, np.float64)
     if elements:
-        corners = np.asarray([element.corners_enu_m for element in elements], np.float64) - scene.origin_enu_m
+        corners = np.asarray([element.corners_enu_m for element in elements], np.float64) - origin
         places = corners.reshape(-1, 3)
         largest = max(
             (component for component in scene.components if component.elements), key=lambda each: len(each.elements)
         )
         quads = np.asarray([element.corners_enu_m for element in largest.elements], np.float64)
-        normal = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]).sum(axis=0)
-        if np.hypot(normal[0], normal[1]) > 1e-9:
+        eye = opening_place(quads, places_of(scene.training), HALF_FIELD)
+        if eye is not None:
+            return _view(middle_of(quads) - origin, quads.reshape(-1, 3), heading) | {"eye": _told(eye - origin)}
+        normal = outward(quads)
+        if normal is not None and np.hypot(normal[0], normal[1]) > 1e-9:
             heading = float(np.arctan2(-normal[0], -normal[1]))
     else:
         places = gaussians.means_m.astype(np.float64) if len(gaussians) else np.zeros((1, 3))
     # Of Gaussians a few lie far out.
     low, high = np.quantile(places, (0.0, 1.0) if elements else (0.05, 0.95), axis=0)
-    radius = float(np.linalg.norm(high - low)) / 2.0
-    return {
-        "target": [round(float(value), 4) for value in (low + high) / 2.0],
-        "radius": round(max(radius, 0.5), 4),
-        "heading": round(heading, 6),
-    }
+    return _view((low + high) / 2.0, np.array([low, high]), heading)
+
+
+def _view(target: Array, points: Array, heading: float) -> dict[str, Any]:
+    radius = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0))) / 2.0
+    return {"target": _told(target), "radius": round(max(radius, 0.5), 4), "heading": round(heading, 6)}
+
+
+def _told(place: Array) -> list[float]:
+    return [round(float(value), 4) for value in place]

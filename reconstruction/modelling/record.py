@@ -119,6 +119,8 @@ class ModelRecord:
         About effects, with their reasons.
     moves
         Corrections of the poses of `learned`; none where they were not learned.
+    places_enu_m
+        Where `learned` were taken, with corrections; models of before do not know.
     """
 
     config: TrainConfig
@@ -132,6 +134,7 @@ class ModelRecord:
     extent_m: float
     decisions: tuple[Decision, ...] = ()
     moves: tuple[Move, ...] = ()
+    places_enu_m: tuple[Vec3, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("corner_square", "exposure", "extent_m"):

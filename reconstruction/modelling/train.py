@@ -101,6 +101,7 @@ def _started(
         start.extent_m,
         start.decisions,
         start.moves,
+        tuple(tuple(photo.pose.position_enu_m.tolist()) for photo in moved(start.learned, start.moves)),
     )
     with ExitStack() as closing:
         photos, shown = _photos(source, record, closing)

@@ -227,6 +227,11 @@ class StoredScene:
         return self._scene.components
 
     @property
+    def training(self) -> Mapping[str, Any]:
+        """How the model came about, as `GsScene` has it."""
+        return self._scene.training
+
+    @property
     def n_gaussians(self) -> int:
         """Of all components."""
         return sum(component.n_gaussians for component in self._scene.components)

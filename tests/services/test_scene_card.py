@@ -1,5 +1,7 @@
 """Scenes of objects as the window knows them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -39,6 +41,24 @@ def test_a_card_has_all_panels_with_their_facades(folder):
     assert card.panels[0].size_m == pytest.approx((1.35, 1.8))
     assert (is_scene(folder), is_model(folder)) == (True, False)
     assert (card.n_gaussians, card.name, card.origin) == (scene.n_gaussians, scene.name, scene.origin)
+
+
+def test_the_first_view_is_from_where_a_photo_was_taken_and_shows_the_whole_facade(tmp_path):
+    scene = made_scene()
+    corners = np.array([element.corners_enu_m for element in scene.components[0].elements])
+    middle = corners.reshape(-1, 3).mean(axis=0)
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
+    normal /= np.linalg.norm(normal)
+    places = [(middle + metres * normal).tolist() for metres in (-30.0, 0.5, 6.0)]
+    write_scene(replace(scene, training={**scene.training, "places_enu_m": places}), tmp_path / "a.gsscene")
+    card = read_card(tmp_path / "a.gsscene")
+    first = card.first_view
+    assert first.pose.position_enu_m.tolist() == places[2]
+    inside = (corners.reshape(-1, 3) - places[2]) @ first.pose.cam_from_enu.T
+    lens = first.intrinsics
+    assert (inside[:, 2] > 0.0).all()
+    assert (np.abs(lens.fx_px * inside[:, 0] / inside[:, 2]) < lens.width_px / 2).all()
+    assert (np.abs(lens.fy_px * inside[:, 1] / inside[:, 2]) < lens.height_px / 2).all()
 
 
 def test_records_are_of_a_panel_its_facade_or_the_building(folder, tmp_path):

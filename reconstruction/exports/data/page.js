@@ -81,7 +81,14 @@ function goTo(goal) {
   step(start);
 }
 
-const home = () => goTo(facing(model.view.target, model.view.radius, model.view.heading, -0.12, camera.width, camera.height));
+// What is seen at first: from where a photo was taken, if that is known, since there nothing stands in the way.
+function opening() {
+  const { eye, target, radius, heading } = model.view;
+  const { width, height } = camera;
+  return eye ? lookingAt(eye, target, width, height) : facing(target, radius, heading, -0.12, width, height);
+}
+
+const home = () => goTo(opening());
 
 function visit(pane) {
   const { middle, normal, radius } = panes.panes[pane];
@@ -266,7 +273,7 @@ function listen() {
   new ResizeObserver(() => {
     const isFirst = camera.width <= 1;
     Object.assign(camera, { width: Math.max(1, byId("stage").clientWidth), height: Math.max(1, byId("stage").clientHeight) });
-    if (isFirst) Object.assign(camera, facing(model.view.target, model.view.radius, model.view.heading, -0.12, camera.width, camera.height));
+    if (isFirst) Object.assign(camera, opening());
     ask();
   }).observe(byId("stage"));
   window.addEventListener("hashchange", pickOfAddress);

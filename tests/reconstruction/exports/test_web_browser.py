@@ -1,6 +1,7 @@
 """Web pages in headless Chromium: what a user does by mouse, fingers and keys, and what hostile records cannot do."""
 
 import time
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from reconstruction.exports.web import write_web
 from tests.reconstruction.exports.test_web import HOSTILE, hostile_records, hostile_scene
-from tests.reconstruction.exports.web_browser import chromium, middle, opened, pixel
+from tests.reconstruction.exports.web_browser import axes_of, chromium, middle, opened, pixel
 from tests.reconstruction.objects.made_scene import made_scene
 
 CAMERA = "return reflight.camera()"
@@ -238,6 +239,24 @@ return { blocked, thrown, isFetched, bad: window.bad ?? null };
 
 
 @pytest.mark.slow
+def test_a_page_opens_from_where_a_photo_was_taken(browser, tmp_path):
+    scene = made_scene()
+    corners = np.array([element.corners_enu_m for element in scene.components[0].elements])
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
+    centre = 0.5 * (corners.reshape(-1, 3).min(axis=0) + corners.reshape(-1, 3).max(axis=0))
+    place = centre + 9.0 * normal / np.linalg.norm(normal) + np.array([0.0, 0.0, 3.0])
+    training = {**scene.training, "places_enu_m": [(2 * centre - place).tolist(), place.tolist()]}
+    opened(browser, tmp_path / "page", replace(scene, training=training), size=(500, 500))
+    browser.run("document.getElementById('home').click()")
+    time.sleep(0.6)
+    browser.settled()
+    camera = browser.run("return reflight.camera()")
+    assert np.abs(np.array(camera["eye"]) - (place - scene.origin_enu_m)).max() < 1e-3
+    forward = axes_of(camera)[2]
+    towards = centre - place
+    assert forward @ towards / np.linalg.norm(towards) > 0.99999
+
+
 def test_the_policy_blocks_network_scripts_and_markup_from_text(browser, tmp_path):
     opened(browser, tmp_path / "page", made_scene())
     found = browser.run(ATTEMPTS)
