@@ -26,7 +26,7 @@ from reconstruction.exports.gaussian_blocks import (
 )
 from reconstruction.exports.turned_axes import Axes
 from reconstruction.objects.gs_scene import GsScene
-from reconstruction.splatting.ply import MEAN_COLOUR, NORMAL, PANEL, PLACE, ROTATION, SIZES, Kind
+from reconstruction.splatting.ply import MEAN_COLOUR, NORMAL, PANEL, PLACE, ROTATION, SIZES, Kind, render_mode
 from reconstruction.splatting.ply_file import write_blocks
 from reconstruction.splatting.raster import FLAT
 
@@ -114,9 +114,8 @@ def _tables(blocks: Iterator[Ellipsoids], row: np.dtype[Any], kind: Kind, degree
 
 
 def _comments(scene: GsScene, kind: Kind, axes: Axes) -> list[str]:
-    mode = "2dgs" if kind == "2dgs" else "mip" if is_antialiased(scene) else ""
-    lines = [f"SplatRenderMode: {mode}"] if mode else []
-    lines += [f"site: {' '.join(scene.name.split())}", f"axes: {axes}"]
+    mode = render_mode("2dgs" if kind == "2dgs" else "mip" if is_antialiased(scene) else "")
+    lines = [*mode, f"site: {' '.join(scene.name.split())}", f"axes: {axes}"]
     lines += ["origin of the places in the site's east, north, up, metres: " + _numbers(scene.origin_enu_m)]
     if scene.origin is not None:
         origin = scene.origin

@@ -25,7 +25,7 @@ from planning.progress import QualityPoint
 from reconstruction.modelling.exposures import Exposures
 from reconstruction.modelling.model import SceneModel
 from reconstruction.modelling.record import ModelRecord, empty_model
-from reconstruction.splatting.ply import Kind, write_splats
+from reconstruction.splatting.ply import Kind, render_mode, write_splats
 from reconstruction.splatting.splats import splats_from_tensors
 
 FORMAT = "reflight-model/1"
@@ -112,8 +112,8 @@ def save_model(trained: TrainedModel, folder: Path) -> None:
 def _comments(record: ModelRecord) -> list[str]:
     """What a PLY file says about how it is to be drawn, and about where it belongs."""
     config, origin = record.config, record.site.origin
-    is_mip = config.raster.antialiased and config.trained_by.primitive == "ellipsoids"
-    lines = ["SplatRenderMode: mip"] * is_mip + [f"site: {record.site.name}"]
+    is_solid = config.trained_by.primitive == "ellipsoids"
+    lines = [*render_mode("mip" if config.raster.antialiased and is_solid else ""), f"site: {record.site.name}"]
     if origin is None:
         return lines
     place = f"{origin.lat_deg!r} {origin.lon_deg!r} {origin.ellipsoid_height_m!r}"

@@ -72,6 +72,11 @@ class SplatsOfFile:
     origin_enu_m: tuple[float, float, float]
 
 
+def render_mode(mode: Literal["2dgs", "mip", ""]) -> list[str]:
+    """The comment by which a file says how it is to be drawn: as discs, as antialiased ellipsoids, or as usual."""
+    return [f"SplatRenderMode: {mode}"] if mode else []
+
+
 def write_splats(
     path: Path,
     splats: Splats,
@@ -101,7 +106,7 @@ def write_splats(
     lines = [
         FORMAT,
         *([] if splats.is_flat else [ELLIPSOIDS]),
-        *([f"SplatRenderMode: {kind}"] if kind == "2dgs" else []),
+        *render_mode("2dgs" if kind == "2dgs" else ""),
         f"{ORIGIN}: {origin}",
         "axes: x east, y north, z up, metres, counted from the origin",
         "refgs_r and refgs_f0 are logits, as opacity is; panel_id counts from 0, -1 is no glass",
