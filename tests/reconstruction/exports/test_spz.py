@@ -25,15 +25,6 @@ from tests.reconstruction.exports.hard_scenes import (
 )
 from tests.reconstruction.objects.made_scene import made_scene
 
-
-@pytest.mark.parametrize("is_on", [True, False])
-def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on):
-    write_spz(antialiased(made_scene(), is_on), tmp_path / "model.spz", ALL)
-    flags = gzip.decompress((tmp_path / "model.spz").read_bytes())[14]
-    assert flags == int(is_on)
-    assert len(read_spz(tmp_path / "model.spz")) > 0
-
-
 ALL = Compression(first_bits=8, further_bits=8, least_opacity=0.0)
 
 
@@ -66,6 +57,14 @@ def by_hand(path):
             }
         )
     return {name: np.array([each[name] for each in found]) for name in found[0]}
+
+
+@pytest.mark.parametrize("is_on", [True, False])
+def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on):
+    write_spz(antialiased(made_scene(), is_on), tmp_path / "model.spz", ALL)
+    flags = gzip.decompress((tmp_path / "model.spz").read_bytes())[14]
+    assert flags == int(is_on)
+    assert len(read_spz(tmp_path / "model.spz")) > 0
 
 
 def test_a_file_holds_what_the_specification_says(tmp_path):
