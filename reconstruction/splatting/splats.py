@@ -13,13 +13,9 @@ from torch import Tensor, nn
 
 from planning.errors import InputError
 from reconstruction.reflections.shading import BASE_REFLECTANCE, REFLECTIVITY
+from reconstruction.splatting.disc_features import LEAST_SQUARE, disc_features
 from reconstruction.splatting.ellipsoid_axes import shortest_axes
-from reconstruction.splatting.harmonic_colour import (
-    N_HARMONICS,
-    display_colours,
-    flat_harmonics,
-    light_of_display,
-)
+from reconstruction.splatting.harmonic_colour import N_HARMONICS, flat_harmonics, seen_light
 from reconstruction.splatting.raster import FLAT, SOLID
 
 SHAPES: dict[str, tuple[int, ...]] = {
@@ -40,9 +36,6 @@ FEATURES = {"colour": slice(0, 3), "reflectivity": slice(3, 4), "f0": slice(4, 7
 
 NO_PANEL = -1
 """Panel of splats that are not glass."""
-
-LEAST_SQUARE = 1e-12
-"""Squared length of a quaternion below which it is no rotation; then nothing is turned, and it has no gradient."""
 
 LEAST_SHARE, MOST_SHARE = 1e-4, 1.0 - 1e-4
 """Shares are kept off 0 and 1, where logits have no end."""
@@ -162,7 +155,7 @@ class Splats(nn.Module):
         degree
             Of the harmonics that are used, 0 to 3.
         """
-        return light_of_display(display_colours(self.means, self.sh, view_position, degree))
+        return seen_light(self.means, self.sh, view_position, degree)
 
     def features(self, view_position: Tensor, degree: int = 3, colours: Tensor | None = None) -> Tensor:
         """What is blended into the pictures (Eqs. 15 to 18), shape (n, 11), columns as `FEATURES` says.
@@ -175,8 +168,12 @@ class Splats(nn.Module):
         colours
             Shape (n, 3), in the place of those by harmonics.
         """
-        normals, offsets = self._facing(view_position)
         colours = self.colours(view_position, degree) if colours is None else colours
+        if self.is_flat and self.means.device.type == "cpu" and self.means.dtype == torch.float32:
+            return disc_features(
+                colours, self.means, self.quats, self.reflectivity_logits, self.f0_logits, self.panels, view_position
+            )
+        normals, offsets = self._facing(view_position)
         parts = (colours, self.reflectivity[:, None], self.f0, normals, offsets[:, None])
         return torch.cat(parts, dim=1)
 

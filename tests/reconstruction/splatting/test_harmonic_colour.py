@@ -10,6 +10,7 @@ from reconstruction.splatting.harmonic_colour import (
     display_colours_twin,
     flat_harmonics,
     light_of_display,
+    seen_light,
 )
 
 EYE = torch.tensor([0.3, -4.0, 1.0])
@@ -32,6 +33,31 @@ def test_the_kernel_gives_what_plain_torch_gives_in_double_precision(degree):
     slow_of_means, slow_of_sh = torch.autograd.grad(slow, (slow_means, slow_sh), given.double())
     assert (of_means - slow_of_means).norm() <= 1e-5 * (1.0 + slow_of_means.norm())
     assert (of_sh - slow_of_sh).norm() <= 1e-6 * slow_of_sh.norm()
+
+
+@pytest.mark.parametrize("degree", [0, 3])
+def test_light_by_the_kernel_is_that_of_plain_torch_below_black_and_above_white(degree):
+    means, sh, given = random_case(300)
+    slow_means, slow_sh = (value.detach().double().requires_grad_() for value in (means, sh))
+    fast, slow = seen_light(means, sh, EYE, degree), seen_light(slow_means, slow_sh, EYE, degree)
+    assert (slow == 0.0).any()
+    assert (slow > 1.0).any()
+    assert torch.allclose(fast.double(), slow, atol=1e-5)
+    of_means, of_sh = torch.autograd.grad(fast, (means, sh), given)
+    slow_of_means, slow_of_sh = torch.autograd.grad(slow, (slow_means, slow_sh), given.double())
+    assert (of_means - slow_of_means).norm() <= 1e-5 * (1.0 + slow_of_means.norm())
+    assert (of_sh - slow_of_sh).norm() <= 1e-5 * slow_of_sh.norm()
+
+
+def test_light_by_the_kernel_has_no_step_where_its_curve_changes():
+    display = torch.cat([torch.linspace(-0.1, 0.1, 4001), torch.linspace(0.9, 1.1, 4001)])
+    sh = flat_harmonics(display[:, None].expand(-1, 3)).requires_grad_()
+    light = seen_light(torch.zeros(len(display), 3), sh, EYE, 0)
+    (slopes,) = torch.autograd.grad(light.sum(), sh)
+    assert torch.allclose(light[:, 0], light_of_display(display), atol=1e-6)
+    assert (light[:, 0].diff()[:4000] >= 0.0).all()
+    assert torch.isfinite(slopes).all()
+    assert slopes.min() >= 0.0
 
 
 def test_gradients_of_the_twin_are_those_of_differences():

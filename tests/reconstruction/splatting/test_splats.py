@@ -49,9 +49,9 @@ def test_features_stand_where_their_names_say():
     features = splats.features(EYE, 2)
     assert features.shape == (7, 11)
     assert torch.equal(features[:, FEATURES["colour"]], splats.colours(EYE, 2))
-    assert torch.equal(features[:, FEATURES["reflectivity"]][:, 0], splats.reflectivity)
-    assert torch.equal(features[:, FEATURES["f0"]], splats.f0)
-    assert torch.equal(features[:, FEATURES["normal"]], splats.normals(EYE))
+    assert torch.allclose(features[:, FEATURES["reflectivity"]][:, 0], splats.reflectivity, atol=1e-6)
+    assert torch.allclose(features[:, FEATURES["f0"]], splats.f0, atol=1e-6)
+    assert torch.allclose(features[:, FEATURES["normal"]], splats.normals(EYE), atol=1e-6)
 
 
 def test_normals_face_the_camera_and_are_across_both_tangents():
