@@ -162,8 +162,13 @@ def _gradient(wanted: Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float
 
 def _padded(features: NDArray[np.float32]) -> NDArray[np.float32]:
     """With as many columns of 0 as make their number a multiple of eight, which are taken at once."""
-    missing = -features.shape[1] % N_LANES
-    return np.pad(features, ((0, 0), (0, missing))) if missing else features
+    n, n_channels = features.shape
+    missing = -n_channels % N_LANES
+    if not missing:
+        return features
+    wide = np.zeros((n, n_channels + missing), np.float32)
+    wide[:, :n_channels] = features
+    return wide
 
 
 def rasterise_numba(
