@@ -14,6 +14,7 @@ import torch
 from planning.errors import InputError
 from planning.json_file import to_record
 from planning.progress import QualityPoint
+from reconstruction.kept_memory import freed_memory_kept
 from reconstruction.modelling.checkpoints import read_checkpoint
 from reconstruction.modelling.config import TrainConfig
 from reconstruction.modelling.light_stage import begun_light
@@ -36,6 +37,7 @@ SHOWN_SHARE = 0.25
 """Of the memory for photos, at most, for held-out ones that the quality is measured on."""
 
 
+@freed_memory_kept()
 def train_model(
     folder: Path,
     config: TrainConfig,
@@ -124,6 +126,7 @@ def _started(
         return _finished(trainer, record, watching)
 
 
+@freed_memory_kept()
 def resume_model(
     folder: Path,
     checkpoint: Path,

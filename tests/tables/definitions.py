@@ -105,10 +105,12 @@ def _longer(scale: Scale) -> Table:
     for title, method in (("GaussianShader", "gaussian-shader"), (PAPERS, "refglass-gs"), (OURS, "reflight")):
         usual = Case(title, method)
         config = usual.config(scale, 0)
+        of_method = scale.longer.get(method, {})
         settings = {
+            **of_method,
             "iterations": LONGER * config.iterations,
             "time_limit_s": None if config.time_limit_s is None else LONGER * config.time_limit_s,
-            "reflections": {"steps": LONGER * config.reflections.steps},
+            "reflections": {"steps": LONGER * config.reflections.steps, **of_method.get("reflections", {})},
         }
         cases += [usual, Case(f"{title}, longer", method, settings)]
         cases.append(Case(f"{title}, {NOT_ANTIALIASED}", method, PLAIN))
@@ -116,7 +118,8 @@ def _longer(scale: Scale) -> Table:
         "3b",
         "What more time and other settings bring",
         f"Not in the paper. Methods of Table 3, and the same with {LONGER} times as many steps, also of light alone, "
-        "and as much time; and with splats as 2DGS and 3DGS draw them, which are as opaque as they are however small.",
+        "and as much time, at `small` with a larger network in RefGlass-GS (6 x 256, L = 6); and with splats as 2DGS and "
+        "3DGS draw them, which are as opaque as they are however small.",
         (ST, UST),
         tuple(cases),
         (Above(f"{PAPERS}, longer", ("GaussianShader, longer",), 3.0),),

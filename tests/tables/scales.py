@@ -33,6 +33,8 @@ class Scale:
     own
         Settings of `TrainConfig`, as in TOML, by method: those that were found to bring it more in the same time. A
         case's own ones come after them.
+    longer
+        The same of trainings that take longer: with more time, larger networks pay.
     """
 
     name: str
@@ -44,6 +46,7 @@ class Scale:
     layers: tuple[int, int]
     orders: tuple[int, int, int, int]
     own: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    longer: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @property
     def says_something(self) -> bool:
@@ -99,6 +102,7 @@ SMALL = replace(
         4,
     ),
     own={name: OF_PAPER for name in METHODS if name.startswith("refglass-gs")},
+    longer={"refglass-gs": {"reflections": {"mlp": {"width": 256, "position_order": 6, "direction_order": 5}}}},
 )
 """Hours of two cores; each training 600 s of one."""
 
