@@ -1,8 +1,8 @@
 """Memory that a training frees in each step, kept for the next one.
 
 Left alone, the C library gives large pieces back to the system as soon as they are free, and gets them again, page by
-page, in the next step: a sixth of the time of a step that asks a Reflection MLP 6 x 128. Only GNU's library is told;
-others do as they always do.
+page, in the next step: some tenth of the time of steps that ask a Reflection MLP (`python -m tests.benchmarks --only
+modelling-parts`). Only GNU's library is told; others do as they always do.
 """
 
 from __future__ import annotations

@@ -173,6 +173,10 @@ class Splats(nn.Module):
             return disc_features(
                 colours, self.means, self.quats, self.reflectivity_logits, self.f0_logits, self.panels, view_position
             )
+        return self.features_twin(view_position, colours)
+
+    def features_twin(self, view_position: Tensor, colours: Tensor) -> Tensor:
+        """What `features` says, in plain torch, of any type on any device, of ellipsoids, too."""
         normals, offsets = self._facing(view_position)
         parts = (colours, self.reflectivity[:, None], self.f0, normals, offsets[:, None])
         return torch.cat(parts, dim=1)

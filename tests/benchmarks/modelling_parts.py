@@ -1,4 +1,4 @@
-"""Parts of the modelling that other parts wait for: D-SSIM, and photos from the disk within a memory limit."""
+"""Parts of the modelling that other parts wait for: D-SSIM, features, memory, and photos from the disk."""
 
 from __future__ import annotations
 
@@ -14,15 +14,20 @@ from pathlib import Path
 import cv2
 import numpy as np
 import torch
+from torch import Tensor
 
 from reconstruction.cameras import Intrinsics
 from reconstruction.colmap.folder import write_model
 from reconstruction.colmap.georeference import model_of
 from reconstruction.dataset.prepare import layer_path
+from reconstruction.kept_memory import freed_memory_kept
 from reconstruction.modelling.decoded_photo import Decoding, decoded_bytes
 from reconstruction.modelling.dssim import dssim, dssim_torch
+from reconstruction.reflections.reflection_mlp import MlpShape, ReflectionMlp
+from reconstruction.splatting.harmonic_colour import display_colours_twin, light_of_display
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.reconstruction.reflections.made_folder import cameras, corners_of
+from tests.reconstruction.splatting.learned_scenes import random_splats
 
 SIZES = ((256, 192), (1024, 768))
 MOST_MS = 8.0
@@ -34,17 +39,26 @@ LENS = Intrinsics(5280, 3956, 3700.0, 3700.0, 2640.0, 1978.0)
 LIMIT_MIB, QUICK_LIMIT_MIB = 1024, 600
 N_SAMPLES, QUICK_N_SAMPLES = 80, 8
 NORMAL_STEP = 2
+N_DISCS, QUICK_N_DISCS = 20_000, 1_000
+N_RAYS, QUICK_N_RAYS = 5_000, 500
+"""Pixels of glass in a photo of 128 x 96 that shows much of it; others show less, half of that at least."""
+
+SHAPE = MlpShape(width=128, layers=6, position_order=4, direction_order=4)
+N_STEPS, MOST_STEPS = 30, 200
 
 
 def measure(context: Context) -> Iterator[Row]:
-    """D-SSIM against torch's own operations, and the memory of a stream of photos."""
+    """D-SSIM and features against torch's own operations, kept memory, and the memory of a stream of photos."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
     yield from _dssim(context.is_quick)
+    yield from _features(QUICK_N_DISCS if context.is_quick else N_DISCS)
+    yield from _kept_memory(QUICK_N_RAYS if context.is_quick else N_RAYS)
+    torch.set_num_threads(before)
     yield from _stream(context.is_quick)
 
 
 def _dssim(is_quick: bool) -> Iterator[Row]:
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
     for width, height in SIZES[: 1 if is_quick else None]:
         found, truth = torch.rand(2, height, width, 3, generator=torch.Generator().manual_seed(0))
         found.requires_grad_()
@@ -55,7 +69,61 @@ def _dssim(is_quick: bool) -> Iterator[Row]:
             wished = f"under {MOST_MS:g} ms", ms < MOST_MS
         against = "torch's operations" if ratio else ""
         yield Row(f"{width} x {height}", "D-SSIM, value and gradient", round(ms, 2), "ms", ratio, against, *wished)
-    torch.set_num_threads(before)
+
+
+def _features(n: int) -> Iterator[Row]:
+    splats, eye = random_splats(n), torch.tensor([0.5, -40.0, 1.0])
+    splats.panels[::2] = 1
+    given = torch.randn(n, 11, generator=torch.Generator().manual_seed(0))
+    light = given[:, :3]
+
+    def in_torch() -> Tensor:
+        return splats.features_twin(eye, light_of_display(display_colours_twin(splats.means, splats.sh, eye, 3)))
+
+    def there_and_back(features: Callable[[], Tensor], gradient: Tensor) -> Callable[[], None]:
+        def work() -> None:
+            splats.zero_grad()
+            features().backward(gradient)
+
+        return work
+
+    light_ms = _least_ms(there_and_back(lambda: splats.colours(eye), light), REPEATS)
+    ms = _least_ms(there_and_back(lambda: splats.features(eye), given), REPEATS)
+    ratio = round(ms / _least_ms(there_and_back(in_torch, given), REPEATS), 4)
+    yield Row(f"{n} discs", "light by direction, value and gradient", round(light_ms, 2), "ms")
+    wished = "under half of torch's", ratio < 0.5
+    yield Row(
+        f"{n} discs", "all features, value and gradient", round(ms, 2), "ms", ratio, "torch's operations", *wished
+    )
+
+
+def _kept_memory(n: int) -> Iterator[Row]:
+    generator = torch.Generator().manual_seed(0)
+    mlp = ReflectionMlp(SHAPE, 0.3, generator)
+    points, directions = 2.0 * torch.rand(2, n, 3, generator=generator) - 1.0
+    numbers = iter(torch.randint(n // 2, n, (MOST_STEPS,), generator=generator).tolist())
+
+    def there_and_back() -> None:
+        shown = next(numbers)
+        mlp(points[:shown], directions[:shown]).sum().backward()
+
+    plain_ms = _mean_ms(there_and_back, N_STEPS)
+    with freed_memory_kept():
+        kept_ms = _mean_ms(there_and_back, N_STEPS)
+    name = f"{n} rays, Reflection MLP {SHAPE.layers} x {SHAPE.width}"
+    yield Row(name, "there and back, memory given back to the system", round(plain_ms, 2), "ms")
+    ratio = round(kept_ms / plain_ms, 4)
+    yield Row(name, "there and back, memory kept", round(kept_ms, 2), "ms", ratio, "given back", "less", ratio < 1.0)
+
+
+def _mean_ms(work: Callable[[], None], n: int) -> float:
+    """Processor time, after a few calls that are not counted: pages do not come anew in each."""
+    for _ in range(3):
+        work()
+    started = time.process_time()
+    for _ in range(n):
+        work()
+    return 1e3 * (time.process_time() - started) / n
 
 
 def _least_ms(work: Callable[[], None], n: int) -> float:
@@ -127,7 +195,9 @@ BENCHMARK = Benchmark(
     "modelling-parts",
     "Parts of the modelling",
     "D-SSIM of random pictures, value and gradient, in processor time of one thread, against the same of torch's own "
-    "convolutions. The stream of photos gives random windows of 1024 x 768 with normals; what it takes is the largest "
-    "resident memory of its process less that before the first sample.",
+    "convolutions; what discs add to pictures, against torch's operations; and a network asked as in steps of a "
+    "training, about more rays or fewer, where the C library gives free memory back and where it keeps it. The stream "
+    "of photos gives random windows of 1024 x 768 with normals; what it takes is the largest resident memory of its "
+    "process less that before the first sample.",
     measure,
 )
