@@ -64,7 +64,7 @@ class ShownModels:
 
     def __init__(self) -> None:
         self._models: OrderedDict[tuple[Path, int], ShownModel] = OrderedDict()
-        self._cut: tuple[SceneModel, Section, SceneModel] | None = None
+        self._cuts: OrderedDict[SceneModel, tuple[Section, SceneModel]] = OrderedDict()
 
     def of(self, folder: Path) -> ShownModel:
         """Read, unless it is kept and its file has not changed.
@@ -84,15 +84,19 @@ class ShownModels:
         return self._models[key]
 
     def cut(self, shown: ShownModel, section: Section | None) -> SceneModel:
-        """A model without what lies beyond a plane; the last one is kept."""
+        """A model without what lies beyond a plane; the last one of each of two models is kept."""
+        model = shown.model
         if section is None:
-            return shown.model
-        if self._cut is None or self._cut[0] is not shown.model or self._cut[1] != section:
-            model = shown.model
+            return model
+        known = self._cuts.get(model)
+        if known is None or known[0] != section:
             along = model.splats.means.detach()[:, section.axis] + float(model.origin_enu_m[section.axis])
             kept = (along <= section.at_m) if section.is_above else (along >= section.at_m)
-            self._cut = model, section, model.with_splats(kept)
-        return self._cut[2]
+            self._cuts[model] = known = section, model.with_splats(kept)
+        self._cuts.move_to_end(model)
+        while len(self._cuts) > MOST_MODELS:
+            self._cuts.popitem(last=False)
+        return known[1]
 
 
 def shown_of(trained: TrainedModel) -> ShownModel:

@@ -88,6 +88,16 @@ def test_what_lies_beyond_a_section_is_not_there(folders, darkroom):
     )
 
 
+def test_the_same_section_of_two_models_is_cut_once_each(folders, darkroom):
+    section = Section(2, 1.0)
+    shown = [darkroom._models.of(folders / "scene"), ShownModels().of(folders / "scene")]
+    first = [darkroom._models.cut(each, section) for each in shown]
+    assert first[0] is not first[1]
+    for each, cut in zip(shown, first, strict=True):
+        assert darkroom._models.cut(each, section) is cut
+        assert darkroom._models.cut(each, Section(2, 2.0)) is not cut
+
+
 def test_a_probe_tells_panel_and_place(folders, darkroom):
     source = read_photo_set(folders / "data")
     photo, corners = source.photos[0], source.panels.corners_enu_m

@@ -67,6 +67,8 @@ class ModelDesk(QObject):
         self._came.connect(self._take)
         self.card: SceneCard | None = None
         self.others: tuple[Path, ...] = ()
+        self.beside: SceneCard | None = None
+        self._wanted_beside: Path | None = None
         self.selected = ""
         self.level: Level = "panel"
         self.colour_by = ""
@@ -118,6 +120,20 @@ class ModelDesk(QObject):
         self.is_reading = False
         self.sceneChanged.emit()
 
+    def stand_beside(self, folder: Path | None) -> None:
+        """Read what is known of another scene, whose picture stands beside: its panels have numbers of its own."""
+        self._wanted_beside = folder
+        if self.beside is not None and self.beside.folder == folder:
+            return
+        self.beside = None
+        if folder is not None:
+            self._workspace.start(self.tr("Open the model beside it"), lambda _context: read_card(folder), self._stands)
+
+    def _stands(self, card: SceneCard) -> None:
+        if card.folder == self._wanted_beside:
+            self.beside = card
+            self.coloursChanged.emit()
+
     # Pictures
 
     def look(self, look: Look) -> None:
@@ -159,10 +175,16 @@ class ModelDesk(QObject):
     @property
     def tints(self) -> Tints:
         """Colours by panels' numbers."""
-        if self.card is None:
-            return ()
-        panels = self.card.by_global_id
-        return tuple((panels[each].element.panel, colour) for each, colour in self.colouring.colours.items())
+        return self._tints_of(self.card)
+
+    @property
+    def tints_beside(self) -> Tints:
+        """The same colours by the numbers that the panels have in what stands beside."""
+        return self._tints_of(self.beside)
+
+    def _tints_of(self, card: SceneCard | None) -> Tints:
+        panels, found = {} if card is None else card.by_global_id, self.colouring.colours
+        return tuple((panels[each].element.panel, colour) for each, colour in found.items() if each in panels)
 
     def _colour(self) -> None:
         facades = {} if self.card is None else {panel.global_id: panel.facade for panel in self.card.panels}

@@ -109,8 +109,8 @@ class ScenePane(QWidget):
         if right is None:
             self._images["right"] = None
         layer = str(self.layer.currentData() or PICTURE)
-        tints = self._desk.tints if layer == PICTURE else ()
-        self.looks.show(View(self.led.camera, left, right, layer, "", tints, self.section()))
+        tints, right_tints = (self._desk.tints, self._desk.tints_beside) if layer == PICTURE else ((), ())
+        self.looks.show(View(self.led.camera, left, right, layer, "", tints, self.section(), right_tints))
         self._say()
 
     def section(self) -> Section | None:
@@ -168,7 +168,7 @@ class ScenePane(QWidget):
     def _connect(self) -> None:
         view, desk = self.view, self._desk
         self.layer.currentIndexChanged.connect(self.show_view)
-        self.compare.currentIndexChanged.connect(self.show_view)
+        self.compare.currentIndexChanged.connect(self._set_beside)
         self.axis.currentIndexChanged.connect(self.show_view)
         self.cut.valueChanged.connect(self.show_view)
         self.turn_over.toggled.connect(self.show_view)
@@ -205,6 +205,11 @@ class ScenePane(QWidget):
         self.show_view()
 
     def _led(self) -> None:
+        self.show_view()
+
+    def _set_beside(self) -> None:
+        other = str(self.compare.currentData() or "")
+        self._desk.stand_beside(Path(other) if other else None)
         self.show_view()
 
     def _clicked(self, x: float, y: float) -> None:

@@ -54,6 +54,8 @@ class View:
         Name of a photo; "" for none.
     tints, section
         See `Look`.
+    right_tints
+        Of the panels of what is on the right, whose numbers are its own.
     """
 
     camera: PosedPhoto
@@ -63,6 +65,7 @@ class View:
     exposed_as: str = ""
     tints: Tints = ()
     section: Section | None = None
+    right_tints: Tints = ()
 
 
 class Looks(QObject):
@@ -188,7 +191,8 @@ class Looks(QObject):
         self._on_way[place] = number
         self._shown[place] = (self._version, is_fine)
         layer = "picture" if subject.kind == "photo" else view.layer
-        self._send(Look(place, number, subject, camera, layer, view.exposed_as, view.tints, view.section))
+        tints = view.tints if place == "left" else view.right_tints
+        self._send(Look(place, number, subject, camera, layer, view.exposed_as, tints, view.section))
 
     def _fine_px(self) -> float:
         width, height = self._size_px()

@@ -2778,6 +2778,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Modell öffnen</translation>
     </message>
     <message>
+        <source>Open the model beside it</source>
+        <translation>Modell daneben öffnen</translation>
+    </message>
+    <message>
         <source>The process that shows models has ended (exit status {0}); it starts anew.</source>
         <translation>Der Prozess, der Modelle zeigt, ist beendet (Status {0}); er startet neu.</translation>
     </message>

@@ -1,5 +1,7 @@
 """The Model tab: panels are chosen, coloured, searched and measured, and their records are kept."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
@@ -220,6 +222,31 @@ def test_another_scene_of_the_building_is_shown_beside_it(application, page, sce
     assert right[-1].subject.folder.name == "later.gsscene"
     answer(page, right[-1])
     assert page.pane.view.pictures()[1] is not None
+
+
+def test_panels_have_their_colours_beside_too_where_they_have_other_numbers(application, opened, tmp_path):
+    later = made_scene(((3, 2), (2, 1)), seed=1)
+    facade = later.components[1]
+    moved = tuple(replace(each, panel=5 - each.panel) for each in facade.elements)
+    components = (later.components[0], replace(facade, elements=moved), *later.components[2:])
+    write_scene(replace(later, components=components), opened.desk.card.folder.parent / "later.gsscene")
+    opened.desk.open(opened.desk.card.folder)
+    turn_until(application, lambda: not opened._workspace.jobs())
+    opened.desk.put(Defect(opened.desk.card.panels[2].global_id, "crack", 5, "2026-05-04"))
+    opened.side.colour.setCurrentIndex(opened.side.colour.findData(str(Computed.DEFECTS)))
+    opened.pane.axis.setCurrentIndex(1)
+    opened.pane.compare.setCurrentIndex(1)
+    turn_until(application, lambda: opened.desk.beside is not None)
+    assert dict(opened.desk.tints) == {2: (128, 0, 38)}
+    assert dict(opened.desk.tints_beside) == {3: (128, 0, 38)}
+    opened.pane.looks.forget()
+    opened.pane.show_view()
+    left, right = looks(opened)[-2:]
+    assert (left.place, right.place) == ("left", "right")
+    assert (left.tints, right.tints) == (opened.desk.tints, opened.desk.tints_beside)
+    assert left.section == right.section is not None
+    opened.pane.compare.setCurrentIndex(0)
+    assert opened.desk.tints_beside == ()
 
 
 def test_the_picture_is_saved_with_its_marks(opened, tmp_path):
