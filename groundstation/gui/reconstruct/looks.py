@@ -15,12 +15,13 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
+from groundstation.services.picture_pace import PicturePace
 from groundstation.services.reconstruct_camera import sized
 from groundstation.services.reconstruct_messages import Look, Section, Seen, Subject, Tints
 from reconstruction.cameras import PosedPhoto
 
 QUICK_S = 0.12
-"""What a picture may take while the camera is led about."""
+"""What a picture may take while the camera is led about, where so few pixels help (`picture_pace`)."""
 
 LEAST_PX, QUICK_PX = 96 * 72, 160 * 120
 """Pixels of the smallest coarse picture, and of the first one, before anybody knows how long one takes."""
@@ -94,7 +95,7 @@ class Looks(QObject):
         self._view: View | None = None
         self._on_way: dict[str, int] = {}
         self._version, self._shown = 0, {"left": (-1, False), "right": (-1, False)}
-        self._seconds_per_px: dict[str, float] = {}
+        self._paces: dict[str, tuple[Subject, PicturePace]] = {}
         self._is_learning = False
         self._rest, self._again = QTimer(self), QTimer(self)
         for timer, slot in ((self._rest, self._go_on), (self._again, self._look_again)):
@@ -139,7 +140,7 @@ class Looks(QObject):
             return
         lens = seen.look.camera.intrinsics
         if seen.picture is not None and seen.look.subject.kind != "photo":
-            self._seconds_per_px[place] = seen.seconds / (lens.width_px * lens.height_px)
+            self._pace(place, seen.look.subject).took(lens.width_px * lens.height_px, seen.seconds)
         self.pictureCame.emit(place, None if seen.picture is None else image_of(seen.picture), seen)
         self._go_on()
 
@@ -148,7 +149,7 @@ class Looks(QObject):
             return
         self._look_anew()
         pixels = self._fine_px()
-        took_s = max([0.0, *(pixels * each for each in self._seconds_per_px.values())])
+        took_s = max([0.0, *(pace.seconds_of(pixels) for _, pace in self._paces.values())])
         self._again.start(int(1000.0 * max(AGAIN_S, AGAIN_TIMES * took_s)))
 
     def _look_anew(self) -> None:
@@ -182,7 +183,7 @@ class Looks(QObject):
     def _ask(self, view: View, place: str, is_fine: bool) -> None:
         subject = view.left if place == "left" else view.right
         assert subject is not None
-        pixels, fine = self._quick_px(place), self._fine_px()
+        pixels, fine = self._quick_px(place, subject), self._fine_px()
         is_fine = is_fine or pixels >= fine or subject.kind == "photo"
         width, height = self._size_px()
         scale = math.sqrt((fine if is_fine else pixels) / max(1.0, fine)) * self._fine_scale()
@@ -202,9 +203,16 @@ class Looks(QObject):
         width, height = self._size_px()
         return min(1.0, math.sqrt(MOST_PX / max(1.0, width * height)))
 
-    def _quick_px(self, place: str) -> float:
-        known = self._seconds_per_px.get(place)
-        return QUICK_PX if known is None else max(LEAST_PX, QUICK_S / max(known, 1e-9))
+    def _quick_px(self, place: str, subject: Subject) -> float:
+        found = self._pace(place, subject).pixels_within(QUICK_S)
+        return QUICK_PX if found is None else max(LEAST_PX, found)
+
+    def _pace(self, place: str, subject: Subject) -> PicturePace:
+        """Of what is shown at a place; another subject's says nothing of it."""
+        known = self._paces.get(place)
+        if known is None or known[0] != subject:
+            self._paces[place] = known = subject, PicturePace()
+        return known[1]
 
 
 def image_of(picture: np.typing.NDArray[np.uint8]) -> QImage:
