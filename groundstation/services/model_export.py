@@ -29,6 +29,7 @@ class ModelFormat(StrEnum):
     PLY = "ply"
     PLY_2DGS = "ply-2dgs"
     SPZ = "spz"
+    SPZ_4 = "spz-4"
     SOG = "sog"
     MESH = "mesh"
     CITYJSON = "cityjson"
@@ -245,7 +246,9 @@ def _ply(export: _Export) -> list[str]:
 def _spz(export: _Export) -> list[str]:
     from reconstruction.exports.spz import write_spz
 
-    return _left_out(write_spz(export.scene, export.out, _compression(export), monitor=export.monitor))
+    version: Literal[3, 4] = 4 if export.wanted.format is ModelFormat.SPZ_4 else 3
+    compression = _compression(export)
+    return _left_out(write_spz(export.scene, export.out, compression, monitor=export.monitor, version=version))
 
 
 def _sog(export: _Export) -> list[str]:
@@ -276,6 +279,7 @@ WRITERS: dict[ModelFormat, Callable[[_Export], list[str]]] = {
     ModelFormat.PLY: _ply,
     ModelFormat.PLY_2DGS: _ply,
     ModelFormat.SPZ: _spz,
+    ModelFormat.SPZ_4: _spz,
     ModelFormat.SOG: _sog,
     ModelFormat.MESH: _mesh,
     ModelFormat.CITYJSON: _cityjson,

@@ -1,8 +1,7 @@
-"""SPZ files (Niantic, version 3): Gaussians in few bytes each, and one gzip stream for all of them.
+"""SPZ files (Niantic): Gaussians in few bytes each, all in one gzip stream (version 3) or by kinds in ZSTD (version 4).
 
-Version 3 is read by everything that reads SPZ; version 4 (ZSTD) by the newest programs only, and
-Python has no ZSTD of its own before 3.14. The format has neither panels nor origin: places count from the scene's
-`origin_enu_m`.
+Nearly everything that reads SPZ reads version 3. Version 4 is smaller and is unpacked sooner; PlayCanvas' engine reads
+it alone. The format has neither panels nor origin: places count from the scene's `origin_enu_m`.
 """
 
 from __future__ import annotations
@@ -10,6 +9,7 @@ from __future__ import annotations
 import struct
 import zlib
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -27,24 +27,21 @@ from reconstruction.exports.gaussian_blocks import (
     n_gaussians,
 )
 from reconstruction.exports.spz_packing import STREAMS, fraction_bits, n_resized, packed, sizes_of
+from reconstruction.exports.spz_zstd import AT_ONCE_BYTES, MAGIC, zstd_file
 from reconstruction.exports.turned_axes import Axes
 from reconstruction.objects.gs_scene import GsScene
 from reconstruction.splatting.raster import FLAT, SOLID
 
-MAGIC = b"NGSP"
-
-VERSION = 3
+Version = Literal[3, 4]
 
 HEADER = struct.Struct("<4sIIBBBB")
-"""Magic, version, count, degree, bits after the binary point, flags, reserved."""
+"""Of version 3: magic, version, count, degree, bits after the binary point, flags, reserved."""
 
 ANTIALIASED = 1
 """Of the flags."""
 
 GZIP = 31
 """zlib's name for a window of 32 KiB in a gzip stream."""
-
-AT_ONCE_BYTES = 1 << 22
 
 
 def write_spz(
@@ -53,6 +50,7 @@ def write_spz(
     compression: Compression = PRESETS["balanced"],
     axes: Axes = "y-up",
     monitor: Monitor = QUIET,
+    version: Version = 3,
 ) -> Compressed:
     """Write the components of a scene that are here, whole or not at all.
 
@@ -67,13 +65,13 @@ def write_spz(
         There is nothing to see, numbers are not finite or too large, or the file cannot be written.
     """
     check_scene(scene, path)
-    content, found = spz_of(scene, compression, axes, path, monitor)
+    content, found = spz_of(scene, compression, axes, path, monitor, version)
     write_atomically(path, content)
     return found
 
 
 def spz_of(
-    scene: GsScene, compression: Compression, axes: Axes, path: Path, monitor: Monitor
+    scene: GsScene, compression: Compression, axes: Axes, path: Path, monitor: Monitor, version: Version = 3
 ) -> tuple[bytes, Compressed]:
     """What a file of a scene's components holds, and what came of them.
 
@@ -108,8 +106,13 @@ def spz_of(
             streams[name][rows] = values
         resized += n_resized(block, n_sizes)
         start += len(block)
-    header = HEADER.pack(MAGIC, VERSION, n, compression.degree, fraction, ANTIALIASED * is_antialiased(scene), 0)
-    content = _gzipped([header, *(streams[name].data.cast("B") for name in STREAMS if streams[name].size)], monitor)
+    parts = [streams[name].data.cast("B") for name in STREAMS if streams[name].size]
+    flags = ANTIALIASED * is_antialiased(scene)
+    if version == 3:
+        header = HEADER.pack(MAGIC, version, n, compression.degree, fraction, flags, 0)
+        content = _gzipped([header, *parts], monitor)
+    else:
+        content = zstd_file(n, compression.degree, fraction, flags, parts, monitor)
     return content, Compressed(path, len(content), n, n_gaussians(scene) - n, resized, 2.0 ** -(fraction + 1))
 
 

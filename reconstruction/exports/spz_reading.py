@@ -7,27 +7,30 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
+from backports import zstd
 
 from planning.errors import InputError
+from reconstruction.exports import spz_zstd
 from reconstruction.exports.ellipsoids import Ellipsoids
-from reconstruction.exports.spz import AT_ONCE_BYTES, GZIP, HEADER, MAGIC
+from reconstruction.exports.spz import GZIP, HEADER
 from reconstruction.exports.spz_packing import MOST_FRACTION_BITS, STREAMS, Bytes, sizes_of, unpacked
+from reconstruction.exports.spz_zstd import AT_ONCE_BYTES, MAGIC
 from reconstruction.exports.turned_axes import Axes, turned_back
 
 MOST_GAUSSIANS = 10_000_000
 """2.4 GB of them in memory; no viewer shows as many."""
 
-MOST_DEFLATED = 1032
-"""To one byte, by deflate."""
+MOST_DEFLATED, MOST_IN_FRAME = 1032, 1 << 15
+"""To one byte, by deflate, and by ZSTD, of which a block of 128 KiB may take 4 bytes."""
 
 MOST_AFTER = 1 << 20
-"""Bytes of extensions after the Gaussians."""
+"""Bytes of extensions, after the Gaussians or before the table of contents."""
 
-HOW_TO_CONVERT = "save it as version 3, for example by `splat-transform FILE --spz-version 3 OTHER.spz`"
+HOW_TO_CONVERT = "save it as version 3 or 4, for example by `splat-transform FILE OTHER.spz`"
 
 
 def read_spz(path: Path, axes: Axes = "y-up") -> Ellipsoids:
-    """Gaussians of a file of version 2 or 3, in ENU.
+    """Gaussians of a file of version 2 to 4, in ENU.
 
     Parameters
     ----------
@@ -45,7 +48,7 @@ def read_spz(path: Path, axes: Axes = "y-up") -> Ellipsoids:
             start = stream.read(4)
             stream.seek(0)
             if start == MAGIC:
-                raise InputError(f"{path}: is an SPZ file of version 4 or later, which is not read; {HOW_TO_CONVERT}")
+                return turned_back(_read_frames(stream, size, path), axes)
             if start[:2] != b"\x1f\x8b":
                 raise InputError(f"{path}: is no SPZ file (it does not start like one)")
             return turned_back(_read(_Inflated(stream, path), size, path), axes)
@@ -104,19 +107,75 @@ def _read(inflated: _Inflated, size: int, path: Path) -> Ellipsoids:
         raise InputError(f"{path}: is no SPZ file (there is something else in its gzip stream)")
     if version not in (2, 3):
         raise InputError(f"{path}: expected SPZ of version 2 or 3, found {version}; {HOW_TO_CONVERT}")
-    if degree > 3:
-        raise InputError(f"{path}: has colours of degree {degree}; 0 to 3 are read")
-    if fraction > MOST_FRACTION_BITS:
-        raise InputError(f"{path}: has {fraction} bits after the binary point; expected 0 to {MOST_FRACTION_BITS}")
-    sizes = sizes_of(degree, version)
-    needed = HEADER.size + n * sum(sizes.values())
-    if n == 0 or needed > MOST_DEFLATED * size:
-        raise InputError(f"{path}: says that it has {n} Gaussians; the file's {size} bytes cannot hold them")
-    if n > MOST_GAUSSIANS:
-        raise InputError(f"{path}: has {n} Gaussians; at most {MOST_GAUSSIANS} are read")
+    sizes = _checked_sizes(version, n, degree, fraction, MOST_DEFLATED * size - HEADER.size, size, path)
     streams: dict[str, Bytes] = {}
     for name in STREAMS:
         values = np.frombuffer(inflated.take(n * sizes[name]), np.uint8)
         streams[name] = values.reshape(n, sizes[name])
     inflated.end()
     return unpacked(streams, fraction, degree, version)
+
+
+def _read_frames(stream: BinaryIO, size: int, path: Path) -> Ellipsoids:
+    """A file of version 4."""
+    header = stream.read(spz_zstd.HEADER.size)
+    if len(header) < spz_zstd.HEADER.size:
+        raise InputError(f"{path}: ends too early; it is cut off or damaged")
+    _, version, n, degree, fraction, _, n_streams, table_at = spz_zstd.HEADER.unpack(header)
+    if version != spz_zstd.VERSION:
+        raise InputError(f"{path}: expected SPZ of version 2 to 4, found {version}; {HOW_TO_CONVERT}")
+    sizes = _checked_sizes(version, n, degree, fraction, MOST_IN_FRAME * size, size, path)
+    names = [name for name in STREAMS if sizes[name]]
+    if n_streams != len(names) or not spz_zstd.HEADER.size <= table_at <= spz_zstd.HEADER.size + MOST_AFTER:
+        raise InputError(f"{path}: has {n_streams} streams from byte {table_at} on; expected {len(names)} from 32 on")
+    stream.seek(table_at)
+    table = stream.read(n_streams * spz_zstd.ENTRY.size)
+    if len(table) < n_streams * spz_zstd.ENTRY.size:
+        raise InputError(f"{path}: ends too early; it is cut off or damaged")
+    entries = list(spz_zstd.ENTRY.iter_unpack(table))
+    if table_at + len(table) + sum(packed for packed, _ in entries) != size:
+        raise InputError(f"{path}: its streams do not end where it does; it is cut off or damaged")
+    streams: dict[str, Bytes] = {"sh": np.zeros((n, 0), np.uint8)}
+    for name, (packed, wanted) in zip(names, entries, strict=True):
+        if wanted != n * sizes[name]:
+            raise InputError(f"{path}: has {wanted} bytes of {name}; expected {n * sizes[name]}")
+        values = np.frombuffer(_unpacked_frame(stream.read(packed), wanted, path), np.uint8)
+        streams[name] = values.reshape(n, sizes[name])
+    return unpacked(streams, fraction, degree, version)
+
+
+def _unpacked_frame(frame: bytes, wanted: int, path: Path) -> bytes:
+    """What a frame holds, which is so many bytes, and no more of it in memory."""
+    decompressor = zstd.ZstdDecompressor()
+    try:
+        # One more is asked for, so that the end is come to, and more than there should be is noticed.
+        found = decompressor.decompress(frame, wanted + 1)
+    except zstd.ZstdError as error:
+        raise InputError(f"{path}: is damaged ({error})") from error
+    if len(found) != wanted or not decompressor.eof or decompressor.unused_data:
+        raise InputError(f"{path}: a stream holds more or less than it says; it is cut off or damaged")
+    return found
+
+
+def _checked_sizes(
+    version: int, n: int, degree: int, fraction: int, most: int, size: int, path: Path
+) -> dict[str, int]:
+    """Bytes of a Gaussian in each stream, after what a header says was looked at.
+
+    Parameters
+    ----------
+    most
+        Bytes that all of them can be unpacked to.
+    size
+        Of the file.
+    """
+    if degree > 3:
+        raise InputError(f"{path}: has colours of degree {degree}; 0 to 3 are read")
+    if fraction > MOST_FRACTION_BITS:
+        raise InputError(f"{path}: has {fraction} bits after the binary point; expected 0 to {MOST_FRACTION_BITS}")
+    sizes = sizes_of(degree, version)
+    if n == 0 or n * sum(sizes.values()) > most:
+        raise InputError(f"{path}: says that it has {n} Gaussians; the file's {size} bytes cannot hold them")
+    if n > MOST_GAUSSIANS:
+        raise InputError(f"{path}: has {n} Gaussians; at most {MOST_GAUSSIANS} are read")
+    return sizes

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from reconstruction.exports.gltf import GltfOptions, write_gltf
 from reconstruction.exports.ply_export import write_ply
+from reconstruction.exports.spz import write_spz
 from reconstruction.exports.tiles3d import TilesOptions, write_tiles
 from reconstruction.exports.usd import write_usd
 from reconstruction.exports.web import write_web
@@ -22,6 +23,8 @@ from reconstruction.objects.store import StoredScene
 
 WRITERS: dict[str, Callable[[GsScene, Path], object]] = {
     "ply": lambda scene, out: write_ply(scene, out.with_suffix(".ply")),
+    "SPZ": lambda scene, out: write_spz(scene, out.with_suffix(".spz")),
+    "SPZ 4": lambda scene, out: write_spz(scene, out.with_suffix(".spz"), version=4),
     "web": write_web,
     "glTF, numbers": lambda scene, out: write_gltf(scene, out.with_suffix(".glb")),
     "glTF, SPZ": lambda scene, out: write_gltf(scene, out.with_suffix(".glb"), GltfOptions(gaussians="spz")),

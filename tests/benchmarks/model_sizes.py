@@ -7,6 +7,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -56,10 +57,11 @@ CHANGE = 0.1
 
 FORMATS: dict[str, tuple[Callable[[GsScene, Path, Compression], Compressed], Callable[[Path], Ellipsoids]]] = {
     "spz": (write_spz, read_spz),
+    "spz-4": (partial(write_spz, version=4), read_spz),
     "sog": (write_sog, read_sog),
 }
 
-COLOURS = {"spz": "#0072b2", "sog": "#d55e00"}
+COLOURS = {"spz": "#0072b2", "spz-4": "#009e73", "sog": "#d55e00"}
 
 BITS = tuple(Compression(first_bits=bits, further_bits=bits) for bits in (2, 3, 4, 5, 6, 7, 8))
 PALETTES = tuple(Compression(palette=65_536, gaussians_each=each) for each in (256, 64, 32, 16, 8, 4, 2))

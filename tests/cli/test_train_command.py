@@ -279,6 +279,7 @@ def test_what_is_no_model_is_not_organised(reflight, glass, tmp_path):
         ("ply", ".ply"),
         ("ply-2dgs", ".ply"),
         ("spz", ".spz"),
+        ("spz-4", ".spz"),
         ("sog", ".sog"),
         ("mesh", ".glb"),
         ("cityjson", ".city.json"),

@@ -13,7 +13,7 @@ MAX_RETURN_HEIGHT_M = 1500.0
 """Highest that DJI's waylines allow for any height above take-off."""
 
 MISSIONS = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
-MODELS = ("web", "gltf", "3d-tiles", "usd", "ply", "ply-2dgs", "spz", "sog", "mesh", "cityjson", "ifc")
+MODELS = ("web", "gltf", "3d-tiles", "usd", "ply", "ply-2dgs", "spz", "spz-4", "sog", "mesh", "cityjson", "ifc")
 
 COLOURS_HELP = "baked: what panels mirror is in their colours (default); own: without"
 GAUSSIANS_HELP = (
@@ -28,6 +28,7 @@ EPILOG = """formats of models:
   usd           .usdc or .usda: splats and panels
   ply, ply-2dgs splats for SuperSplat and others, as ellipsoids or as discs
   spz, sog      splats, compressed
+  spz-4         the same as spz in its newer version, smaller, for the newest programs
   mesh          .glb: panels with pictures of their fronts, for programs that know no splats
   cityjson, ifc the panels alone, as windows and plates of the building
 
@@ -79,7 +80,7 @@ def add_parser(subparsers: Any) -> None:
         "--preset",
         choices=("small", "balanced", "fine"),
         default="balanced",
-        help="of spz, sog and --gaussians spz (default balanced)",
+        help="of spz, spz-4, sog and --gaussians spz (default balanced)",
     )
     model.add_argument("--gaussians", choices=("numbers", "spz", "points"), help=GAUSSIANS_HELP)
     model.add_argument("--components", type=words, metavar="LIST", help="such as A,background (default: all)")

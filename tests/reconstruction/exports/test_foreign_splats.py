@@ -107,9 +107,10 @@ def assert_same(found, truth, with_panels=False):
         assert np.array_equal(found.panels, truth.panels)
 
 
+@pytest.mark.parametrize("version", [3, 4])
 @pytest.mark.parametrize(("axes", "name"), [("y-up", "RUB"), ("y-down", "RDF"), ("enu", "RFU")])
-def test_the_reference_library_reads_our_spz_in_any_axes(scene, tmp_path, axes, name):
-    path, out = write_spz(scene, tmp_path / "a.spz", ALL).path, tmp_path / "found.json"
+def test_the_reference_library_reads_our_spz_in_any_axes(scene, tmp_path, axes, name, version):
+    path, out = write_spz(scene, tmp_path / "a.spz", ALL, version=version).path, tmp_path / "found.json"
     library = package("@adobe/spz") / "dist" / "spz.js"
     run_node("--input-type=module", "-e", REFERENCE, library, path, name, out)
     content = json.loads(out.read_text())
@@ -153,8 +154,9 @@ def test_splat_transform_knows_which_splats_are_antialiased(scene, tmp_path, nam
     assert ("SplatRenderMode: mip" in read_header(out).comments) == is_on
 
 
-def test_splat_transform_reads_our_spz(scene, tmp_path):
-    path = write_spz(scene, tmp_path / "a.spz", ALL).path
+@pytest.mark.parametrize("version", [3, 4])
+def test_splat_transform_reads_our_spz(scene, tmp_path, version):
+    path = write_spz(scene, tmp_path / "a.spz", ALL, version=version).path
     assert_same(of_ply(converted(path, tmp_path / "out.ply")), turned(read_spz(path), "y-up"))
 
 
@@ -166,6 +168,7 @@ def test_we_read_what_splat_transform_writes(scene, tmp_path):
         # Of a palette, its search takes 17 s of processor time.
         (read_sog(converted(plain, tmp_path / "b.sog", "-g", "cpu")), 1),
         (read_spz(converted(path, tmp_path / "b.spz", "--spz-version", "3"), "y-down"), 16),
+        (read_spz(converted(path, tmp_path / "c.spz", "--spz-version", "4"), "y-down"), 16),
     ):
         nearest = np.linalg.norm(found.means_m[:, None] - truth.means_m[None], axis=2).argmin(axis=1)
         assert len(set(nearest)) == len(truth)

@@ -4,10 +4,12 @@ import gzip
 import itertools
 import math
 import struct
+import tracemalloc
 import zlib
 
 import numpy as np
 import pytest
+from backports import zstd
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,9 +30,25 @@ from tests.reconstruction.objects.made_scene import made_scene
 ALL = Compression(first_bits=8, further_bits=8, least_opacity=0.0)
 
 
+def as_version_3(path):
+    """What the gzip stream of a file of version 3 holds; of one of version 4, what it would hold."""
+    content = path.read_bytes()
+    if content[:4] != b"NGSP":
+        return gzip.decompress(content)
+    magic, version, n, degree, fraction, flags, n_streams, at = struct.unpack_from("<IIIBBBBI", content)
+    assert (magic, version, n_streams, at) == (0x5053474E, 4, 6 if degree else 5, 32)
+    assert content[20:32] == bytes(12)
+    table = struct.unpack_from(f"<{2 * n_streams}Q", content, 32)
+    ends = 32 + 16 * n_streams + np.cumsum([0, *table[::2]])
+    assert ends[-1] == len(content)
+    streams = [zstd.decompress(content[start:end]) for start, end in itertools.pairwise(ends)]
+    assert [len(each) for each in streams] == list(table[1::2])
+    return struct.pack("<IIIBBBB", magic, 3, n, degree, fraction, flags, 0) + b"".join(streams)
+
+
 def by_hand(path):
     """A file's Gaussians one number at a time, after the specification's words: axes and all are the file's."""
-    content = gzip.decompress(path.read_bytes())
+    content = as_version_3(path)
     magic, version, n, degree, fraction, flags, _ = struct.unpack_from("<IIIBBBB", content)
     assert (magic, version, flags) == (0x5053474E, 3, 0)
     n_rest = 3 * ((degree + 1) ** 2 - 1)
@@ -59,17 +77,19 @@ def by_hand(path):
     return {name: np.array([each[name] for each in found]) for name in found[0]}
 
 
+@pytest.mark.parametrize("version", [3, 4])
 @pytest.mark.parametrize("is_on", [True, False])
-def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on):
-    write_spz(antialiased(made_scene(), is_on), tmp_path / "model.spz", ALL)
-    flags = gzip.decompress((tmp_path / "model.spz").read_bytes())[14]
+def test_a_file_says_whether_it_is_to_be_drawn_antialiased(tmp_path, is_on, version):
+    write_spz(antialiased(made_scene(), is_on), tmp_path / "model.spz", ALL, version=version)
+    flags = as_version_3(tmp_path / "model.spz")[14]
     assert flags == int(is_on)
     assert len(read_spz(tmp_path / "model.spz")) > 0
 
 
-def test_a_file_holds_what_the_specification_says(tmp_path):
+@pytest.mark.parametrize("version", [3, 4])
+def test_a_file_holds_what_the_specification_says(tmp_path, version):
     path = tmp_path / "model.spz"
-    write_spz(made_scene(), path, ALL, "enu")
+    write_spz(made_scene(), path, ALL, "enu", version=version)
     found, read = by_hand(path), read_spz(path, "enu")
     assert np.array_equal(found["means_m"].astype(np.float32), read.means_m)
     assert quaternion_errors(found["quats"], read.quats).max() < 1e-6
@@ -104,6 +124,16 @@ def test_what_is_read_differs_by_the_format_s_steps_only(tmp_path_factory, n, se
         assert np.abs(read.sh[:, 1:] - np.clip(truth.sh[:, 1:], -1.0, 127 / 128)).max() <= 0.5 / 128 + 1e-6
     else:
         assert np.abs(read.sh[:, 1:] - truth.sh[:, 1:]).max() < 0.03
+
+
+@pytest.mark.parametrize("degree", [0, 1, 2, 3])
+def test_both_versions_hold_the_same_bytes(tmp_path, degree):
+    scene, wanted = made_scene(((300,),), 50), Compression(degree)
+    done = [write_spz(scene, tmp_path / f"{version}.spz", wanted, version=version) for version in (3, 4)]
+    assert as_version_3(done[0].path) == as_version_3(done[1].path)
+    assert done[0].n_gaussians == done[1].n_gaussians == len(read_spz(done[1].path))
+    first, second = (read_spz(each.path) for each in done)
+    assert all(np.array_equal(getattr(first, name), getattr(second, name)) for name in ("means_m", "quats", "sh"))
 
 
 @pytest.mark.parametrize("degree", [0, 1, 2, 3])
@@ -187,19 +217,90 @@ def test_places_further_than_the_format_can_tell_are_refused(tmp_path):
         write_spz(scene_with(means=9e6), tmp_path / "model.spz")
 
 
+@pytest.mark.parametrize("version", [3, 4])
 @pytest.mark.parametrize("n", [0, 3, 6, 7])
-def test_an_interrupted_write_leaves_the_old_file(tmp_path, n):
+def test_an_interrupted_write_leaves_the_old_file(tmp_path, n, version):
     path = tmp_path / "model.spz"
-    write_spz(made_scene(), path)
+    write_spz(made_scene(), path, version=version)
     before = path.read_bytes()
     with pytest.raises(OperationCancelled):
-        write_spz(made_scene(seed=5), path, monitor=Interrupted(n))
+        write_spz(made_scene(seed=5), path, monitor=Interrupted(n), version=version)
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["model.spz"]
 
 
 def header(version=3, n=1, degree=0, fraction=12, magic=b"NGSP"):
     return struct.pack("<4sIIBBBB", magic, version, n, degree, fraction, 0, 0)
+
+
+SIZES = (9, 1, 3, 3, 4)
+"""Of a Gaussian's streams at degree 0."""
+
+
+def of_version_4(n=1, degree=0, fraction=12, *, version=4, n_streams=5, at=32, streams=None, table=None, more=b""):
+    """A file with one Gaussian of zeros, but for what is said."""
+    frames = [zstd.compress(bytes(n * size)) for size in SIZES] if streams is None else streams
+    sizes = [(len(frame), n * size) for frame, size in zip(frames, SIZES, strict=True)] if table is None else table
+    header = struct.pack("<4sIIBBBBI12x", b"NGSP", version, n, degree, fraction, 0, n_streams, at)
+    return b"".join([header, bytes(max(0, at - 32)), *(struct.pack("<QQ", *each) for each in sizes), *frames, more])
+
+
+def frames(**others):
+    """Streams of one Gaussian of zeros, with others in some's place."""
+    usual = dict(zip(("positions", "alphas", "colors", "scales", "rotations"), SIZES, strict=True))
+    return [others.get(name, zstd.compress(bytes(size))) for name, size in usual.items()]
+
+
+def test_extensions_before_the_table_are_passed_over(tmp_path):
+    path = tmp_path / "more.spz"
+    path.write_bytes(of_version_4(at=32 + 500))
+    assert len(read_spz(path)) == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"NGSP\x04\0\0\0", "cut off"),
+        (of_version_4()[:60], "cut off"),
+        (of_version_4(version=5), "expected SPZ of version 2 to 4, found 5"),
+        (of_version_4(version=3), "expected SPZ of version 2 to 4, found 3"),
+        (of_version_4(degree=4), "colours of degree 4"),
+        (of_version_4(fraction=25), "25 bits after the binary point"),
+        (of_version_4(n=0), "says that it has 0 Gaussians"),
+        (of_version_4(n=2**32 - 1, streams=frames()), "says that it has 4294967295 Gaussians"),
+        (of_version_4(n_streams=6), "has 6 streams"),
+        (of_version_4(degree=1), "has 5 streams"),
+        (of_version_4(at=31), "from byte 31 on"),
+        (of_version_4(at=3 << 20), "from byte 3145728 on"),
+        (of_version_4(at=60)[:90], "cut off"),
+        (of_version_4(table=[(2**63, 9)] * 5), "do not end where it does"),
+        (of_version_4(more=b"?"), "do not end where it does"),
+        (of_version_4(streams=frames(alphas=b"no frame!")), "is damaged"),
+        (of_version_4(streams=frames(alphas=zstd.compress(bytes(2)))), "more or less than it says"),
+        (of_version_4(streams=frames(alphas=zstd.compress(b""))), "more or less than it says"),
+        (of_version_4(streams=frames(alphas=zstd.compress(bytes(1)) + b"?")), "more or less than it says"),
+        (of_version_4(streams=frames(alphas=zstd.compress(bytes(1))[:-1])), "more or less than it says"),
+        (of_version_4(streams=frames(alphas=zstd.compress(bytes(1 << 28)))), "more or less than it says"),
+        (of_version_4(table=[(len(each), 10**15) for each in frames()]), "bytes of positions; expected 9"),
+    ],
+    ids=itertools.count(),
+)
+def test_hostile_files_of_version_4_are_refused_in_words(tmp_path, content, message):
+    path = tmp_path / "model.spz"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=rf"model\.spz: .*({message})"):
+        read_spz(path)
+
+
+def test_a_bomb_of_version_4_takes_no_memory(tmp_path):
+    path = tmp_path / "bomb.spz"
+    path.write_bytes(of_version_4(streams=frames(positions=zstd.compress(bytes(1 << 29)))))
+    tracemalloc.start()
+    with pytest.raises(InputError, match="more or less than it says"):
+        read_spz(path)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10 << 20
 
 
 def test_version_2_has_rotations_of_three_bytes(tmp_path):
@@ -223,7 +324,6 @@ def test_extensions_after_the_gaussians_are_passed_over(tmp_path):
     [
         (b"", "is no SPZ file"),
         (b"ply\nformat", "is no SPZ file"),
-        (b"NGSP\x04\0\0\0" + bytes(24), "version 4 or later.*--spz-version 3"),
         (b"\x1f\x8b\x08\0", "cut off"),
         (gzip.compress(b""), "cut off"),
         (gzip.compress(header(magic=b"PSGN") + bytes(20)), "something else in its gzip stream"),
@@ -270,6 +370,22 @@ def unpacked(tmp_path_factory):
     path = tmp_path_factory.mktemp("damaged") / "b.spz"
     write_spz(made_scene(), path)
     return path, gzip.decompress(path.read_bytes())
+
+
+@settings(max_examples=60, deadline=None)
+@given(at=st.floats(0.0, 1.0), value=st.integers(0, 255), kept=st.sampled_from([0.1, 0.5, 0.99, 1.0, 1.0, 1.0]))
+def test_a_damaged_file_of_version_4_is_read_or_refused_and_nothing_else(tmp_path_factory, at, value, kept):
+    path = tmp_path_factory.mktemp("damaged") / "b.spz"
+    write_spz(made_scene(), path, version=4)
+    content = bytearray(path.read_bytes())
+    content[min(int(at * len(content)), len(content) - 1)] = value
+    path.write_bytes(content[: round(kept * len(content))])
+    try:
+        read = read_spz(path)
+    except InputError:
+        return
+    for name in ("means_m", "quats", "scales_m", "opacities", "sh"):
+        assert np.isfinite(getattr(read, name)).all()
 
 
 @settings(max_examples=40, deadline=None)
