@@ -63,8 +63,8 @@ test:
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not slow and not benchmark and not alone'
 	$(MAKE) alone FAST='not slow and'
 
-# Programs of others that read what we write, for tests that are skipped without them: Python's, those of npm, and
-# Chromium (Ubuntu has it as a snap, which does not run everywhere).
+# Programs of others that read what we write, for tests that are skipped without them: Python's, those of npm,
+# Chromium and Firefox (Ubuntu has them as snaps, which do not run everywhere).
 foreign: $(VENV)/.foreign
 
 $(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
@@ -72,6 +72,8 @@ $(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
 	@command -v npm >/dev/null || echo 'npm is missing: tests with its readers are skipped'
 	command -v chromedriver >/dev/null || { [ "$$(id -u)" = 0 ] && apt-get install -y -qq chromium chromium-driver; } || \
 		echo 'chromium and chromium-driver are missing: tests of web pages are skipped'
+	command -v firefox-esr firefox >/dev/null || { [ "$$(id -u)" = 0 ] && apt-get install -y -qq firefox-esr; } || \
+		echo 'firefox is missing: tests of web pages in it are skipped'
 	! command -v npm >/dev/null || npm ci --prefix tests/foreign --ignore-scripts --no-audit --no-fund
 	touch $@
 

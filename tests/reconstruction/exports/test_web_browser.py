@@ -1,4 +1,4 @@
-"""Web pages in headless Chromium: what a user does by mouse, fingers and keys, and what hostile records cannot do."""
+"""Web pages in browsers: what a user does by mouse, fingers and keys, and what hostile records cannot do."""
 
 import time
 from dataclasses import replace
@@ -8,18 +8,13 @@ import numpy as np
 import pytest
 
 from reconstruction.exports.web import write_web
+from tests.reconstruction.exports.firefox import Firefox
 from tests.reconstruction.exports.test_web import HOSTILE, hostile_records, hostile_scene
-from tests.reconstruction.exports.web_browser import axes_of, chromium, middle, opened, pixel
+from tests.reconstruction.exports.web_browser import axes_of, middle, opened, pixel
 from tests.reconstruction.objects.made_scene import made_scene
 
 CAMERA = "return reflight.camera()"
 PICKED = "return reflight.state().picked"
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with chromium(tmp_path_factory.mktemp("chromium")) as found:
-        yield found
 
 
 def of_pane(element, record, **fields):
@@ -68,7 +63,7 @@ def test_hostile_records_are_text_in_a_page_that_works(browser, tmp_path):
 
 
 @pytest.mark.slow
-def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(browser, tmp_path):
+def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(any_browser, tmp_path):
     scene = made_scene(sizes=((400, 400),), n_background=1)
     facade, background = scene.components
     # Panes at y = 0, seen from the south; a wall of one large disc stands before the left one.
@@ -83,34 +78,34 @@ def test_clicks_pick_what_is_seen_and_not_what_a_wall_hides(browser, tmp_path):
     values["quats"][0] = (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
     values["log_scales"][0] = np.log(0.25)
     values["opacity_logits"][0] = 8.0
-    opened(browser, tmp_path / "page", scene)
-    browser.run("reflight.look(...arguments)", (west + np.array([0.7, -8, 0])).tolist(), 0, 0)
-    browser.settled()
-    camera = browser.run(CAMERA)
+    opened(any_browser, tmp_path / "page", scene)
+    any_browser.run("reflight.look(...arguments)", (west + np.array([0.7, -8, 0])).tolist(), 0, 0)
+    any_browser.settled()
+    camera = any_browser.run(CAMERA)
     names = [element.global_id for element in facade.elements]
-    assert browser.run("return reflight.at(...arguments)", *pixel(camera, west)) == names[0]
-    assert browser.run("return reflight.seenAt(...arguments)", *pixel(camera, west)) is None
+    assert any_browser.run("return reflight.at(...arguments)", *pixel(camera, west)) == names[0]
+    assert any_browser.run("return reflight.seenAt(...arguments)", *pixel(camera, west)) is None
     beside = west + np.array([0, 0, 0.8])
     for place, expected in [(east, names[1]), (west, None), (beside, names[0])]:
         x, y = map(round, pixel(camera, place))
-        browser.mouse(("move", x, y), ("down",), ("up",))
-        assert browser.run(PICKED) == expected
-    assert browser.run("return decodeURIComponent(location.hash.slice(1))") == names[0]
+        any_browser.mouse(("move", x, y), ("down",), ("up",))
+        assert any_browser.run(PICKED) == expected
+    assert any_browser.run("return decodeURIComponent(location.hash.slice(1))") == names[0]
     # A drag is no click, and turns the model.
     x, y = map(round, pixel(camera, east))
-    browser.mouse(("move", x, y), ("down",), ("move", 200, 100), ("up",))
-    assert browser.run(PICKED) == names[0]
-    assert browser.run(CAMERA)["heading"] != camera["heading"]
+    any_browser.mouse(("move", x, y), ("down",), ("move", 200, 100), ("up",))
+    assert any_browser.run(PICKED) == names[0]
+    assert any_browser.run(CAMERA)["heading"] != camera["heading"]
 
 
 @pytest.mark.slow
-def test_search_folds_accents_and_finds_all_fields(browser, tmp_path):
+def test_search_folds_accents_and_finds_all_fields(any_browser, tmp_path):
     scene = made_scene(sizes=((20, 20, 20), (20,)))
-    opened(browser, tmp_path / "page", scene, inspected(scene))
+    opened(any_browser, tmp_path / "page", scene, inspected(scene))
 
     def found(text):
-        browser.choose("search", text)
-        return browser.texts(".row b")
+        any_browser.choose("search", text)
+        return any_browser.texts(".row b")
 
     assert found("weiss") == found("WEISS") == ["A-0000", "A-0001", "A-0002"]
     assert found("  riss AM ") == ["A-0001"]
@@ -121,23 +116,23 @@ def test_search_folds_accents_and_finds_all_fields(browser, tmp_path):
 
 
 @pytest.mark.slow
-def test_colours_show_on_panes_and_in_the_legend(browser, tmp_path):
+def test_colours_show_on_panes_and_in_the_legend(any_browser, tmp_path):
     scene = made_scene(sizes=((0, 0, 0),), n_background=0)
     panes = [element for _, element in scene.elements]
     rows = [of_pane(pane, "attribute", name="maker", value=maker) for pane, maker in zip(panes, "aab", strict=True)]
-    opened(browser, tmp_path / "page", scene, rows)
-    browser.choose("colour", "0")
-    browser.settled()
-    camera = browser.run(CAMERA)
-    shown = browser.pixels().astype(int)
+    opened(any_browser, tmp_path / "page", scene, rows)
+    any_browser.choose("colour", "0")
+    any_browser.settled()
+    camera = any_browser.run(CAMERA)
+    shown = any_browser.pixels().astype(int)
     first, second, third = (shown[int(y), int(x)] for x, y in (pixel(camera, middle(scene, pane)) for pane in panes))
     assert np.array_equal(first, second)
     # Blue and orange, as the legend says.
     assert first[2] > first[0] + 60
     assert third[0] > third[2] + 60
     squares = "return [...document.querySelectorAll('#legend .square')].map((each) => each.style.backgroundColor)"
-    assert browser.run(squares) == ["rgb(0, 114, 178)", "rgb(230, 159, 0)"]
-    assert browser.texts("#legend .swatch") == ["a", "b"]
+    assert any_browser.run(squares) == ["rgb(0, 114, 178)", "rgb(230, 159, 0)"]
+    assert any_browser.texts("#legend .swatch") == ["a", "b"]
 
 
 @pytest.mark.slow
@@ -186,37 +181,37 @@ def test_fingers_turn_move_and_pick_on_a_tablet(browser, tmp_path):
 
 
 @pytest.mark.slow
-def test_keys_reach_everything(browser, tmp_path):
+def test_keys_reach_everything(any_browser, tmp_path):
     scene = made_scene(sizes=((50, 50, 50),))
-    opened(browser, tmp_path / "page", scene, inspected(scene))
-    browser.run("document.getElementById('picture').focus()")
-    start = browser.run(CAMERA)
-    browser.press("\ue014", "w")  # arrow to the right, forward
-    moved = browser.run(CAMERA)
+    opened(any_browser, tmp_path / "page", scene, inspected(scene))
+    any_browser.run("document.getElementById('picture').focus()")
+    start = any_browser.run(CAMERA)
+    any_browser.press("\ue014", "w")  # arrow to the right, forward
+    moved = any_browser.run(CAMERA)
     assert moved["heading"] != start["heading"]
     assert np.linalg.norm(np.subtract(moved["eye"], start["eye"])) > 0.01
-    browser.press("f")
-    assert browser.run("return document.getElementById('fly').getAttribute('aria-pressed')") == "true"
-    browser.press("\ue00c", "0")  # escape
+    any_browser.press("f")
+    assert any_browser.run("return document.getElementById('fly').getAttribute('aria-pressed')") == "true"
+    any_browser.press("\ue00c", "0")  # escape
     time.sleep(0.6)
-    np.testing.assert_allclose(browser.run(CAMERA)["heading"], start["heading"], atol=1e-6)
-    browser.run("document.querySelector('.row').focus()")
-    browser.press("\ue007")  # enter
-    assert browser.run(PICKED) == scene.components[0].elements[0].global_id
-    assert browser.texts("#said")[0].endswith("A-0000")
+    np.testing.assert_allclose(any_browser.run(CAMERA)["heading"], start["heading"], atol=1e-6)
+    any_browser.run("document.querySelector('.row').focus()")
+    any_browser.press("\ue007")  # enter
+    assert any_browser.run(PICKED) == scene.components[0].elements[0].global_id
+    assert any_browser.texts("#said")[0].endswith("A-0000")
 
 
 @pytest.mark.slow
-def test_pages_open_at_the_pane_that_their_address_names(browser, tmp_path):
+def test_pages_open_at_the_pane_that_their_address_names(any_browser, tmp_path):
     scene = made_scene()
     page = write_web(scene, tmp_path / "page")
     wanted = scene.components[0].elements[2].global_id
-    browser.open(page.path, f"#{wanted}")
-    browser.settled()
-    assert browser.run(PICKED) == wanted
-    browser.open(page.path, "#%E0%A4%A")
-    browser.settled()
-    assert browser.run("return reflight.state().isLoaded")
+    any_browser.open(page.path, f"#{wanted}")
+    any_browser.settled()
+    assert any_browser.run(PICKED) == wanted
+    any_browser.open(page.path, "#%E0%A4%A")
+    any_browser.settled()
+    assert any_browser.run("return reflight.state().isLoaded")
 
 
 ATTEMPTS = """
@@ -234,47 +229,49 @@ const tried = (attempt) => { try { attempt(); return null; } catch (error) { ret
 const thrown = attempts.map(tried);
 const isFetched = await fetch("http://127.0.0.1:9/").then(() => true, () => false);
 await new Promise((go) => setTimeout(go, 200));
-return { blocked, thrown, isFetched, bad: window.bad ?? null };
+return { blocked, thrown, isFetched, bad: window.bad ?? null, knowsTrustedTypes: "trustedTypes" in window };
 """
 
 
 @pytest.mark.slow
-def test_a_page_opens_from_where_a_photo_was_taken(browser, tmp_path):
+def test_a_page_opens_from_where_a_photo_was_taken(any_browser, tmp_path):
     scene = made_scene()
     corners = np.array([element.corners_enu_m for element in scene.components[0].elements])
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
     centre = 0.5 * (corners.reshape(-1, 3).min(axis=0) + corners.reshape(-1, 3).max(axis=0))
     place = centre + 9.0 * normal / np.linalg.norm(normal) + np.array([0.0, 0.0, 3.0])
     training = {**scene.training, "places_enu_m": [(2 * centre - place).tolist(), place.tolist()]}
-    opened(browser, tmp_path / "page", replace(scene, training=training), size=(500, 500))
-    browser.run("document.getElementById('home').click()")
+    opened(any_browser, tmp_path / "page", replace(scene, training=training), size=(500, 500))
+    any_browser.run("document.getElementById('home').click()")
     time.sleep(0.6)
-    browser.settled()
-    camera = browser.run("return reflight.camera()")
+    any_browser.settled()
+    camera = any_browser.run("return reflight.camera()")
     assert np.abs(np.array(camera["eye"]) - (place - scene.origin_enu_m)).max() < 1e-3
     forward = axes_of(camera)[2]
     towards = centre - place
     assert forward @ towards / np.linalg.norm(towards) > 0.99999
 
 
-def test_the_policy_blocks_network_scripts_and_markup_from_text(browser, tmp_path):
-    opened(browser, tmp_path / "page", made_scene())
-    found = browser.run(ATTEMPTS)
+def test_the_policy_blocks_network_scripts_and_markup_from_text(any_browser, tmp_path):
+    opened(any_browser, tmp_path / "page", made_scene())
+    found = any_browser.run(ATTEMPTS)
     assert found["bad"] is None
     assert not found["isFetched"]
-    assert found["thrown"][3] == "TypeError"
+    # Firefox 140 does not have it yet; there, what the markup would run is blocked all the same.
+    assert found["knowsTrustedTypes"] or isinstance(any_browser, Firefox)
+    assert found["thrown"][3] == ("TypeError" if found["knowsTrustedTypes"] else None)
     assert {"img-src", "connect-src", "frame-src"} <= set(found["blocked"])
 
 
 @pytest.mark.slow
-def test_a_page_that_was_cut_off_says_so(browser, tmp_path):
+def test_a_page_that_was_cut_off_says_so(any_browser, tmp_path):
     page = write_web(made_scene(), tmp_path / "page")
     content = page.path.read_bytes()
     page.path.write_bytes(content[: content.index(b'id="g0">') + 200])
-    browser.open(page.path)
-    browser.settled()
-    assert "damaged" in browser.texts("#trouble")[0]
-    assert len(browser.texts(".row")) == 4
+    any_browser.open(page.path)
+    any_browser.settled()
+    assert "damaged" in any_browser.texts("#trouble")[0]
+    assert len(any_browser.texts(".row")) == 4
 
 
 @pytest.mark.slow
