@@ -1,7 +1,7 @@
 """What discs add to a picture besides their colour, seen from a place, with gradients, in one go on a processor.
 
-In plain torch (`Splats.features`) each of a dozen steps goes through all splats again: of a million, a picture of
-320 x 240 pixels took most of its time for that.
+In plain torch (`Splats.features_twin`) each of a dozen steps goes through all splats again, which takes three times as
+long (`python -m tests.benchmarks --only modelling-parts`).
 """
 
 from __future__ import annotations
