@@ -21,6 +21,7 @@ def phrasebook() -> Phrasebook:
     """All templates; read when the first sentence is told."""
     from groundstation.gui.sentences import (
         dji,
+        exports,
         fly,
         insight,
         mission,
@@ -40,6 +41,7 @@ def phrasebook() -> Phrasebook:
 
     tables = (
         dji,
+        exports,
         fly,
         insight,
         mission,

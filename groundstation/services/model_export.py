@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from planning.errors import InputError
-from planning.progress import QUIET, Monitor
+from planning.progress import QUIET, Monitor, Stop, Trace
 
 if TYPE_CHECKING:
     from reconstruction.exports.compression import Compressed, Compression
@@ -36,9 +36,28 @@ class ModelFormat(StrEnum):
     IFC = "ifc"
 
 
+ENDINGS: Mapping[ModelFormat, str] = {
+    ModelFormat.GLTF: ".glb",
+    ModelFormat.USD: ".usdc",
+    ModelFormat.PLY: ".ply",
+    ModelFormat.PLY_2DGS: ".ply",
+    ModelFormat.SPZ: ".spz",
+    ModelFormat.SPZ_4: ".spz",
+    ModelFormat.SOG: ".sog",
+    ModelFormat.MESH: ".glb",
+    ModelFormat.CITYJSON: ".city.json",
+    ModelFormat.IFC: ".ifc",
+}
+"""Of files by format; what is not here is a folder."""
+
+WITH_PRESETS = frozenset({ModelFormat.SPZ, ModelFormat.SPZ_4, ModelFormat.SOG, ModelFormat.TILES})
+"""Formats whose size a preset decides."""
+
+OF_ALL_PARTS = frozenset({ModelFormat.IFC})
+"""Formats that always have the whole building."""
+
 WITHOUT_COLOURS = frozenset({ModelFormat.CITYJSON, ModelFormat.IFC})
 """Formats of panels alone."""
-
 
 Gaussians = Literal["numbers", "spz", "points"]
 
@@ -88,6 +107,12 @@ class WrittenModel:
     notes: tuple[str, ...] = ()
 
 
+def with_ending(path: Path, kind: ModelFormat) -> Path:
+    """A file's path with the ending of its format, where it has none."""
+    ending = ENDINGS.get(kind, "")
+    return path if path.suffix or not ending else path.with_name(path.name + ending)
+
+
 def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor = QUIET) -> WrittenModel:
     """Write a model, with the records that lie beside it where the format has a place for them.
 
@@ -104,6 +129,13 @@ def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor 
     writer = WRITERS[wanted.format]
     notes += writer(_Export(scene, trained, folder, out, wanted, attributes, rows, monitor))
     return WrittenModel(out, _size(out), tuple(notes))
+
+
+def export_apart(
+    folder: Path, out: Path, wanted: ModelExport, *, stop: Stop, trace: Trace, monitor: Monitor
+) -> WrittenModel:
+    """`export_model`, as a process beside the window's calls it; it gets no better by and by, so it is not stopped."""
+    return export_model(folder, out, wanted, monitor)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

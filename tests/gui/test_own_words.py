@@ -13,6 +13,7 @@ from groundstation.gui.languages import FOLDER
 from groundstation.gui.own_words import own_words, phrasebook
 from groundstation.gui.sentences import (
     dji,
+    exports,
     fly,
     insight,
     mission,
@@ -51,6 +52,7 @@ METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 FROM_SOURCES = (
     *(
         dji,
+        exports,
         fly,
         insight,
         mission,
@@ -92,6 +94,17 @@ NOT_SHOWN = {
     "reconstruction/segmentation/fuse.py": "the views of one search are of one size",
     "reconstruction/panels/fusing.py": "the decision about each facade, for the command line",
     "reconstruction/panels/given.py": "panels files are read on the command line",
+    "groundstation/services/facility_records.py": "records are made, read and written on the command line",
+    **{
+        f"reconstruction/records/{name}.py": "records are taken from tables and building models on the command line"
+        for name in ("csv_cells", "csv_import", "csv_tables", "ifc_import", "ifc_process", "step_text")
+    },
+    "reconstruction/records/ifc_sets.py": "file content",
+    "reconstruction/exports/sog_images.py": "the window writes SOG and reads none",
+    "reconstruction/modelling/config.py": "settings are read from files on the command line",
+    "reconstruction/splatting/ply.py": "the window writes PLY files and reads none",
+    "reconstruction/splatting/ply_file.py": "the window writes PLY files and reads none",
+    "reconstruction/splatting/views.py": "cameras of pictures are straight",
     "reconstruction/panels_file.py": "panels files are read on the command line",
     "reconstruction/rectify/polynomial.py": "the polynomial is asked for on the command line",
     "reconstruction/scenes/taking.py": "how photos are taken is read from files on the command line",
@@ -151,7 +164,15 @@ NO_SENTENCE = {
         *(" - at `$", "^Object missing", "\\bsortie (\\d+), leg (\\d+)\\b", "sortie (\\d+)", "QGC WPL (\\d+)"),
         " to WGS 84",
     ),
-    "content of files": ("QGC WPL 110", '<?xml version="1.0" encoding="UTF-8"?>'),
+    "content of files": (
+        *("QGC WPL 110", '<?xml version="1.0" encoding="UTF-8"?>', '"use strict";\n(() => {\n'),
+        *("local east, north, up, metres", "above sea level by EGM96", "IFC GlobalId", "Number in the model"),
+        *("Area, m2", "Width, m", "Height, m", "no data", "Glass panel", "panels {0}", "Facade or background"),
+        *("axes: {0}", "origin of the places in the site's east, north, up, metres: ", "{0} (facade)"),
+        "root node: x east, y north, z up, metres, counted from origin_enu_m in the site's frame",
+        "tiles: x east, y north, z up, metres, in the site's frame",
+        *("site origin, WGS 84 lat lon ellipsoid height: ", "+proj=cart +ellps=WGS84"),
+    ),
     "names of things, the same in every language": ("EPSG:{0} ({1})", "template.kml, imageFormat", "{0} min"),
     "notes in the record of a flight, which the window keeps and does not show": (
         *("{0} was {1} and is {2} now", "{0} is {1}; the plan was made for {2}", "{0} items, read back and equal"),

@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.workspace import Workspace
 from groundstation.services.jobs import JobContext
+from groundstation.services.model_export import ModelExport, WrittenModel, export_apart
 from groundstation.services.panel_colours import NO_COLOURS, Colouring, colouring
 from groundstation.services.reconstruct_messages import (
     Look,
@@ -24,6 +25,7 @@ from groundstation.services.reconstruct_messages import (
 from groundstation.services.reconstruct_process import ModelProcess
 from groundstation.services.scene_card import Level, SceneCard, Subject, is_model, is_scene, read_card, scenes_beside
 from groundstation.services.scene_records import book_of_scene, user_name, with_file
+from groundstation.services.worker import Worker
 from planning.errors import GroundStationError
 from planning.findings import Severity
 
@@ -147,6 +149,36 @@ class ModelDesk(QObject):
     def close(self) -> None:
         """The window goes."""
         self._process.close()
+
+    # For other programs
+
+    def export(self, out: Path, wanted: ModelExport) -> None:
+        """Write the scene, in a process beside this one and that of the pictures."""
+        card = self.card
+        if card is None:
+            return
+
+        def work(context: JobContext) -> WrittenModel:
+            worker = Worker()
+            try:
+                return worker.run(
+                    export_apart,
+                    card.folder,
+                    out,
+                    wanted,
+                    stop=context.stop,
+                    trace=context.trace,
+                    monitor=context,
+                )
+            finally:
+                worker.close()
+
+        self._workspace.start(self.tr("Export the model"), work, self._exported)
+
+    def _exported(self, done: WrittenModel) -> None:
+        said = self.tr("The model is written: {0}, {1} MB").format(done.path, f"{done.n_bytes / 1e6:.3g}")
+        notes = [str(self._workspace.words(note)) for note in done.notes]
+        self._workspace.say(Severity.NOTE, "; ".join([said, *notes]))
 
     # Panels
 

@@ -6,9 +6,10 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QAction, QCloseEvent
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QSplitter, QWidget
+from PySide6.QtWidgets import QDialog, QFileDialog, QHBoxLayout, QSplitter, QWidget
 
 from groundstation.gui.main_window import MainWindow
+from groundstation.gui.model.export_dialog import ExportDialog
 from groundstation.gui.model.model_desk import ModelDesk
 from groundstation.gui.model.panel_side import PanelSide
 from groundstation.gui.model.record_side import KIND_TITLES, RecordSide
@@ -17,6 +18,7 @@ from groundstation.gui.model.scene_pane import ScenePane
 from groundstation.gui.questions import Questions
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
+from groundstation.services.model_export import ENDINGS, ModelFormat, with_ending
 from groundstation.services.scene_card import PanelRow
 from groundstation.services.units import UnitSystem
 from planning.findings import Severity
@@ -78,6 +80,7 @@ class ModelPage(QObject):
     def _connect(self) -> None:
         desk, side, records = self.desk, self.side, self.records
         side.open.clicked.connect(self._open)
+        side.export.clicked.connect(self._export)
         side.chosen.connect(desk.select)
         side.colourChanged.connect(desk.colour)
         side.searched.connect(self._search_later)
@@ -125,6 +128,25 @@ class ModelPage(QObject):
         else:
             self._workspace.say(Severity.ERROR, self.tr("{0} cannot be written; choose another place").format(path))
 
+    def _export(self) -> None:
+        card = self.desk.card
+        if card is None:
+            return
+        dialog = ExportDialog(tuple(dict.fromkeys(panel.facade for panel in card.panels)), self._stage.window())
+        if dialog.exec() == QDialog.DialogCode.Accepted:
+            out = self._place_for(dialog.wanted().format, card.name)
+            if out is not None:
+                self.desk.export(out, dialog.wanted())
+        dialog.deleteLater()
+
+    def _place_for(self, kind: ModelFormat, name: str) -> Path | None:
+        """Where a file or folder is to be."""
+        title, ending = self.tr("Export the model"), ENDINGS.get(kind)
+        if ending is None:
+            return self.questions.new_folder(self._stage.window(), title)
+        found, _ = QFileDialog.getSaveFileName(self._stage.window(), title, f"{name}{ending}", f"*{ending}")
+        return with_ending(Path(found), kind) if found else None
+
     def _make_report(self) -> None:
         name, _ = QFileDialog.getSaveFileName(
             self._stage.window(), self.tr("Save the report"), "", self.tr("Documents (*.pdf)")
@@ -159,6 +181,7 @@ class ModelPage(QObject):
     def _show_scene(self) -> None:
         card = self.desk.card
         self.side.open.setEnabled(not self.desk.is_reading)
+        self.side.export.setEnabled(card is not None and not self.desk.is_reading)
         if self.desk.is_reading:
             self.side.title.setText(self.tr("The model is being opened ..."))
         elif card is None:

@@ -74,6 +74,8 @@ class PanelSide(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.open, self.title = QPushButton(self.tr("Open a model ...")), QLabel()
+        self.export = QPushButton(self.tr("Export ..."))
+        self.export.setToolTip(self.tr("Write the model for other programs"))
         self.search, self.list, self.colour = QLineEdit(), QListView(), QComboBox()
         self.rows = _Rows(self)
         self._is_told = False
@@ -92,7 +94,7 @@ class PanelSide(QWidget):
         self.without.setWordWrap(True)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 6, 0)
-        for widget in (self.open, self.title, self.search):
+        for widget in (self.open, self.title, self.export, self.search):
             layout.addWidget(widget)
         layout.addWidget(self.list, 1)
         label = QLabel(self.tr("Colour panels by"))

@@ -1146,6 +1146,54 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <source>Not written: {0}</source>
         <translation>Nicht geschrieben: {0}</translation>
     </message>
+    <message>
+        <source>Export the model</source>
+        <translation>Modell exportieren</translation>
+    </message>
+    <message>
+        <source>the whole model</source>
+        <translation>das ganze Modell</translation>
+    </message>
+    <message>
+        <source>with what panels mirror</source>
+        <translation>mit dem, was Scheiben spiegeln</translation>
+    </message>
+    <message>
+        <source>panels&apos; own colours</source>
+        <translation>eigene Farben der Scheiben</translation>
+    </message>
+    <message>
+        <source>small</source>
+        <translation>klein</translation>
+    </message>
+    <message>
+        <source>balanced</source>
+        <translation>ausgewogen</translation>
+    </message>
+    <message>
+        <source>fine</source>
+        <translation>fein</translation>
+    </message>
+    <message>
+        <source>Format</source>
+        <translation>Format</translation>
+    </message>
+    <message>
+        <source>Part</source>
+        <translation>Teil</translation>
+    </message>
+    <message>
+        <source>Colours</source>
+        <translation>Farben</translation>
+    </message>
+    <message>
+        <source>File size</source>
+        <translation>Dateigröße</translation>
+    </message>
+    <message>
+        <source>Choose a place ...</source>
+        <translation>Ort wählen ...</translation>
+    </message>
 </context>
 <context>
     <name>ExportForm</name>
@@ -2782,8 +2830,75 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Modell daneben öffnen</translation>
     </message>
     <message>
+        <source>Export the model</source>
+        <translation>Modell exportieren</translation>
+    </message>
+    <message>
+        <source>The model is written: {0}, {1} MB</source>
+        <translation>Das Modell ist geschrieben: {0}, {1} MB</translation>
+    </message>
+    <message>
         <source>The process that shows models has ended (exit status {0}); it starts anew.</source>
         <translation>Der Prozess, der Modelle zeigt, ist beendet (Status {0}); er startet neu.</translation>
+    </message>
+</context>
+<context>
+    <name>ModelFormats</name>
+    <message>
+        <source>Web page</source>
+        <translation>Webseite</translation>
+    </message>
+    <message>
+        <source>A folder with one page that shows the model and all records in any browser, without a network.</source>
+        <translation>Ein Ordner mit einer Seite, die das Modell und alle Einträge in jedem Browser zeigt, ohne Netz.</translation>
+    </message>
+    <message>
+        <source>Splats, and panels to pick with their GlobalIds and attributes, in one file.</source>
+        <translation>Splats, und Scheiben zum Anklicken mit GlobalIds und Merkmalen, in einer Datei.</translation>
+    </message>
+    <message>
+        <source>A folder with splats and panels in tiles, placed on Earth, as CesiumJS shows them.</source>
+        <translation>Ein Ordner mit Splats und Scheiben in Kacheln, auf der Erde verortet, wie CesiumJS sie zeigt.</translation>
+    </message>
+    <message>
+        <source>Splats and panels for film and simulation programs.</source>
+        <translation>Splats und Scheiben für Film- und Simulationsprogramme.</translation>
+    </message>
+    <message>
+        <source>Splats as ellipsoids: SuperSplat and nearly all viewers open it. Large.</source>
+        <translation>Splats als Ellipsoide: SuperSplat und fast alle Betrachter öffnen es. Groß.</translation>
+    </message>
+    <message>
+        <source>Splats as flat discs, as they were learned.</source>
+        <translation>Splats als flache Scheiben, wie sie gelernt wurden.</translation>
+    </message>
+    <message>
+        <source>Splats, compressed most: for SuperSplat and PlayCanvas.</source>
+        <translation>Splats, am stärksten komprimiert: für SuperSplat und PlayCanvas.</translation>
+    </message>
+    <message>
+        <source>Splats, compressed: most viewers of splats open it.</source>
+        <translation>Splats, komprimiert: die meisten Betrachter von Splats öffnen es.</translation>
+    </message>
+    <message>
+        <source>The newer version of SPZ: smaller, for the newest programs.</source>
+        <translation>Die neuere Fassung von SPZ: kleiner, für die neuesten Programme.</translation>
+    </message>
+    <message>
+        <source>Mesh (glTF)</source>
+        <translation>Netz (glTF)</translation>
+    </message>
+    <message>
+        <source>Panels with pictures of their fronts, for programs that know no splats.</source>
+        <translation>Scheiben mit Bildern ihrer Vorderseite, für Programme ohne Splats.</translation>
+    </message>
+    <message>
+        <source>The panels alone, as windows of the building, with their attributes.</source>
+        <translation>Nur die Scheiben, als Fenster des Gebäudes, mit ihren Merkmalen.</translation>
+    </message>
+    <message>
+        <source>The panels alone, as plates of curtain walls, with their property sets.</source>
+        <translation>Nur die Scheiben, als Platten von Vorhangfassaden, mit ihren Eigenschaftssätzen.</translation>
     </message>
 </context>
 <context>
@@ -2807,6 +2922,10 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>{0} cannot be written; choose another place</source>
         <translation>{0} lässt sich nicht schreiben; einen anderen Ort wählen</translation>
+    </message>
+    <message>
+        <source>Export the model</source>
+        <translation>Modell exportieren</translation>
     </message>
     <message>
         <source>Save the report</source>
@@ -3056,6 +3175,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Open a model ...</source>
         <translation>Modell öffnen ...</translation>
+    </message>
+    <message>
+        <source>Export ...</source>
+        <translation>Exportieren ...</translation>
+    </message>
+    <message>
+        <source>Write the model for other programs</source>
+        <translation>Das Modell für andere Programme schreiben</translation>
     </message>
     <message>
         <source>Several can be marked, with Ctrl or Shift, for a report</source>
@@ -10788,6 +10915,326 @@ Take it over?</source>
     <message>
         <source>{0}; the file is damaged</source>
         <translation>{0}; die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>--components: there is no component &apos;{0}&apos;; known are {1}</source>
+        <translation>--components: es gibt keinen Bestandteil &apos;{0}&apos;; bekannt sind {1}</translation>
+    </message>
+    <message>
+        <source>what this method&apos;s shading adds is not in the file: its Gaussians have their own colours only</source>
+        <translation>was die Schattierung dieses Verfahrens beiträgt, ist nicht in der Datei: ihre Gaußschen haben nur ihre eigenen Farben</translation>
+    </message>
+    <message>
+        <source>mirrored light is in the colours, as harmonics of degree 3: blurred, and it stays on the panes</source>
+        <translation>gespiegeltes Licht ist in den Farben, als Kugelfunktionen vom Grad 3: verwischt, und es bleibt auf den Scheiben</translation>
+    </message>
+    <message>
+        <source>panels show their own colour only, and mirror nothing</source>
+        <translation>Scheiben zeigen nur ihre eigene Farbe und spiegeln nichts</translation>
+    </message>
+    <message>
+        <source>{0} records of objects that the model lacks are left out</source>
+        <translation>Einträge zu Objekten, die dem Modell fehlen, sind weggelassen: {0}</translation>
+    </message>
+    <message>
+        <source>the place on Earth is not known: tiles stay in the site&apos;s own frame</source>
+        <translation>der Ort auf der Erde ist nicht bekannt: Kacheln bleiben im eigenen Bezugssystem des Standorts</translation>
+    </message>
+    <message>
+        <source>each panel is a picture of its front: mirror images in it belong to that view alone</source>
+        <translation>jede Scheibe ist ein Bild ihrer Vorderseite: Spiegelbilder darin gehören nur zu dieser Ansicht</translation>
+    </message>
+    <message>
+        <source>{0} Gaussians that nobody sees are left out</source>
+        <translation>Gaußsche, die niemand sieht, sind weggelassen: {0}</translation>
+    </message>
+    <message>
+        <source>{0} Gaussians are larger or smaller than the format has, and have its nearest size</source>
+        <translation>Gaußsche, die größer oder kleiner sind, als das Format kann, haben dessen nächste Größe: {0}</translation>
+    </message>
+    <message>
+        <source>CesiumJS: show gaussians.json and panels.json as two layers</source>
+        <translation>CesiumJS: gaussians.json und panels.json als zwei Ebenen zeigen</translation>
+    </message>
+    <message>
+        <source>CesiumJS stops at Gaussians that are not compressed: for it, show panels.json alone, or write --gaussians spz</source>
+        <translation>CesiumJS hält bei Gaußschen an, die nicht komprimiert sind: dafür nur panels.json zeigen, oder --gaussians spz schreiben</translation>
+    </message>
+    <message>
+        <source>baking panels</source>
+        <translation>Spiegelungen werden in Farben übertragen</translation>
+    </message>
+    <message>
+        <source>writing panels</source>
+        <translation>Scheiben werden geschrieben</translation>
+    </message>
+    <message>
+        <source>not written: its latitude is {0}°, and UTM has {1}° to {2}°</source>
+        <translation>nicht geschrieben: die Breite ist {0}°, und UTM reicht von {1}° bis {2}°</translation>
+    </message>
+    <message>
+        <source>not written: a panel has corners that are not finite</source>
+        <translation>nicht geschrieben: eine Scheibe hat Ecken, die nicht endlich sind</translation>
+    </message>
+    <message>
+        <source>the scene&apos;s origin is not finite: {0}; organise the model again</source>
+        <translation>der Ursprung der Szene ist nicht endlich: {0}; das Modell neu gliedern</translation>
+    </message>
+    <message>
+        <source>component &apos;{0}&apos;: {1}: holds numbers that are not finite or cannot be; train again</source>
+        <translation>Bestandteil &apos;{0}&apos;: {1}: enthält Zahlen, die nicht endlich sind oder nicht sein können; neu lernen</translation>
+    </message>
+    <message>
+        <source>panel &apos;{0}&apos;: its corners are not finite; import the site again</source>
+        <translation>Scheibe &apos;{0}&apos;: ihre Ecken sind nicht endlich; den Standort neu einlesen</translation>
+    </message>
+    <message>
+        <source>not written: there is no Gaussian that could be seen; choose other components</source>
+        <translation>nicht geschrieben: es gibt keine Gaußsche, die zu sehen wäre; andere Bestandteile wählen</translation>
+    </message>
+    <message>
+        <source>would have {0} GB, and a .glb has less than 4.3; choose a lower degree of harmonics, fewer facades, or 3D Tiles, which are many files</source>
+        <translation>hätte {0} GB, und eine .glb hat weniger als 4.3; einen niedrigeren Grad der Kugelfunktionen, weniger Fassaden oder 3D Tiles wählen, die viele Dateien sind</translation>
+    </message>
+    <message>
+        <source>several panels have the same GlobalId; organise the model again</source>
+        <translation>mehrere Scheiben haben dieselbe GlobalId; das Modell neu gliedern</translation>
+    </message>
+    <message>
+        <source>attribute &apos;{0}&apos;: expected finite numbers, got {1}</source>
+        <translation>Merkmal &apos;{0}&apos;: endliche Zahlen erwartet, {1} erhalten</translation>
+    </message>
+    <message>
+        <source>not written: there are no panels; choose other components</source>
+        <translation>nicht geschrieben: es gibt keine Scheiben; andere Bestandteile wählen</translation>
+    </message>
+    <message>
+        <source>not written: panel &apos;{0}&apos; has no area; import the site again</source>
+        <translation>nicht geschrieben: Scheibe &apos;{0}&apos; hat keine Fläche; den Standort neu einlesen</translation>
+    </message>
+    <message>
+        <source>not written: panel &apos;{0}&apos; would have {1} pixels on a side, and textures have {2}; choose {3} pixels per metre or fewer</source>
+        <translation>nicht geschrieben: Scheibe &apos;{0}&apos; hätte {1} Pixel je Seite, und Texturen haben {2}; {3} Pixel je Meter oder weniger wählen</translation>
+    </message>
+    <message>
+        <source>not written: {0} textures of {1} pixels would be needed, and {2} are the most; choose about {3} pixels per metre, or single facades</source>
+        <translation>nicht geschrieben: {0} Texturen von {1} Pixeln wären nötig, und {2} sind das Höchste; etwa {3} Pixel je Meter wählen, oder einzelne Fassaden</translation>
+    </message>
+    <message>
+        <source>rendering panels</source>
+        <translation>Scheiben werden gezeichnet</translation>
+    </message>
+    <message>
+        <source>counting Gaussians</source>
+        <translation>Gaußsche werden gezählt</translation>
+    </message>
+    <message>
+        <source>not written: {0} Gaussians are more than fit into an image; write single facades</source>
+        <translation>nicht geschrieben: {0} Gaußsche sind mehr, als in ein Bild passen; einzelne Fassaden schreiben</translation>
+    </message>
+    <message>
+        <source>writing images</source>
+        <translation>Bilder werden geschrieben</translation>
+    </message>
+    <message>
+        <source>choosing samples</source>
+        <translation>Stichproben werden gewählt</translation>
+    </message>
+    <message>
+        <source>choosing colours</source>
+        <translation>Farben werden gewählt</translation>
+    </message>
+    <message>
+        <source>finding colours</source>
+        <translation>Farben werden gesucht</translation>
+    </message>
+    <message>
+        <source>packing Gaussians</source>
+        <translation>Gaußsche werden gepackt</translation>
+    </message>
+    <message>
+        <source>reading Gaussians</source>
+        <translation>Gaußsche werden gelesen</translation>
+    </message>
+    <message>
+        <source>not written: a Gaussian lies {0} m from the origin; train again</source>
+        <translation>nicht geschrieben: eine Gaußsche liegt {0} m vom Ursprung; neu lernen</translation>
+    </message>
+    <message>
+        <source>compressing</source>
+        <translation>wird komprimiert</translation>
+    </message>
+    <message>
+        <source>3D Tiles lie on Earth, and the site&apos;s place is not known; set the site&apos;s origin, or ask for tiles in its local frame</source>
+        <translation>3D Tiles liegen auf der Erde, und der Ort des Standorts ist nicht bekannt; den Ursprung des Standorts setzen, oder Kacheln in seinem eigenen Bezugssystem verlangen</translation>
+    </message>
+    <message>
+        <source>nothing to write: the scene has neither Gaussians nor panels</source>
+        <translation>nichts zu schreiben: die Szene hat weder Gaußsche noch Scheiben</translation>
+    </message>
+    <message>
+        <source>USD needs the package usd-core, which is not installed: pip install &apos;reflight[usd]&apos;</source>
+        <translation>USD braucht das Paket usd-core, das nicht installiert ist: pip install &apos;reflight[usd]&apos;</translation>
+    </message>
+    <message>
+        <source>USD: this usd-core knows no Gaussians; install 26.3 or newer: pip install &apos;reflight[usd]&apos;</source>
+        <translation>USD: dieses usd-core kennt keine Gaußschen; 26.3 oder neuer installieren: pip install &apos;reflight[usd]&apos;</translation>
+    </message>
+    <message>
+        <source>writing Gaussians</source>
+        <translation>Gaußsche werden geschrieben</translation>
+    </message>
+    <message>
+        <source>cannot be written; is the disk full?</source>
+        <translation>lässt sich nicht schreiben; ist der Datenträger voll?</translation>
+    </message>
+    <message>
+        <source>expected a name that ends in {0}, got &apos;{1}&apos;</source>
+        <translation>einen Namen erwartet, der auf {0} endet, &apos;{1}&apos; erhalten</translation>
+    </message>
+    <message>
+        <source>writing the page</source>
+        <translation>die Seite wird geschrieben</translation>
+    </message>
+    <message>
+        <source>cannot be written: this is a file; name a folder</source>
+        <translation>lässt sich nicht schreiben: das ist eine Datei; einen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>is a page of somebody else&apos;s; name another folder</source>
+        <translation>ist eine fremde Seite; einen anderen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>has other files and no page of ours; name an empty folder, or a new one</source>
+        <translation>hat andere Dateien und keine Seite von hier; einen leeren Ordner nennen, oder einen neuen</translation>
+    </message>
+    <message>
+        <source>cannot be read ({0}); name another folder</source>
+        <translation>lässt sich nicht lesen ({0}); einen anderen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>not written: the scene has no components; export at least one facade</source>
+        <translation>nicht geschrieben: die Szene hat keine Bestandteile; mindestens eine Fassade exportieren</translation>
+    </message>
+    <message>
+        <source>not written: {0} panels, a page bears {1}; export one facade</source>
+        <translation>nicht geschrieben: {0} Scheiben, eine Seite trägt {1}; eine Fassade exportieren</translation>
+    </message>
+    <message>
+        <source>not written: {0} of the scene&apos;s Gaussians holds numbers that are not finite</source>
+        <translation>nicht geschrieben: {0} der Gaußschen der Szene enthält Zahlen, die nicht endlich sind</translation>
+    </message>
+    <message>
+        <source>not written: {0} Gaussians, a page bears {1}; keep the most visible ones alone (most), or export one facade</source>
+        <translation>nicht geschrieben: {0} Gaußsche, eine Seite trägt {1}; nur die am besten sichtbaren behalten (most), oder eine Fassade exportieren</translation>
+    </message>
+    <message>
+        <source>reading pictures</source>
+        <translation>Bilder werden gelesen</translation>
+    </message>
+    <message>
+        <source>pictures of defects: more than {0} MiB after {1} of {2}, even made small; leave some out</source>
+        <translation>Bilder von Schäden: mehr als {0} MiB nach {1} von {2}, auch verkleinert; einige weglassen</translation>
+    </message>
+    <message>
+        <source>records and panels: more than {0} MiB of text; export one facade</source>
+        <translation>Einträge und Scheiben: mehr als {0} MiB Text; eine Fassade exportieren</translation>
+    </message>
+    <message>
+        <source>corners of a panel hold numbers that are not finite</source>
+        <translation>Ecken einer Scheibe enthalten Zahlen, die nicht endlich sind</translation>
+    </message>
+    <message>
+        <source>picture &apos;{0}&apos;</source>
+        <translation>Bild &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>has more than {0} MiB; save it smaller</source>
+        <translation>hat mehr als {0} MiB; kleiner speichern</translation>
+    </message>
+    <message>
+        <source>expected a JPEG, PNG or WebP file, found something else or a damaged one</source>
+        <translation>eine JPEG-, PNG- oder WebP-Datei erwartet, etwas anderes oder eine beschädigte gefunden</translation>
+    </message>
+    <message>
+        <source>claims to have {0} x {1} pixels; expected at most {2} megapixels, so it is not decoded</source>
+        <translation>will {0} x {1} Pixel haben; höchstens {2} Megapixel erwartet, also nicht entschlüsselt</translation>
+    </message>
+    <message>
+        <source>cannot be decoded ({0}); copy the file again</source>
+        <translation>lässt sich nicht entschlüsseln ({0}); die Datei neu kopieren</translation>
+    </message>
+    <message>
+        <source>cannot be decoded; copy the file again</source>
+        <translation>lässt sich nicht entschlüsseln; die Datei neu kopieren</translation>
+    </message>
+    <message>
+        <source>cannot be written as JPEG</source>
+        <translation>lässt sich nicht als JPEG schreiben</translation>
+    </message>
+    <message>
+        <source>expected a finite number, got {0}</source>
+        <translation>eine endliche Zahl erwartet, {0} erhalten</translation>
+    </message>
+    <message>
+        <source>expected a text, a number, yes or no, or places on a pane; got {0}</source>
+        <translation>einen Text, eine Zahl, ja oder nein oder Stellen auf einer Scheibe erwartet; {0} erhalten</translation>
+    </message>
+    <message>
+        <source>records: there are more than {0}; leave some out</source>
+        <translation>Einträge: es sind mehr als {0}; einige weglassen</translation>
+    </message>
+    <message>
+        <source>expected the GlobalId of an object, got {0}</source>
+        <translation>die GlobalId eines Objekts erwartet, {0} erhalten</translation>
+    </message>
+    <message>
+        <source>record: expected one of {0}, got {1}</source>
+        <translation>Eintrag: eines von {0} erwartet, {1} erhalten</translation>
+    </message>
+    <message>
+        <source>has {0} fields; at most {1} are shown</source>
+        <translation>hat {0} Felder; höchstens {1} werden gezeigt</translation>
+    </message>
+    <message>
+        <source>cannot be written: it is no file; name one</source>
+        <translation>lässt sich nicht schreiben: das ist keine Datei; eine nennen</translation>
+    </message>
+    <message>
+        <source>its Gaussians do not each have a place of their own; it is damaged</source>
+        <translation>seine Gaußschen haben nicht jede einen eigenen Platz; es ist beschädigt</translation>
+    </message>
+    <message>
+        <source>holds no objects yet; &apos;records FOLDER make&apos; takes them from a site</source>
+        <translation>enthält noch keine Objekte; &apos;records FOLDER make&apos; nimmt sie von einem Standort</translation>
+    </message>
+    <message>
+        <source>the place on earth is not known to the records: IfcSite has none</source>
+        <translation>der Ort auf der Erde ist den Einträgen nicht bekannt: IfcSite hat keinen</translation>
+    </message>
+    <message>
+        <source>the building behind the panes is not in the file</source>
+        <translation>das Gebäude hinter den Scheiben ist nicht in der Datei</translation>
+    </message>
+    <message>
+        <source>telling panels of splats</source>
+        <translation>Splats werden Scheiben zugeordnet</translation>
+    </message>
+    <message>
+        <source>has no &apos;{0}&apos; of splats; it is damaged, or of another program</source>
+        <translation>hat kein &apos;{0}&apos; von Splats; es ist beschädigt oder von einem anderen Programm</translation>
+    </message>
+    <message>
+        <source>expected shape {0}, found {1}</source>
+        <translation>Form {0} erwartet, {1} gefunden</translation>
+    </message>
+    <message>
+        <source>expected float32 (panels: int32), found {0}</source>
+        <translation>float32 erwartet (panels: int32), {0} gefunden</translation>
+    </message>
+    <message>
+        <source>panels: expected numbers from {0} on, found {1}</source>
+        <translation>panels: Zahlen ab {0} erwartet, {1} gefunden</translation>
     </message>
 </context>
 <context>

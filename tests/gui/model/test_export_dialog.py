@@ -1,0 +1,102 @@
+"""Exporting from the Model tab: what is asked for, and what is written in a process beside the window's."""
+
+import pytest
+import torch
+from PySide6.QtWidgets import QDialog, QFileDialog
+
+from groundstation.gui.model import model_page
+from groundstation.gui.model.export_dialog import ExportDialog, format_words
+from groundstation.services.model_export import ENDINGS, ModelExport, ModelFormat, with_ending
+from groundstation.services.model_objects import organise_files
+from reconstruction.exports.spz_reading import read_spz
+from reconstruction.modelling.saved import save_model
+from reconstruction.modelling.train import train_model
+from tests.gui.driving import turn_until
+from tests.reconstruction.modelling.made_data_set import write_data_set
+from tests.services.test_shown_models import CONFIG
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    """A scene of objects of a trained model."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    folder = tmp_path_factory.mktemp("trained")
+    write_data_set(folder / "data", n=4)
+    save_model(train_model(folder / "data", CONFIG), folder / "model")
+    organise_files(folder / "model", folder / "scene")
+    torch.set_num_threads(threads)
+    return folder / "scene"
+
+
+def opened_with(application, page, folder):
+    page.desk.open(folder)
+    turn_until(application, lambda: page.desk.card is not None and not page._workspace.jobs())
+
+
+def test_every_format_is_offered_with_what_it_is_for(application):
+    dialog = ExportDialog(("A",))
+    offered = [dialog.format.itemData(row) for row in range(dialog.format.count())]
+    assert set(offered) == set(ModelFormat) == set(format_words())
+    about = []
+    for row in range(dialog.format.count()):
+        dialog.format.setCurrentIndex(row)
+        about.append(dialog.about.text())
+    assert len(set(about)) == len(about)
+    assert all(about)
+
+
+def test_only_what_a_format_asks_for_can_be_chosen_and_counts(application):
+    dialog = ExportDialog(("A", "B"))
+    dialog.part.setCurrentIndex(2)
+    dialog.colours.setCurrentIndex(1)
+    dialog.preset.setCurrentIndex(0)
+    found = {}
+    for kind in ModelFormat:
+        dialog.format.setCurrentIndex(dialog.format.findData(kind))
+        found[kind] = dialog.wanted()
+        assert found[kind].format is kind
+        assert dialog.preset.isEnabled() == (found[kind].preset == "small")
+        assert dialog.part.isEnabled() == (found[kind].components == ("B",))
+    assert found[ModelFormat.SOG] == ModelExport(ModelFormat.SOG, baked=False, preset="small", components=("B",))
+    assert found[ModelFormat.IFC] == ModelExport(ModelFormat.IFC)
+
+
+def test_files_get_the_ending_of_their_format_unless_they_have_one(tmp_path):
+    assert with_ending(tmp_path / "tower", ModelFormat.CITYJSON).name == "tower.city.json"
+    assert with_ending(tmp_path / "tower.json", ModelFormat.CITYJSON).name == "tower.json"
+    assert with_ending(tmp_path / "tower", ModelFormat.WEB).name == "tower"
+    assert all(ending.startswith(".") for ending in ENDINGS.values())
+
+
+def test_a_model_is_written_and_the_user_is_told(application, page, trained, tmp_path, monkeypatch):
+    assert not page.side.export.isEnabled()
+    opened_with(application, page, trained)
+    assert page.side.export.isEnabled()
+
+    def accept(dialog):
+        dialog.format.setCurrentIndex(dialog.format.findData(ModelFormat.SPZ))
+        return QDialog.DialogCode.Accepted
+
+    monkeypatch.setattr(model_page.ExportDialog, "exec", accept)
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_given: (str(tmp_path / "tower"), ""))
+    page.side.export.click()
+    turn_until(application, lambda: bool(page.messages), 60.0)
+    assert "The model is written" in page.messages[-1].text
+    assert 0 < len(read_spz(tmp_path / "tower.spz")) <= page.desk.card.n_gaussians
+
+
+def test_what_cannot_be_written_is_told_and_the_window_goes_on(application, page, trained, tmp_path):
+    opened_with(application, page, trained)
+    page.desk.export(tmp_path / "absent" / "tower.spz", ModelExport(ModelFormat.SPZ))
+    turn_until(application, lambda: bool(page.messages), 60.0)
+    assert "there is no folder" in page.messages[-1].text
+    assert page.side.export.isEnabled()
+
+
+def test_an_export_that_is_cancelled_leaves_nothing(application, page, trained, tmp_path):
+    opened_with(application, page, trained)
+    page.desk.export(tmp_path / "tower.web", ModelExport(ModelFormat.WEB))
+    page._workspace.cancel(page._workspace.jobs()[0])
+    turn_until(application, lambda: not page._workspace.jobs(), 60.0)
+    assert list(tmp_path.iterdir()) == []
