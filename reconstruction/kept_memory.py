@@ -1,7 +1,7 @@
 """Memory that a training frees in each step, kept for the next one.
 
 Left alone, the C library gives large pieces back to the system as soon as they are free, and gets them again, page by
-page, in the next step: some tenth of the time of steps that ask a Reflection MLP (`python -m tests.benchmarks --only
+page, in the next step: 5 to 10 % of the time of steps that ask a Reflection MLP (`python -m tests.benchmarks --only
 modelling-parts`). Only GNU's library is told; others do as they always do.
 """
 

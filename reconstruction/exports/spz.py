@@ -1,7 +1,7 @@
 """SPZ files (Niantic): Gaussians in few bytes each, all in one gzip stream (version 3) or by kinds in ZSTD (version 4).
 
-Nearly everything that reads SPZ reads version 3. Version 4 is smaller and is unpacked sooner; PlayCanvas' engine reads
-it alone. The format has neither panels nor origin: places count from the scene's `origin_enu_m`.
+Nearly everything that reads SPZ reads version 3. Version 4 is a little smaller; PlayCanvas' engine reads it
+alone. The format has neither panels nor origin: places count from the scene's `origin_enu_m`.
 """
 
 from __future__ import annotations

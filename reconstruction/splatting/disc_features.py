@@ -1,7 +1,7 @@
 """What discs add to a picture besides their colour, seen from a place, with gradients, in one go on a processor.
 
-In plain torch (`Splats.features_twin`) each of a dozen steps goes through all splats again, which takes three times as
-long (`python -m tests.benchmarks --only modelling-parts`).
+In plain torch (`Splats.features_twin`) each of a dozen steps goes through all splats again, which takes twice as long
+and longer (`python -m tests.benchmarks --only modelling-parts`).
 """
 
 from __future__ import annotations
