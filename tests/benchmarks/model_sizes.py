@@ -240,9 +240,13 @@ def draw(curves: dict[str, tuple[str, Sequence[Found]]], presets: dict[str, dict
         style = ("-", "-", ":")[number]
         sizes, qualities = [each.each_bytes for each in found], [each.psnr_db for each in found]
         axes.plot(sizes, qualities, style, marker=".", color=COLOURS[kind], label=name)
+    with_curve = {kind for kind, _ in curves.values()}
     for kind, by_name in presets.items():
-        for name, each in by_name.items():
-            axes.plot([each.each_bytes], [each.psnr_db], "o", color=COLOURS[kind])
+        sizes, qualities = zip(*((each.each_bytes, each.psnr_db) for each in by_name.values()), strict=True)
+        has_curve = kind in with_curve
+        style, title = ("full", None) if has_curve else ("none", f"{kind.upper()}, the same presets")
+        axes.plot(sizes, qualities, "o", color=COLOURS[kind], fillstyle=style, label=title)
+        for name, each in by_name.items() if has_curve else ():
             axes.annotate(f" {name}", (each.each_bytes, each.psnr_db), va="top", fontsize=8)
     axes.set_xlabel("bytes for each Gaussian (PLY: 252)")
     axes.set_ylabel("PSNR against the model not compressed, dB")
