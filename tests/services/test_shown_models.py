@@ -1,5 +1,6 @@
 """Finished models that are looked at: cut, coloured and asked what is where."""
 
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -21,17 +22,22 @@ LIGHT = ReflectionConfig(environment_rows=8, steps=10, batch=256)
 CONFIG = TrainConfig(iterations=3, n_splats=300, max_splats=400, reflections=LIGHT, score_every_s=1e9)
 
 
-@pytest.fixture(scope="module")
-def folders(tmp_path_factory):
-    """A data set, a model of it, and that as objects."""
+@contextmanager
+def made_model(folder):
+    """A data set, a model of it, and that as objects; torch has one thread meanwhile."""
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
-    folder = tmp_path_factory.mktemp("shown")
     write_data_set(folder / "data", n=4)
     save_model(train_model(folder / "data", CONFIG), folder / "model")
     organise_files(folder / "model", folder / "scene")
     yield folder
     torch.set_num_threads(threads)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    with made_model(tmp_path_factory.mktemp("shown")) as folder:
+        yield folder
 
 
 @pytest.fixture

@@ -1,32 +1,21 @@
 """Exporting from the Model tab: what is asked for, and what is written in a process beside the window's."""
 
 import pytest
-import torch
 from PySide6.QtWidgets import QDialog, QFileDialog
 
 from groundstation.gui.model import model_page
 from groundstation.gui.model.export_dialog import ExportDialog, format_words
 from groundstation.services.model_export import ENDINGS, ModelExport, ModelFormat, with_ending
-from groundstation.services.model_objects import organise_files
 from reconstruction.exports.spz_reading import read_spz
-from reconstruction.modelling.saved import save_model
-from reconstruction.modelling.train import train_model
 from tests.gui.driving import turn_until
-from tests.reconstruction.modelling.made_data_set import write_data_set
-from tests.services.test_shown_models import CONFIG
+from tests.services.test_shown_models import made_model
 
 
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory):
     """A scene of objects of a trained model."""
-    threads = torch.get_num_threads()
-    torch.set_num_threads(1)
-    folder = tmp_path_factory.mktemp("trained")
-    write_data_set(folder / "data", n=4)
-    save_model(train_model(folder / "data", CONFIG), folder / "model")
-    organise_files(folder / "model", folder / "scene")
-    torch.set_num_threads(threads)
-    return folder / "scene"
+    with made_model(tmp_path_factory.mktemp("trained")) as folder:
+        yield folder / "scene"
 
 
 def opened_with(application, page, folder):
