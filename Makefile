@@ -72,7 +72,7 @@ $(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
 	@command -v npm >/dev/null || echo 'npm is missing: tests with its readers are skipped'
 	command -v chromedriver >/dev/null || { [ "$$(id -u)" = 0 ] && apt-get install -y -qq chromium chromium-driver; } || \
 		echo 'chromium and chromium-driver are missing: tests of web pages are skipped'
-	command -v firefox-esr firefox >/dev/null || { [ "$$(id -u)" = 0 ] && apt-get install -y -qq firefox-esr; } || \
+	command -v firefox-esr >/dev/null || command -v firefox >/dev/null || { [ "$$(id -u)" = 0 ] && apt-get install -y -qq firefox-esr; } || \
 		echo 'firefox is missing: tests of web pages in it are skipped'
 	! command -v npm >/dev/null || npm ci --prefix tests/foreign --ignore-scripts --no-audit --no-fund
 	touch $@

@@ -56,8 +56,8 @@ WITH_PRESETS = frozenset({ModelFormat.SPZ, ModelFormat.SPZ_4, ModelFormat.SOG, M
 OF_ALL_PARTS = frozenset({ModelFormat.IFC})
 """Formats that always have the whole building."""
 
-WITHOUT_COLOURS = frozenset({ModelFormat.CITYJSON, ModelFormat.IFC})
-"""Formats of panels alone."""
+WITHOUT_COLOURS = frozenset({ModelFormat.MESH, ModelFormat.CITYJSON, ModelFormat.IFC})
+"""Formats of panels alone, for which no colours of Gaussians are asked."""
 
 Gaussians = Literal["numbers", "spz", "points"]
 
@@ -179,7 +179,7 @@ def _shown(whole: GsScene, trained: TrainedModel, wanted: ModelExport, monitor: 
             raise InputError(f"--components: there is no component '{unknown}'; known are {', '.join(known)}")
         chosen = tuple(component for component in whole.components if component.name in wanted.components)
         scene = replace(whole, components=chosen)
-    if wanted.format in WITHOUT_COLOURS or wanted.format is ModelFormat.MESH:
+    if wanted.format in WITHOUT_COLOURS:
         return scene, notes
     if not needs_baking(trained.model):
         if type(trained.model.shader) is not Shader:

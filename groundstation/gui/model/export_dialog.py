@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import get_args
 
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QVBoxLayout, QWidget
@@ -16,7 +17,7 @@ from groundstation.services.model_export import (
     Preset,
 )
 
-PRESETS: tuple[Preset, ...] = ("small", "balanced", "fine")
+PRESETS = get_args(Preset)
 
 LEAST_WIDTH_PX = 440
 
@@ -79,7 +80,7 @@ class ExportDialog(QDialog):
         kind = self._kind()
         self.about.setText(format_words()[kind][1])
         self.part.setEnabled(kind not in OF_ALL_PARTS)
-        self.colours.setEnabled(kind not in WITHOUT_COLOURS and kind is not ModelFormat.MESH)
+        self.colours.setEnabled(kind not in WITHOUT_COLOURS)
         self.preset.setEnabled(kind in WITH_PRESETS)
 
 

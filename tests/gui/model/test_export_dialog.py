@@ -46,6 +46,7 @@ def test_only_what_a_format_asks_for_can_be_chosen_and_counts(application):
         found[kind] = dialog.wanted()
         assert found[kind].format is kind
         assert dialog.preset.isEnabled() == (found[kind].preset == "small")
+        assert dialog.colours.isEnabled() == (not found[kind].baked)
         assert dialog.part.isEnabled() == (found[kind].components == ("B",))
     assert found[ModelFormat.SOG] == ModelExport(ModelFormat.SOG, baked=False, preset="small", components=("B",))
     assert found[ModelFormat.IFC] == ModelExport(ModelFormat.IFC)
