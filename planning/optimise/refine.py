@@ -115,4 +115,5 @@ def _least_useful_first(
     elements: list[NDArray[np.int32]], counts: NDArray[np.int64], weights: Array
 ) -> NDArray[np.int64]:
     """Order of views by what would be lost without them."""
-    return np.argsort([weights[items][counts[items] == 1].sum() for items in elements])
+    lost = [weights[items][counts[items] == 1].sum() for items in elements]
+    return np.argsort(lost, kind="stable")

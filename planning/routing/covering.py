@@ -182,7 +182,7 @@ class _Search:
         if kind == 0:
             out = (self.rng.integers(k) + np.arange(n_out)) % k
         elif kind == 1:
-            out = np.argsort(self.travel_s[self.rng.choice(self.route), self.route])[:n_out]
+            out = np.argsort(self.travel_s[self.rng.choice(self.route), self.route], kind="stable")[:n_out]
         else:
             out = self.rng.choice(k, n_out, replace=False)
         is_out = np.zeros(k, np.bool_)

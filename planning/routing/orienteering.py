@@ -279,7 +279,7 @@ class _Search:
             first = self.rng.integers(len(places))
             out = places[first : first + n_out]
         elif kind == 1:
-            out = places[np.argsort(self.travel_s[self.rng.choice(places), places])[:n_out]]
+            out = places[np.argsort(self.travel_s[self.rng.choice(places), places], kind="stable")[:n_out]]
         else:
             out = self.rng.choice(places, n_out, replace=False)
         for i, route in enumerate(self.routes):

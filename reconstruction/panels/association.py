@@ -95,7 +95,7 @@ def _alignment(positions: Array, known: Array, reach_m: float, tolerance: float)
     offsets = (known[:, None] - positions[None, :]).ravel()
     offsets = np.append(offsets[np.abs(offsets) <= reach_m], 0.0)
     best, least = 0.0, np.inf
-    for offset in offsets[np.argsort(np.abs(offsets))]:
+    for offset in offsets[np.argsort(np.abs(offsets), kind="stable")]:
         distance = np.abs(positions[:, None] + offset - known[None, :]).min(axis=1)
         cost = float(np.minimum(distance / tolerance, 1.0).sum())
         if cost < least - 0.5:

@@ -186,7 +186,7 @@ def _through(points: Array, camera: Array) -> FacadeSurface | None:
     """
     plan = points[:, 0] + 1j * points[:, 1]
     chord = plan[2] - plan[0]
-    a, b, c = plan[np.argsort((plan * np.conj(chord)).real)]
+    a, b, c = plan[np.argsort((plan * np.conj(chord)).real, kind="stable")]
     if min(abs(b - a), abs(c - b), abs(c - a)) < 1e-6:
         return None
     tangent = (b - a) * (c - b) / (c - a)

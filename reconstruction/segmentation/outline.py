@@ -187,7 +187,7 @@ def _edge(along: Array, inclined: Sequence[InclinedLine], sign: float) -> Array 
             reaches += [float(cut.first[0]), float(cut.last[0])]
     if not places:
         return None
-    order = np.argsort(places)
+    order = np.argsort(places, kind="stable")
     return np.asarray(np.interp(along, np.array(places)[order], np.array(reaches)[order]))
 
 

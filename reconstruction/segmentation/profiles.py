@@ -205,7 +205,7 @@ def _peaks(total: Array, n_bins: int) -> NDArray[np.intp]:
     peak = np.zeros(n_bins, bool)
     peak[1:-1] = (smooth[1:-1] >= smooth[:-2]) & (smooth[1:-1] > smooth[2:])
     places = np.nonzero(peak)[0]
-    strongest = places[np.argsort(-smooth[places])[:STRONGEST]]
+    strongest = places[np.argsort(-smooth[places], kind="stable")[:STRONGEST]]
     return np.sort(strongest)
 
 
