@@ -117,8 +117,10 @@ class Darkroom:
 
         gain = shown.gains.get(look.exposed_as, 1.0)
         wanted = ("depth",) if look.layer == PICTURE else (*dict.fromkeys(("depth", look.layer)),)
-        model = self._models.cut(shown, look.section)
-        found = render_view(model, View.of(look.camera, model.origin_enu_m), wanted, gain, shown.settings)
+        view = View.of(look.camera, shown.model.origin_enu_m)
+        models = self._models
+        model = models.quick(shown, look.section, view) if look.is_quick else models.cut(shown, look.section)
+        found = render_view(model, view, wanted, gain, shown.settings)
         values = found.display if look.layer == PICTURE else found.layers[look.layer]
         picture, scale = coloured(look.layer, values)
         depth = found.layers["depth"]

@@ -122,6 +122,8 @@ class Look:
         Of panels of a finished model.
     section
         That cuts a finished model.
+    is_quick
+        Whether splats of a large finished model that are finer than pixels may be drawn as one.
     """
 
     place: str
@@ -132,6 +134,7 @@ class Look:
     exposed_as: str = ""
     tints: Tints = ()
     section: Section | None = None
+    is_quick: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -22,10 +22,19 @@ if TYPE_CHECKING:
     from reconstruction.modelling.saved import TrainedModel
     from reconstruction.objects.picking import Quads
     from reconstruction.reflections.photo_set import PhotoSet
+    from reconstruction.splatting.merged_splats import SplatsOfDetail
     from reconstruction.splatting.raster import RasterSettings
+    from reconstruction.splatting.splats import Splats
+    from reconstruction.splatting.views import View
 
 MOST_MODELS = 2
 """Finished ones that are kept: the two that are compared."""
+
+LARGE = 150_000
+"""Splats of a model whose quick pictures are of fewer: others come in time as they are."""
+
+QUICK_PX = 1.0
+"""Side of the cubes whose splats are drawn as one, in a quick picture."""
 
 TINT_SHARE = 0.45
 """Of the colour that says something about a panel, in the picture."""
@@ -65,6 +74,7 @@ class ShownModels:
     def __init__(self) -> None:
         self._models: OrderedDict[tuple[Path, int], ShownModel] = OrderedDict()
         self._cuts: OrderedDict[SceneModel, tuple[Section, SceneModel]] = OrderedDict()
+        self._of_detail: OrderedDict[SceneModel, SplatsOfDetail] = OrderedDict()
 
     def of(self, folder: Path) -> ShownModel:
         """Read, unless it is kept and its file has not changed.
@@ -90,13 +100,35 @@ class ShownModels:
             return model
         known = self._cuts.get(model)
         if known is None or known[0] != section:
-            along = model.splats.means.detach()[:, section.axis] + float(model.origin_enu_m[section.axis])
-            kept = (along <= section.at_m) if section.is_above else (along >= section.at_m)
-            self._cuts[model] = known = section, model.with_splats(kept)
+            self._cuts[model] = known = section, model.with_splats(_cut(model.splats, section, model.origin_enu_m))
         self._cuts.move_to_end(model)
         while len(self._cuts) > MOST_MODELS:
             self._cuts.popitem(last=False)
         return known[1]
+
+    def quick(self, shown: ShownModel, section: Section | None, view: View) -> SceneModel:
+        """A model for one picture: of a large finished one, splats finer than pixels as one, none out of sight.
+
+        The first time, that takes seconds for a million splats.
+        """
+        from reconstruction.splatting.merged_splats import splats_of_detail
+
+        model = shown.model
+        if shown.quads is None or len(model.splats) < LARGE or model.splats.means.device.type != "cpu":
+            return self.cut(shown, section)
+        if model not in self._of_detail:
+            self._of_detail[model] = splats_of_detail(model.splats)
+        self._of_detail.move_to_end(model)
+        while len(self._of_detail) > MOST_MODELS:
+            self._of_detail.popitem(last=False)
+        splats = self._of_detail[model].for_view(view, QUICK_PX)
+        return model.with_splats(splats if section is None else _cut(splats, section, model.origin_enu_m))
+
+
+def _cut(splats: Splats, section: Section, origin_enu_m: NDArray[np.float64]) -> Splats:
+    """What a section leaves."""
+    along = splats.means.detach()[:, section.axis] + float(origin_enu_m[section.axis])
+    return splats.some((along <= section.at_m) if section.is_above else (along >= section.at_m))
 
 
 def shown_of(trained: TrainedModel) -> ShownModel:

@@ -221,17 +221,10 @@ class SceneModel(nn.Module):
             self.light.finish(config)
         self.eval()
 
-    def with_splats(self, rows: Tensor) -> SceneModel:
-        """A model of some of its splats, which shares all else with it.
-
-        Parameters
-        ----------
-        rows
-            Shape (n,), bool.
-        """
-        values = {name: getattr(self.splats, name).detach()[rows] for name in self.splats.names}
+    def with_splats(self, splats: Splats) -> SceneModel:
+        """A model of other splats, which shares all else with it."""
         found = SceneModel(
-            Splats(values, self.splats.panels[rows]),
+            splats,
             self.sky,
             self.light,
             self.planes,

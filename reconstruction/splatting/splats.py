@@ -139,6 +139,10 @@ class Splats(nn.Module):
         """Reflectance at normal incidence, shape (n, 3), 0 to 1."""
         return torch.sigmoid(self.f0_logits)
 
+    def some(self, rows: Tensor) -> Splats:
+        """A copy of some of them, by their numbers or by a mask, shape (n,)."""
+        return Splats({name: self.get_parameter(name).detach()[rows] for name in self.names}, self.panels[rows])
+
     def attribute(self, name: str) -> Tensor:
         """What a method's shading has beside `SHAPES`, as it is learned."""
         return self.get_parameter(name)

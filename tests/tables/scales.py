@@ -33,8 +33,8 @@ class Scale:
     own
         Settings of `TrainConfig`, as in TOML, by method: those that were found to bring it more in the same time. A
         case's own ones come after them.
-    longer
-        The same of trainings that take longer: with more time, larger networks pay.
+    longer, larger
+        The same of trainings that take longer, and of those from larger photos: larger networks pay there.
     """
 
     name: str
@@ -47,6 +47,7 @@ class Scale:
     orders: tuple[int, int, int, int]
     own: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     longer: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    larger: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @property
     def says_something(self) -> bool:
@@ -103,6 +104,7 @@ SMALL = replace(
     ),
     own={name: OF_PAPER for name in METHODS if name.startswith("refglass-gs")},
     longer={"refglass-gs": {"reflections": {"mlp": {"width": 256, "position_order": 6, "direction_order": 5}}}},
+    larger={"refglass-gs": {"reflections": {"mlp": {"width": 192, "position_order": 5, "direction_order": 5}}}},
 )
 """Hours of two cores; each training 600 s of one."""
 

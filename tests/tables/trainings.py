@@ -49,6 +49,8 @@ class Case:
         Of the photos that are learned from.
     paper
         The paper's PSNR by its scene, ST (planar) and UST (curved), where it has one.
+    width_px
+        Of its photos; None for the scale's.
     """
 
     title: str
@@ -56,6 +58,7 @@ class Case:
     settings: Mapping[str, Any] = field(default_factory=dict)
     planner: Planner = "greedy"
     paper: Mapping[str, float] = field(default_factory=dict)
+    width_px: int | None = None
 
     def config(self, scale: Scale, seed: int) -> TrainConfig:
         """Of its trainings."""
@@ -66,8 +69,8 @@ class Case:
 
     def photos(self, scene: str, scale: Scale) -> tuple[Photos, Photos]:
         """To learn from, and to be scored on."""
-        learned = Photos(scene, self.planner, scale.n_views, scale.width_px)
-        return learned, Photos(scene, "unseen", scale.n_unseen, scale.width_px)
+        width_px = self.width_px or scale.width_px
+        return Photos(scene, self.planner, scale.n_views, width_px), Photos(scene, "unseen", scale.n_unseen, width_px)
 
     def made_with(self, scene: str, scale: Scale) -> str:
         """Checksum of all that its numbers depend on, but for the program and the seed."""

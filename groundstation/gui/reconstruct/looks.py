@@ -193,7 +193,7 @@ class Looks(QObject):
         self._shown[place] = (self._version, is_fine)
         layer = "picture" if subject.kind == "photo" else view.layer
         tints = view.tints if place == "left" else view.right_tints
-        self._send(Look(place, number, subject, camera, layer, view.exposed_as, tints, view.section))
+        self._send(Look(place, number, subject, camera, layer, view.exposed_as, tints, view.section, not is_fine))
 
     def _fine_px(self) -> float:
         width, height = self._size_px()
