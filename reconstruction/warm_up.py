@@ -30,6 +30,7 @@ from reconstruction.scenes.renderer import Renderer, RenderSettings
 from reconstruction.scores.overlaps import pixel_overlaps
 from reconstruction.scores.raster import index_image
 from reconstruction.segmentation.segment import segment_rectified
+from reconstruction.splatting.detail_tree import FEWEST, detail_tree
 from reconstruction.splatting.rasteriser import rasterise
 from reconstruction.splatting.sky import Sky
 from reconstruction.splatting.splats import Splats
@@ -51,6 +52,7 @@ def compile_kernels() -> None:
     pixel_overlaps(index, index)
     dissimilarity(np.zeros((12, 36)), np.zeros((12, 36)), 3, True)
     _draw_splats()
+    _choose_details()
     _march_grid()
     _shade_panes()
     _shade_by_cubes()
@@ -78,6 +80,13 @@ def _draw_splats() -> None:
     (raster.features.sum() + raster.depths.sum() + solid.depths.sum() + light.sum()).backward()  # type: ignore[no-untyped-call]
     directions = view.directions().reshape(-1, 3)
     EnvironmentMap(4, 0.5)(directions, directions).sum().backward()
+
+
+def _choose_details() -> None:
+    """Cubes of splats on a line, and what of them a view calls for."""
+    places = np.linspace(0.0, 1.0, 3 * FEWEST).repeat(3).reshape(-1, 3)
+    tree = detail_tree(places, np.full(len(places), 1e-3), np.zeros(len(places), np.int32))
+    tree.rows_for(View(16, 16, 16.0, 16.0, 8.0, 8.0, torch.eye(4, dtype=torch.float64)), 1.0)
 
 
 def _march_grid() -> None:

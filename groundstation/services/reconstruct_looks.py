@@ -130,6 +130,10 @@ class Darkroom:
         seconds = time.perf_counter() - begun_s
         return Seen(look, picture, scale, middle if np.isfinite(middle) and middle > 0.0 else None, seconds)
 
+    def prepare(self) -> bool:
+        """Something that later pictures come sooner by, when nobody waits; whether there was anything."""
+        return self._models.prepare()
+
     def probed(self, probe: Probe) -> Probed:
         """Answer a probe."""
         try:

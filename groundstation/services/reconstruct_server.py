@@ -121,7 +121,7 @@ class _Server:
         self._tell(Devices(cuda_devices()))
         while not self._wishes.gone.is_set():
             use_threads(max(1, (os.cpu_count() or 1) - 1))
-            has_more = self._look() or self._darkroom.judge(self._wishes.errors, None)
+            has_more = self._look() or self._darkroom.prepare() or self._darkroom.judge(self._wishes.errors, None)
             try:
                 order = self._wishes.orders.get(block=not has_more)
             except queue.Empty:

@@ -74,7 +74,7 @@ class ShownModels:
     def __init__(self) -> None:
         self._models: OrderedDict[tuple[Path, int], ShownModel] = OrderedDict()
         self._cuts: OrderedDict[SceneModel, tuple[Section, SceneModel]] = OrderedDict()
-        self._of_detail: OrderedDict[SceneModel, SplatsOfDetail] = OrderedDict()
+        self._of_detail: OrderedDict[SceneModel, SplatsOfDetail | None] = OrderedDict()
 
     def of(self, folder: Path) -> ShownModel:
         """Read, unless it is kept and its file has not changed.
@@ -107,22 +107,45 @@ class ShownModels:
         return known[1]
 
     def quick(self, shown: ShownModel, section: Section | None, view: View) -> SceneModel:
-        """A model for one picture: of a large finished one, splats finer than pixels as one, none out of sight.
+        """A model for one picture: of a large finished one, splats finer than pixels as one, none out of sight."""
+        model = shown.model
+        detail = self._detail(model) if _is_large(shown) else None
+        if detail is None:
+            return self.cut(shown, section)
+        splats = detail.for_view(view, QUICK_PX)
+        return model.with_splats(splats if section is None else _cut(splats, section, model.origin_enu_m))
 
-        The first time, that takes seconds for a million splats.
-        """
+    def prepare(self) -> bool:
+        """Make a large model ready for quick pictures, which takes seconds; whether there was one."""
+        for shown in self._models.values():
+            if _is_large(shown) and shown.model not in self._of_detail:
+                self._detail(shown.model)
+                return True
+        return False
+
+    def _detail(self, model: SceneModel) -> SplatsOfDetail | None:
+        """None where there is no memory for it."""
+        from reconstruction.recovery import is_out_of_memory
         from reconstruction.splatting.merged_splats import splats_of_detail
 
-        model = shown.model
-        if shown.quads is None or len(model.splats) < LARGE or model.splats.means.device.type != "cpu":
-            return self.cut(shown, section)
         if model not in self._of_detail:
-            self._of_detail[model] = splats_of_detail(model.splats)
+            self._of_detail[model] = None
+            try:
+                self._of_detail[model] = splats_of_detail(model.splats)
+            except (MemoryError, RuntimeError) as error:
+                if not is_out_of_memory(error):
+                    raise
         self._of_detail.move_to_end(model)
         while len(self._of_detail) > MOST_MODELS:
             self._of_detail.popitem(last=False)
-        splats = self._of_detail[model].for_view(view, QUICK_PX)
-        return model.with_splats(splats if section is None else _cut(splats, section, model.origin_enu_m))
+        return self._of_detail[model]
+
+
+def _is_large(shown: ShownModel) -> bool:
+    """Whether its quick pictures are of fewer splats; one in training changes, and a graphics card needs none."""
+    return (
+        shown.quads is not None and len(shown.model.splats) >= LARGE and shown.model.splats.means.device.type == "cpu"
+    )
 
 
 def _cut(splats: Splats, section: Section, origin_enu_m: NDArray[np.float64]) -> Splats:

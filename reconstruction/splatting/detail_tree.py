@@ -90,7 +90,7 @@ class DetailTree:
         """
         from_world = np.ascontiguousarray(view.cam_from_world.numpy())
         states = np.zeros(len(self.parents) - self.n_splats, np.uint8)
-        place, sides = -from_world[:3, :3].T @ from_world[:3, 3], _sides_of_sight(view)
+        place, sides = view.position_m.double().numpy(), _sides_of_sight(view)
         ratio = finest_px / max(view.fx_px, view.fy_px)
         for level in reversed(self.levels):
             first, last = level.start - self.n_splats, level.stop - self.n_splats
@@ -189,7 +189,7 @@ def detail_tree(means_m: Array, sizes_m: Array, groups: NDArray[np.integer]) -> 
     if n < FEWEST:
         return DetailTree(n, np.full(n, ALONE), np.zeros((0, 3)), ())
     low = means_m.min(axis=0)
-    whole = max(float((means_m - low).max()), 1e-6)
+    whole = max(float((means_m - low).max()), float(np.median(sizes_m)), 1e-6)
     finest = whole / 2**HALVINGS
     coordinates = np.clip(((means_m - low) / finest).astype(np.int64), 0, 2**HALVINGS - 1)
     enters = np.clip(np.ceil(np.log2(np.maximum(sizes_m, finest) / finest)), 0, HALVINGS + 1).astype(np.int64)

@@ -1,6 +1,7 @@
 """Finished models that are looked at: cut, coloured and asked what is where."""
 
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -102,6 +103,61 @@ def test_the_same_section_of_two_models_is_cut_once_each(folders, darkroom):
     for each, cut in zip(shown, first, strict=True):
         assert darkroom._models.cut(each, section) is cut
         assert darkroom._models.cut(each, Section(2, 2.0)) is not cut
+
+
+def test_quick_pictures_of_small_models_are_as_they_are(folders, darkroom):
+    plain, quick = (darkroom.seen(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True))
+    assert np.array_equal(plain, quick)
+    assert not darkroom._models._of_detail
+
+
+def test_quick_pictures_of_large_models_look_like_them_and_have_sections(folders, darkroom, monkeypatch):
+    """A model that counts as large, from so far away that pixels are as coarse as its cubes."""
+    monkeypatch.setattr("groundstation.services.shown_models.LARGE", 100)
+    monkeypatch.setattr("reconstruction.splatting.detail_tree.FEWEST", 20)
+    near = camera(folders)
+    lens = near.intrinsics
+    small = replace(near, intrinsics=lens.scaled(lens.width_px // 4, lens.height_px // 4))
+    shown = darkroom._models.of(folders / "scene")
+    n = len(darkroom._models.quick(shown, None, _view_of(small, shown)).splats)
+    assert 0 < n < len(shown.model.splats)
+    plain, quick = (
+        darkroom.seen(look(folders / "scene", small, is_quick=is_quick)).picture.astype(float)
+        for is_quick in (False, True)
+    )
+    assert 0.0 < np.abs(plain - quick).mean() < 10.0
+    means = shown.model.splats.means.detach().numpy()
+    at_m = float(np.median(means[:, 0]) + shown.model.origin_enu_m[0])
+    cut = darkroom._models.quick(shown, Section(0, at_m), _view_of(small, shown)).splats
+    assert 0 < len(cut) < n
+    assert (cut.means[:, 0].detach().numpy() + shown.model.origin_enu_m[0] <= at_m).all()
+    assert len(darkroom._models._of_detail) == 1
+    assert not darkroom.prepare()
+
+
+def test_a_large_model_is_made_ready_while_nobody_waits(folders, darkroom, monkeypatch):
+    assert not darkroom.prepare()
+    darkroom.seen(look(folders / "scene", camera(folders)))
+    assert not darkroom.prepare()
+    monkeypatch.setattr("groundstation.services.shown_models.LARGE", 100)
+    assert [darkroom.prepare(), darkroom.prepare()] == [True, False]
+
+
+def test_where_there_is_no_memory_for_it_quick_pictures_are_as_they_are(folders, darkroom, monkeypatch):
+    def no_memory(_splats):
+        raise MemoryError
+
+    monkeypatch.setattr("groundstation.services.shown_models.LARGE", 100)
+    monkeypatch.setattr("reconstruction.splatting.merged_splats.splats_of_detail", no_memory)
+    plain, quick = (darkroom.seen(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True))
+    assert np.array_equal(plain, quick)
+    assert not darkroom.prepare()
+
+
+def _view_of(photo, shown):
+    from reconstruction.splatting.views import View
+
+    return View.of(photo, shown.model.origin_enu_m)
 
 
 def test_a_probe_tells_panel_and_place(folders, darkroom):
