@@ -63,7 +63,10 @@ def test_a_surface_drawn_by_fewer_is_the_mean_of_a_fine_picture(n_sizes, opacity
     truth, covered = (pooled(values, finer) for values in drawn(splats, from_south(15.0, finer * 64)))
     found, covers = (pooled(values, 1) for values in drawn(few, view))
     colour, normal = FEATURES["colour"], FEATURES["normal"]
-    assert float((found - truth)[..., colour].square().mean().sqrt()) < 0.02
+    all_of_them = pooled(drawn(splats, view)[0], 1)
+    error, usual = (float((each - truth)[..., colour].square().mean().sqrt()) for each in (found, all_of_them))
+    assert error < 0.02
+    assert error < (0.5 if opacity < 0.2 else 2.0) * usual
     assert float((covers - covered).mean().abs()) < 0.03
     assert torch.allclose(found[..., normal] / covers, -torch.tensor(FORWARD), atol=0.01)
 
