@@ -25,6 +25,7 @@ from planning.folders import make_folder
 from planning.json_file import read_json, write_atomically
 from planning.progress import QUIET, Monitor
 from planning.site import Origin
+from reconstruction.exports.coarser_parts import coarser_part
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import PRESETS, Compression
 from reconstruction.exports.glb import write_glb
@@ -65,6 +66,10 @@ TILESETS: dict[str, tuple[Layer, ...]] = {
 }
 """What they show; in the order in which they are written."""
 
+SHARPER = 8.0
+"""Geometric error of a tile, in sides of the cubes in which its Gaussians are merged. Viewers go on to finer ones where
+the error is more than some pixels, 16 in CesiumJS unless it is told otherwise: cubes are of 2 pixels then."""
+
 THINNEST_M = 0.001
 """Half a box: readers take none for no box at all."""
 
@@ -79,6 +84,8 @@ class TilesOptions:
         As `GltfOptions` has them; CesiumJS shows Gaussians as `spz` only, and only those of `gaussians.json`.
     gaussians_per_tile
         At most, but for single panels that have more: 24 MB with harmonics of degree 3, a tenth of that as `spz`.
+    has_coarser
+        Whether tiles that are shared out among others have merged Gaussians of their own, for views from afar.
     place
         `earth`: where the site is; `local`: tiles stay in the site's frame, for viewers without a globe.
     """
@@ -86,6 +93,7 @@ class TilesOptions:
     sh_degree: int = 3
     panel_opacity: float = INVISIBLE
     gaussians_per_tile: int = 100_000
+    has_coarser: bool = True
     place: Literal["earth", "local"] = "earth"
     gaussians: Gaussians = "spz"
     compression: Compression = PRESETS["balanced"]
@@ -106,10 +114,12 @@ DEFAULT = TilesOptions()
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Tile:
-    """With a file, or with children.
+    """With a file, or with children, or with a file that shows what those of its children show more finely.
 
     Parameters
     ----------
+    error_m
+        Of its file against the finest.
     more
         Of the tile's JSON.
     """
@@ -117,15 +127,14 @@ class _Tile:
     box: Box
     layer: Layer | None = None
     file: str | None = None
+    error_m: float = 0.0
     children: tuple[_Tile, ...] = ()
     more: dict[str, Any] | None = None
 
     def json(self, layers: Sequence[Layer]) -> dict[str, Any]:
         """As the specification has it."""
-        box = self.around(layers)
-        found: dict[str, Any] = {"boundingVolume": {"box": _box(box)}}
-        # Nothing finer than a file exists; where its files are missing, all of a tile is.
-        found["geometricError"] = 0.0 if self.file is not None else box.diagonal_m
+        found: dict[str, Any] = {"boundingVolume": {"box": _box(self.around(layers))}}
+        found["geometricError"] = self.error_without_children_m(layers)
         found |= self.more or {}
         if self.file is not None:
             found["content"] = {"uri": self.file}
@@ -135,7 +144,12 @@ class _Tile:
     def around(self, layers: Sequence[Layer]) -> Box:
         """The box around its files of some layers; its own where it has none of them."""
         boxes = [child.around(layers) for child in self.children if child.has(layers)]
-        return boxes[0].with_others(*boxes[1:]) if boxes else self.box
+        return self.box if self.file is not None or not boxes else boxes[0].with_others(*boxes[1:])
+
+    def error_without_children_m(self, layers: Sequence[Layer]) -> float:
+        """All of it, where it has no file; never less than those of its children."""
+        own = self.around(layers).diagonal_m if self.file is None else self.error_m
+        return max(own, *(child.error_without_children_m(layers) for child in self.children if child.has(layers)), 0.0)
 
     def has(self, layers: Sequence[Layer]) -> bool:
         """Whether it has files of some layers."""
@@ -194,6 +208,7 @@ class _Folder:
         self.files: set[str] = set()
         self._folder, self._scene, self._table, self._monitor = folder, scene, table, monitor
         self._options, self._at_most = options.of_files, options.gaussians_per_tile
+        self._has_coarser = options.has_coarser
 
     def component(self, component: GsComponent, attributes: Attributes) -> _Tile:
         """A tile with those of its Gaussians and panels; without children where it has neither."""
@@ -201,7 +216,7 @@ class _Folder:
         if component.elements:
             children.append(_Tile(box_of_panels(component), "panels", self._file(component, "panels")))
         if len(component.gaussians):
-            children.append(self._gaussians(component, branches_of(component, self._at_most)))
+            children.append(self._gaussians(component, branches_of(component, self._at_most))[0])
         if not children:
             return _Tile(Box(np.zeros(3), np.zeros(3)))
         around = children[0].box.with_others(*(child.box for child in children[1:]))
@@ -216,12 +231,21 @@ class _Folder:
         more = {"metadata": {"class": "component", "properties": known}, "extras": extras}
         return _Tile(around, children=tuple(children), more=more)
 
-    def _gaussians(self, component: GsComponent, branch: Branch) -> _Tile:
-        if branch.halves:
-            halves = tuple(self._gaussians(component, half) for half in branch.halves)
-            return _Tile(halves[0].box.with_others(*(half.box for half in halves[1:])), children=halves)
-        part = part_of_branch(component, branch)
-        return _Tile(box_of_gaussians(part, self._scene), "gaussians", self._file(part, "gaussians"))
+    def _gaussians(self, component: GsComponent, branch: Branch) -> tuple[_Tile, GsComponent | None]:
+        """A tile, and what its own file shows; None where it has none."""
+        if not branch.halves:
+            part = part_of_branch(component, branch)
+            return _Tile(box_of_gaussians(part, self._scene), "gaussians", self._file(part, "gaussians")), part
+        halves = [self._gaussians(component, half) for half in branch.halves]
+        tiles, shown = tuple(tile for tile, _ in halves), [part for _, part in halves if part is not None]
+        around = tiles[0].box.with_others(*(tile.box for tile in tiles[1:]))
+        is_whole = self._has_coarser and len(shown) == len(halves)
+        merged = coarser_part(shown, self._at_most) if is_whole else None
+        if merged is None:
+            return _Tile(around, children=tiles), None
+        around = around.with_others(box_of_gaussians(merged.component, self._scene))
+        file, error_m = self._file(merged.component, "gaussians"), SHARPER * merged.side_m
+        return _Tile(around, "gaussians", file, error_m, tiles, {"refine": "REPLACE"}), merged.component
 
     def _file(self, part: GsComponent, layer: Layer) -> str:
         """Write a file; returns its name."""
@@ -263,7 +287,7 @@ def _write(
         "asset": {"version": "1.1", "extras": scene_extras(scene) | EXTRAS},
         "schema": schema,
         "metadata": {"class": "site", "properties": {"global_id": scene.global_id, "name": plain(scene.name)}},
-        "geometricError": root.around(layers).diagonal_m,
+        "geometricError": root.error_without_children_m(layers),
         "root": root.json(layers),
     }
     if needed:

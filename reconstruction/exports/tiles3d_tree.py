@@ -1,7 +1,7 @@
 """How a component's Gaussians are shared among tiles: halves, by space, until each has few enough.
 
-Panels stay whole. There are no coarser versions of anything: some of a building's Gaussians look like one with holes. A
-tile is shown or not, and the tree only serves to load what is near and in sight.
+Panels stay whole. Tiles that are shared out have merged Gaussians of their own (`coarser_parts`): some of a building's
+would look like one with holes.
 """
 
 from __future__ import annotations

@@ -80,6 +80,21 @@ class DetailTree:
         rows = np.flatnonzero((below >= level.start) & (below < level.stop))
         return rows, below[rows] - level.start
 
+    def finest_cut(self, at_most: int) -> tuple[Ints, float] | None:
+        """What is drawn where all cubes up to some size are, and that size in metres; None where no cut is so small.
+
+        Parameters
+        ----------
+        at_most
+            Rows of it.
+        """
+        for level in self.levels:
+            above = self.parents[: level.stop]
+            rows = np.flatnonzero((above == ALONE) | (above >= level.stop))
+            if len(rows) <= at_most:
+                return rows, level.side_m
+        return None
+
     def rows_for(self, view: View, finest_px: float) -> Ints:
         """What is to be drawn in a view, ascending: nothing of cubes that are out of sight with all that is in them.
 

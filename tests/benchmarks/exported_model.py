@@ -28,7 +28,8 @@ WRITERS: dict[str, Callable[[GsScene, Path], object]] = {
     "web": write_web,
     "glTF, numbers": lambda scene, out: write_gltf(scene, out.with_suffix(".glb")),
     "glTF, SPZ": lambda scene, out: write_gltf(scene, out.with_suffix(".glb"), GltfOptions(gaussians="spz")),
-    "3D Tiles, SPZ": lambda scene, out: write_tiles(scene, out, TilesOptions(gaussians="spz")),
+    "3D Tiles, SPZ": write_tiles,
+    "3D Tiles, SPZ, finest tiles alone": lambda scene, out: write_tiles(scene, out, TilesOptions(has_coarser=False)),
     "USD": lambda scene, out: write_usd(scene, out.with_suffix(".usdc")),
 }
 

@@ -8,7 +8,9 @@ const options = { worker: false, "3d-tiles": { isTileset: true, loadGLTF: false 
 const tileset = await parse(readFileSync(file), Tiles3DLoader, options, { url: file });
 const tiles = [];
 const visit = (tile) => {
-  tiles.push({ type: tile.type, error: tile.lodMetricValue, url: tile.contentUrl ?? null, box: tile.boundingVolume.box });
+  const { type, refine, children } = tile;
+  const n_children = children.length;
+  tiles.push({ type, refine, n_children, error: tile.lodMetricValue, url: tile.contentUrl ?? null, box: tile.boundingVolume.box });
   tile.children.forEach(visit);
 };
 visit(tileset.root);

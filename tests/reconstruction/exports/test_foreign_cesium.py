@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import torch
 
-from reconstruction.exports.tiles3d import write_tiles
+from reconstruction.exports.tiles3d import DEFAULT, TilesOptions, write_tiles
 from reconstruction.splatting.harmonic_colour import display_colours
 from tests import foreign
 from tests.reconstruction.exports.web_browser import chromium
@@ -59,8 +59,8 @@ def serve(tmp_path, browser):
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, tiles=tmp_path))
     threading.Thread(target=server.serve_forever, daemon=True).start()
 
-    def shown(scene, *layers):
-        write_tiles(scene, tmp_path)
+    def shown(scene, *layers, options=DEFAULT):
+        write_tiles(scene, tmp_path, options)
         browser._call("POST", "/url", {"url": f"http://127.0.0.1:{server.server_port}/show_cesium.html"})
         browser.run("await show(...arguments)", *(f"/tiles/{layer}" for layer in layers))
 
@@ -69,20 +69,20 @@ def serve(tmp_path, browser):
     server.server_close()
 
 
-def scene_of(places_m, colours, bands=None):
-    """Balls of 0.4 m on no panel, around the scene's origin, and two panels of a facade that looks south."""
+def scene_of(places_m, colours, bands=None, size_m=0.4):
+    """Balls on no panel, around the scene's origin, and two panels of a facade that looks south."""
     scene = made_scene(((1, 1),), len(places_m))
     values = scene.components[-1].gaussians.values
     values["means"][:] = places_m
     values["quats"][:] = (1.0, 0.0, 0.0, 0.0)
-    values["log_scales"][:] = np.log(0.4)
+    values["log_scales"][:] = np.log(size_m)
     values["opacity_logits"][:] = 6.0
     values["sh"][:] = 0.0
     values["sh"][:, 0] = (np.array(colours) - 0.5) / 0.28209479
     if bands is not None:
         values["sh"][:, 1:] = bands
     # Discs would be seen from the side as lines.
-    balls = {**values, "log_scales": np.full((len(places_m), 3), np.log(0.4), np.float32)}
+    balls = {**values, "log_scales": np.full((len(places_m), 3), np.log(size_m), np.float32)}
     rest = replace(scene.components[-1], gaussians=replace(scene.components[-1].gaussians, values=balls))
     facade = scene.components[0]
     facade.gaussians.values["opacity_logits"][:] = -9.0
@@ -134,6 +134,22 @@ def test_colours_by_direction_turn_with_the_axes(browser, serve):
         np.testing.assert_allclose(found, expected, atol=0.04)
         seen.append(expected)
     assert np.ptp(seen, axis=0).max() > 0.2
+
+
+def test_from_afar_few_gaussians_are_shown_and_from_near_all(browser, serve):
+    rng = np.random.default_rng(3)
+    places = rng.uniform(-1.0, 1.0, (4000, 3)) * (8.0, 0.1, 4.0)
+    scene = scene_of(places, np.where(places[:, :1] < 0.0, RED, GREEN), size_m=0.08)
+    serve(scene, "gaussians.json", options=TilesOptions(gaussians_per_tile=1000))
+    for distance_m, is_coarse in ((300.0, True), (20.0, False), (300.0, True)):
+        picture = look(browser, scene, (0.0, -distance_m, 0.0))
+        errors = browser.run("return errors()")
+        assert (len(errors) == 1 and errors[0] > 0.0) if is_coarse else (len(errors) >= 4 and max(errors) == 0.0)
+        for colour, side in ((RED, -1.0), (GREEN, 1.0)):
+            expected = np.array([4.0 * side, 0.0]) * FOCAL_PX / distance_m
+            np.testing.assert_allclose(middle_of(picture, colour), expected, atol=3.0)
+        assert picture[237:243, 316:324, :2].sum(axis=2).mean() > 0.8
+    assert browser.run("return failures") == []
 
 
 def test_panels_are_picked_through_gaussians(browser, serve):

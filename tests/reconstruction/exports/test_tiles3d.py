@@ -43,6 +43,17 @@ def box_of(tile):
     return numbers[:3] - half, numbers[:3] + half
 
 
+def means_of(glb):
+    (name,) = glb.primitives
+    return glb.attributes(name)["POSITION"]
+
+
+def panels_of(glb):
+    """Of its Gaussians."""
+    is_facade = "_FEATURE_ID_0" in glb.attributes(next(iter(glb.primitives)))
+    return {row["Number in the model"] for row in glb.table} if is_facade else set()
+
+
 def contents_of(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
@@ -81,8 +92,7 @@ def test_each_gaussian_is_in_one_tile_inside_its_box(tmp_path):
         assert glb.json["nodes"][node]["matrix"][12:] == [1.0, 3.0, -2.0, 1.0]
         values = glb.attributes(name)
         n = len(values["POSITION"])
-        panels = {row["Number in the model"] for row in glb.table} if "_FEATURE_ID_0" in values else set()
-        assert n <= 25 or len(panels) == 1
+        assert n <= 25 or len(panels_of(glb)) == 1
         found = Ellipsoids(
             values["POSITION"],
             values[f"{SPLATTING}:ROTATION"][:, [3, 0, 1, 2]],
@@ -141,6 +151,44 @@ def test_boxes_and_errors_of_children_are_within_those_of_parents(tmp_path):
             assert (child_high <= high + 1e-3).all()
             assert child["geometricError"] <= tile["geometricError"]
     assert n_inner > 4
+
+
+def test_tiles_that_are_shared_out_show_fewer_gaussians_of_all_their_panels(tmp_path):
+    scene = made_scene(((2000, 0, 1500, 1800, 900), (20,)), 3000)
+    write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=1000, gaussians="numbers"))
+    root, n_inner = read(tmp_path)["root"], 0
+    for tile in tiles_of(root):
+        if not ("content" in tile and "children" in tile):
+            continue
+        n_inner += 1
+        assert tile["refine"] == "REPLACE"
+        below = [found for child in tile["children"] for found in tiles_of(child)]
+        assert all("-gaussians-" in found["content"]["uri"] for found in below)
+        sides = [found["geometricError"] for found in below]
+        assert tile["geometricError"] >= max(sides)
+        assert tile["geometricError"] > 0.0
+        finest = [found for found in below if "children" not in found]
+        glb, *others = (Glb((tmp_path / found["content"]["uri"]).read_bytes()) for found in (tile, *finest))
+        assert panels_of(glb) == set().union(*map(panels_of, others))
+        means = means_of(glb)
+        assert len(means) <= 1000 < sum(len(means_of(other)) for other in others)
+        low, high = box_of(tile)
+        assert (means + scene.origin_enu_m >= low - 1e-5).all()
+        assert (means + scene.origin_enu_m <= high + 1e-5).all()
+    assert n_inner >= 4
+    assert [child["geometricError"] > 0.0 for child in root["children"]] == [True, True, True]
+    assert read(tmp_path)["geometricError"] >= root["geometricError"]
+
+
+def test_without_coarser_ones_each_gaussian_is_in_the_folder_once(tmp_path):
+    scene = made_scene(((2000, 1500),), 3000)
+    write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=1000, has_coarser=False))
+    for tile in tiles_of(read(tmp_path)["root"]):
+        assert ("content" in tile) != ("children" in tile)
+        assert tile.get("refine", "ADD") == "ADD"
+    n = len(files_of(tmp_path))
+    write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=1000))
+    assert len(files_of(tmp_path)) > n
 
 
 def test_three_tilesets_share_the_files(tmp_path):
