@@ -111,4 +111,8 @@ def test_loaders_gl_walks_the_tileset(tmp_path):
     assert all((tile["type"] == "scenegraph") == (tile["error"] == 0.0) for tile in found["tiles"])
     write_tiles(made_scene(((900, 800),), 3000), tmp_path, TilesOptions(gaussians_per_tile=1000))
     coarser = [tile for tile in run_node("read_tileset.js", tmp_path / "tileset.json")["tiles"] if tile["n_children"]]
-    assert {(tile["type"], tile.get("refine")) for tile in coarser} == {("empty", 1), ("empty", None), ("scenegraph", 2)}
+    assert {(tile["type"], tile.get("refine")) for tile in coarser} == {
+        ("empty", 1),
+        ("empty", None),
+        ("scenegraph", 2),
+    }

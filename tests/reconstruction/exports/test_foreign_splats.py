@@ -3,9 +3,11 @@
 The first two are npm packages (`@adobe/spz`, `@playcanvas/splat-transform`) that `make foreign` installs.
 """
 
+import importlib.util
 import json
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +23,7 @@ from reconstruction.exports.spz import write_spz
 from reconstruction.exports.spz_reading import read_spz
 from reconstruction.exports.turned_axes import turned
 from reconstruction.splatting.ply_file import read_blocks, read_header
+from tests import foreign
 from tests.reconstruction.exports.hard_scenes import antialiased, in_order
 from tests.reconstruction.exports.test_turned_axes import covariances
 from tests.reconstruction.objects.made_scene import made_scene
@@ -179,6 +182,8 @@ def test_we_read_what_splat_transform_writes(scene, tmp_path):
         assert np.sqrt(np.square(found.sh - own.sh)[:, :n_colours].mean()) < 0.1
 
 
+# Threads of TBB are not to be had where another library has brought an older one.
+@pytest.mark.filterwarnings("ignore:.*TBB threading layer")
 def test_gsply_reads_our_ply_and_spz(scene, tmp_path):
     gsply = pytest.importorskip("gsply")
     path = write_ply(scene, tmp_path / "a.ply", least_opacity=0.0).path
@@ -193,15 +198,12 @@ def test_gsply_reads_our_ply_and_spz(scene, tmp_path):
 
 
 def test_cjio_reads_our_city_model(scene, tmp_path):
-    cityjson = pytest.importorskip("cjio.cityjson")
+    if importlib.util.find_spec("cjio") is None:
+        pytest.skip("cjio is not installed")
     path = write_cityjson(scene, tmp_path / "a.json", {}).path
-    with path.open() as stream:
-        model = cityjson.CityJSON(file=stream)
-    model.check_version()
-    assert model.get_epsg() == 32650
-    assert model.number_city_objects_level1() == 1
-    assert sorted(model.calculate_bbox()) == pytest.approx(sorted(model.j["metadata"]["geographicalExtent"]), abs=1e-3)
-    before = len(model.j["vertices"])
-    model.remove_duplicate_vertices()
-    model.remove_orphan_vertices()
-    assert len(model.j["vertices"]) == before
+    reader = [sys.executable, "-W", "error", str(foreign.HERE / "read_cityjson.py"), str(path)]
+    found = json.loads(subprocess.run(reader, check=True, capture_output=True, text=True).stdout)
+    assert found["epsg"] == 32650
+    assert found["n_objects"] == 1
+    assert sorted(found["box"]) == pytest.approx(sorted(found["extent"]), abs=1e-3)
+    assert found["n_vertices"] == found["n_needed"] > 0
