@@ -13,7 +13,7 @@ from groundstation.gui.fly.flight_words import FlightWords
 from groundstation.gui.fly.fly_desk import BEFORE_FLIGHT, FlyDesk
 from groundstation.gui.fly.link_band import LinkBand
 from groundstation.gui.fly.live_pictures import LivePictures
-from groundstation.gui.fly.photo_strip import PhotoStrip
+from groundstation.gui.fly.photo_strip import PhotoStrip, ScrolledStrip
 from groundstation.gui.fly.preflight_list import PreflightList
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.fly.readouts_view import ReadoutsView
@@ -112,7 +112,7 @@ class FlyPage(QObject):
         flight = QWidget()
         layout = QVBoxLayout(flight)
         layout.setContentsMargins(4, 4, 4, 4)
-        layout.addWidget(self.strip)
+        layout.addWidget(ScrolledStrip(self.strip))
         layout.addWidget(self.notes, 1)
         self._lists = QTabWidget()
         self._lists.addTab(flight, self.tr("Photos"))

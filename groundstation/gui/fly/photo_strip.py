@@ -6,7 +6,7 @@ import math
 
 from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QToolTip, QWidget
 
 from groundstation.gui.theme import Colours, colours
 from groundstation.services.live_events import PhotoCounted, ViewState
@@ -33,9 +33,15 @@ class PhotoStrip(QWidget):
     -------
     picked(str)
         Identifier of a view.
+    reached(int)
+        Number of the view that comes next, or that the keyboard is at.
+    resized()
+        It takes another number of rows.
     """
 
     picked = Signal(str)
+    reached = Signal(int)
+    resized = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -53,8 +59,11 @@ class PhotoStrip(QWidget):
             had, self._states = len(self._states), states
             if had != len(states):
                 self._focused = 0
-                self.updateGeometry()
+                self._make_room()
             self.update()
+            following = next((i for i, (_, state) in enumerate(states) if state is ViewState.NEXT), None)
+            if following is not None:
+                self.reached.emit(following)
 
     def set_photos(self, photos: dict[str, PhotoCounted]) -> None:
         """Photos by the view that they are of."""
@@ -109,7 +118,7 @@ class PhotoStrip(QWidget):
     def resizeEvent(self, event: object) -> None:  # noqa: N802
         """Another width takes other rows."""
         super().resizeEvent(event)  # type: ignore[arg-type]
-        self.updateGeometry()
+        self._make_room()
 
     def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
         """Paint the cells."""
@@ -143,6 +152,7 @@ class PhotoStrip(QWidget):
         if step is not None and self._states:
             self._focused = min(max(self._focused + step, 0), len(self._states) - 1)
             self.update()
+            self.reached.emit(self._focused)
         elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space) and self._states:
             self.picked.emit(self._states[self._focused][0])
         else:
@@ -156,6 +166,10 @@ class PhotoStrip(QWidget):
             return True
         return super().event(event)
 
+    def _make_room(self) -> None:
+        self.updateGeometry()
+        self.resized.emit()
+
     def _columns(self) -> tuple[int, float]:
         n, width = max(1, len(self._states)), max(1.0, float(self.width()))
         rows = math.ceil(n * LEAST_CELL_PX / width)
@@ -167,6 +181,39 @@ class PhotoStrip(QWidget):
         column, row = int(x // cell), int(y // ROW_PX)
         number = row * columns + column
         return number if 0 <= column < columns and 0 <= number < len(self._states) else None
+
+
+class ScrolledStrip(QScrollArea):
+    """A strip in as much room as there is, one row at least; what is reached is in sight."""
+
+    def __init__(self, strip: PhotoStrip, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._strip, self._at = strip, 0
+        self.setWidget(strip)
+        self.setWidgetResizable(True)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
+        strip.resized.connect(self._make_room)
+        strip.reached.connect(self._show)
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """Room for all rows."""
+        return self._strip.sizeHint()
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802
+        """One row."""
+        return QSize(100, ROW_PX + 2)
+
+    def _make_room(self) -> None:
+        self.updateGeometry()
+        self._show(self._at)
+
+    def _show(self, number: int) -> None:
+        self._at = number
+        middle = self._strip.cell(number).center()
+        self.ensureVisible(int(middle.x()), int(middle.y()), 0, ROW_PX // 2)
 
 
 def state_colour(state: ViewState, look: Colours) -> QColor:

@@ -428,3 +428,27 @@ def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_pictur
     page.report.top_up.click()
     flown_over = planned()[0].site.name
     assert f"This flight was over the site {flown_over}" in desk.window.messages.texts()
+
+
+def test_a_long_sortie_and_a_lost_link_fit_a_small_screen(application, desk):
+    from PySide6.QtCore import Qt
+    from PySide6.QtTest import QTest
+
+    page, window = desk.window.tab("fly"), desk.window
+    for at in (400, 30):
+        states = [ViewState.NEXT if number == at else ViewState.TO_COME for number in range(700)]
+        page.strip.set_states(tuple((f"v{number:04d}", state) for number, state in enumerate(states)))
+        page.band.show_lost(7.0)
+        turn_until(application, lambda at=at: _is_seen(page.strip, at))
+        assert not _is_seen(page.strip, 430 - at)
+        assert window.minimumSizeHint().height() <= 720
+        assert window.height() == 720
+    page.strip.setFocus()
+    for _ in range(200):
+        QTest.keyClick(page.strip, Qt.Key.Key_Right)
+    turn_until(application, lambda: _is_seen(page.strip, 200))
+    assert not _is_seen(page.strip, 30)
+
+
+def _is_seen(strip, number):
+    return strip.visibleRegion().boundingRect().contains(strip.cell(number).center().toPoint())
