@@ -146,7 +146,7 @@ class SceneCard:
         largest = max(dict.fromkeys(names), key=names.count) if names else ""
         shown = tuple(panel for panel in self.panels if panel.facade == largest)
         corners = np.array([panel.element.corners_enu_m for panel in shown]).reshape(-1, 4, 3)
-        place = opening_place(corners, self.places_enu_m, math.tan(0.5 * FIELD_RAD) / ROOM)
+        place = opening_place(corners, self.places_enu_m, math.tan(0.5 * WIDEST_RAD) / ROOM)
         return view_of(shown) if place is None else _view_from(place, corners)
 
 

@@ -49,7 +49,10 @@ def test_the_first_view_is_from_where_a_photo_was_taken_and_shows_the_whole_faca
     middle = corners.reshape(-1, 3).mean(axis=0)
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
     normal /= np.linalg.norm(normal)
-    places = [(middle + metres * normal).tolist() for metres in (-30.0, 0.5, 6.0)]
+    # The last one would do with the usual field of view, but from so far aside that panels are slivers.
+    along = np.cross(normal, (0.0, 0.0, 1.0))
+    places = [(middle + metres * normal).tolist() for metres in (-30.0, 0.5, 2.4)]
+    places.append((middle + 8.0 * normal + 20.0 * along).tolist())
     write_scene(replace(scene, training={**scene.training, "places_enu_m": places}), tmp_path / "a.gsscene")
     card = read_card(tmp_path / "a.gsscene")
     first = card.first_view
