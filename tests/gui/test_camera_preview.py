@@ -268,3 +268,16 @@ def test_figures_follow_the_units(application, preview):
     assert " m away" in preview._frame.overlay._text
     preview.set_units(UnitSystem.IMPERIAL)
     assert " ft away" in preview._frame.overlay._text
+
+
+def test_what_photos_need_makes_no_window_higher(application, preview):
+    low = preview.minimumSizeHint().height()
+    preview.box.setValue(True)
+    photo(application, preview)
+    assert preview.box.sizeHint().height() > 200
+    assert preview.minimumSizeHint().height() == low < 200
+    # What does not fit beside the picture is reached by scrolling.
+    preview.resize(600, low)
+    for _ in range(4):
+        application.processEvents()
+    assert preview.box.height() >= preview.box.minimumSizeHint().height()

@@ -107,7 +107,7 @@ def test_the_work_is_done_in_one_other_process(worker):
     "scene", [SCENES["single-panel"], slow(kiosk)], ids=["a single panel", "kiosk, whose walls hide one another"]
 )
 def test_a_plan_is_the_one_that_is_made_here(worker, scene):
-    model, request = scene(), PlanRequest(n_views=2, greedy=GreedyParameters(n_candidates=400), time_budget_s=60.0)
+    model, request = scene(), PlanRequest(n_views=2, greedy=GreedyParameters(n_candidates=400), time_budget_s=600.0)
     here = plan_document_site(model, request)
     there = reunited(worker.run(plan_document_site, model, request), model, None)
     assert there.plan.viewpoints == here.plan.viewpoints

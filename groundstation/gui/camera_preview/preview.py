@@ -27,6 +27,7 @@ from groundstation.gui.camera_preview.photo_scene import (
 )
 from groundstation.gui.camera_preview.seen_panels import SiteSight, covered_by_view, site_sight
 from groundstation.gui.own_words import own_words
+from groundstation.gui.scrolling import scrolled
 from groundstation.gui.theme import colours
 from groundstation.gui.view3d.canvas import Canvas, image_array
 from groundstation.gui.view3d.layers import Drawable, Layer
@@ -98,7 +99,10 @@ class CameraPreview(QWidget):
         layout.setSpacing(4)
         above = QHBoxLayout()
         above.addWidget(self._frame, 1)
-        above.addWidget(self.box)
+        # Its rows would make the window higher than small screens are.
+        beside = scrolled(self.box)
+        beside.setFixedWidth(self.box.width() + beside.verticalScrollBar().sizeHint().width())
+        above.addWidget(beside)
         layout.addLayout(above, 1)
         layout.addLayout(self._controls())
         self._frame.fitted.connect(self._draw_pose)
