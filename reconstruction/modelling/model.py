@@ -1,12 +1,18 @@
 """The joint model: splats, the light that glass mirrors, the sky, and the camera's part (paper Eqs. 15 to 21).
 
-A view is rasterised once; where a panel mirrors, the blended colour c, reflectivity R and base reflectance F0 are
-shaded with the light L from where the mirrored ray goes: I = (1 - R) c + R F L. All of it is linear light in the
-model's frame (ENU less `origin_enu_m`); gain, vignetting and the sRGB curve come last.
+A view is rasterised once; where a panel mirrors, colour c, reflectivity R and base reflectance F0 are shaded with the
+light L from where the mirrored ray goes: I = (1 - R) c + R F L. All of it is linear light in the model's frame (ENU
+less `origin_enu_m`); gain, vignetting and the sRGB curve come last.
 
-With the panels' planes, R counts only where there is one to mirror: elsewhere a pixel that some glass splat reaches
-into shows c alone. With the splats' own, it counts wherever some glass splat does: a pixel that a frame's splat weighs
-most in still mirrors by the share of the glass in it, and has a gradient that can bring the frame's weight down.
+The paper blends c, R and F0 each for itself, which are then those of no surface where a pixel shares glass and frame:
+with half of each, R = 0.8 of the glass would take 0.4 of the frame's light. I is linear in (1 - R) c, R and R F0, so
+these are what is blended here: one mirrored ray for each pixel, and the sum over surfaces that each is shaded for
+itself. Where all splats of a pixel are alike both are the same.
+
+With the panels' planes, light is mirrored only where there is one to mirror: elsewhere a pixel that some glass splat
+reaches into shows (1 - R) c alone. With the splats' own, it is wherever some glass splat is: a pixel that a frame's
+splat weighs most in still mirrors by the share of the glass in it, and has a gradient that can bring the frame's weight
+down.
 """
 
 from __future__ import annotations
@@ -34,7 +40,6 @@ from reconstruction.reflections.shading import (
     incidence_cosines,
     reflected_directions,
     schlick,
-    shade,
 )
 from reconstruction.splatting.raster import Raster, RasterSettings
 from reconstruction.splatting.rasteriser import rasterise
@@ -284,7 +289,7 @@ class SceneModel(nn.Module):
             features = splats.features(position, degree, self.shader.colours(splats, position, degree))
             channels = self.shader.channels(splats, position)
             return features if channels is None else torch.cat([features, channels], dim=1)
-        features = splats.features(position, degree)
+        features = _shares(splats.features(position, degree))
         if not self._asks_splats:
             return features
         planes = torch.cat([features[:, FEATURES["normal"]], features[:, FEATURES["offset"]]], dim=1)
@@ -312,14 +317,12 @@ class SceneModel(nn.Module):
             else:
                 light, cosines = self._mirrored_by_planes(view, rows, columns, panels[rows, columns], generator)
         light = light.float()
-        own, reflectivity = features[:, FEATURES["colour"]], features[:, FEATURES["reflectivity"]]
-        fresnel = schlick(features[:, FEATURES["f0"]], cosines)
-        kept = shade(own, reflectivity, fresnel, torch.zeros_like(own))
-        added = reflectivity * fresnel * light
-        place = (rows, columns)
-        black = torch.zeros_like(raster.features[..., FEATURES["colour"]])
+        reflectivity = features[:, FEATURES["reflectivity"]]
+        added = schlick(features[:, FEATURES["f0"]], cosines, reflectivity) * light
+        place, own = (rows, columns), raster.features[..., FEATURES["colour"]]
+        black = torch.zeros_like(own)
         return Shaded(
-            raster.features[..., FEATURES["colour"]].index_put(place, kept),
+            own,
             black.index_put(place, added),
             black.index_put(place, light),
             torch.zeros_like(blended).index_put(place, reflectivity.squeeze(-1)),
@@ -358,3 +361,11 @@ class SceneModel(nn.Module):
         y = (torch.arange(view.height_px) + 0.5 - view.cy_px) / view.fy_px
         off_axis = (x * x + (y * y)[:, None]) / self.corner_square
         return 1.0 - torch.clamp(self.corner_loss * off_axis.to(self.corner_loss), max=MOST_LOST)
+
+
+def _shares(features: Tensor) -> Tensor:
+    """`Splats.features` with (1 - R) c and R F0 in the place of c and F0: what may be blended."""
+    reflectivity = features[:, FEATURES["reflectivity"]]
+    own = (1.0 - reflectivity) * features[:, FEATURES["colour"]]
+    mirrored = reflectivity * features[:, FEATURES["f0"]]
+    return torch.cat([own, reflectivity, mirrored, features[:, FEATURES["f0"].stop :]], dim=1)

@@ -41,8 +41,10 @@ def incidence_cosines(omega_o: Tensor, normals: Tensor) -> Tensor:
     return (omega_o * normals).sum(dim=-1).abs().clamp(max=1.0)
 
 
-def schlick(f0: Tensor, cosines: Tensor) -> Tensor:
+def schlick(f0: Tensor, cosines: Tensor, share: Tensor | float = 1.0) -> Tensor:
     """Fresnel term F0 + (1 - F0) (1 - cos)^5 (C. Schlick, 1994; Eq. 21), shape (n, 3).
+
+    Of a share R of the surface, and R F0 in the place of F0, it is R F.
 
     Cosines are clamped to 0..1 first: rounding leaves some outside, whose fifth power would leave 0..1 too.
 
@@ -52,11 +54,13 @@ def schlick(f0: Tensor, cosines: Tensor) -> Tensor:
         Reflectance at normal incidence, shape (n, 3), 0 to 1.
     cosines
         Shape (n,).
+    share
+        Shape (n, 1).
     """
     grazing = (1.0 - cosines.clamp(0.0, 1.0))[:, None]
     # Products: the gradient of a power is NaN where a base is 0 and the exponent was rounded.
     square = grazing * grazing
-    return f0 + (1.0 - f0) * (square * square * grazing)
+    return f0 + (share - f0) * (square * square * grazing)
 
 
 def shade(diffuse: Tensor, reflectivity: Tensor, fresnel: Tensor, reflected: Tensor) -> Tensor:

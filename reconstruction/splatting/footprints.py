@@ -1,10 +1,9 @@
 """How much of its opacity a splat keeps where it is drawn larger than a camera sees it, in torch.
 
-What is finer than a pixel is drawn about a pixel wide, by discs' low-pass filter or ellipsoids' blur. Were it as opaque
-as it is, a bar would grow with its distance, and a model that was learned from near would be wrong from afar. So the
-opacity is multiplied by the share that the splat has of what is drawn. Of ellipsoids that is |Sigma'|^(1/2) without
-blur over the same with it (Yu et al., "Mip-Splatting", CVPR 2024). A disc is drawn as itself or as the filter's circle,
-whichever counts more in a pixel; its share is here min(1, |det J| / sigma^2), exact where both are round.
+What is finer than a pixel is drawn about a pixel wide, by a blur of the picture. Were it as opaque as it is, a bar
+would grow with its distance, and a model that was learned from near would be wrong from afar. So the opacity is
+multiplied by the share that the splat has of what is drawn: |Sigma'|^(1/2) of its picture without blur over the same
+with it (Yu et al., "Mip-Splatting", CVPR 2024), of discs as of ellipsoids.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ import torch
 from torch import Tensor
 
 from reconstruction.splatting.ellipsoid_projection import rows_of
-from reconstruction.splatting.projection import project
+from reconstruction.splatting.projection import areas_of, blurred_areas2, project
 from reconstruction.splatting.raster import SOLID, RasterSettings
 from reconstruction.splatting.views import View
 
@@ -48,5 +47,4 @@ def footprint_shares(means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: Vi
         blurred = across + blur2 * (row_x.square().sum(dim=-1) + row_y.square().sum(dim=-1) + blur2)
         return torch.sqrt(across / blurred)
     jacobians = project(means, quats_wxyz, scales, view).jacobians_px
-    areas = jacobians[:, 0, 0] * jacobians[:, 1, 1] - jacobians[:, 0, 1] * jacobians[:, 1, 0]
-    return (areas.abs() / settings.low_pass_px**2).clamp(max=1.0)
+    return areas_of(jacobians).abs() / torch.sqrt(blurred_areas2(jacobians, settings.blur_px))

@@ -6,6 +6,9 @@ plane. It is exact on planes; across an edge it is that of a plane between the t
 
 Ellipsoids are drawn by its 3DGS kernels, with the depth of the middle as one more channel.
 
+Discs that are antialiased are projected and blurred in torch, and drawn by its 2DGS kernels from there; the low-pass
+filter that these have compiled in is laid far outside the picture.
+
 Differences from the other rasterisers that its compiled kernels fix: alpha up to 0.999, the splat that would close a
 pixel is left out, the low-pass filter lies in the middle of the disc's box, discs end at three standard deviations, and
 gradients are added up in any order. Settings other than `low_pass_px`, `blur_px`, `min_alpha` and `near_m` have no
@@ -23,8 +26,8 @@ from torch import Tensor
 
 from planning.errors import InputError
 from reconstruction.splatting.footprints import shown_opacities
-from reconstruction.splatting.projection import depths_of, rotations
-from reconstruction.splatting.raster import SOLID, Raster, RasterSettings
+from reconstruction.splatting.projection import Projected, blurred, depths_of, project, rotations
+from reconstruction.splatting.raster import SOLID, Raster, RasterSettings, steepest
 from reconstruction.splatting.views import View
 
 Blend = Callable[[Tensor], Tensor]
@@ -33,6 +36,12 @@ Blend = Callable[[Tensor], Tensor]
 TILE_PX = 16
 LABELS_AT_ONCE = 32
 """Channels in one pass that gsplat has kernels for."""
+
+FAR_PX = -1e6
+"""Where a low-pass filter lies that is not to count."""
+
+WIDEST_PX = 1e6
+"""Of half a box: more than any picture, and little enough for whole numbers."""
 
 LEAST_COSINE = 1e-3
 """Between a ray and the blended plane: seen flatter, the plane's depth says nothing."""
@@ -45,11 +54,13 @@ class _Seen:
     Parameters
     ----------
     radii_px, centres_px, depths_m
-        Shapes (1, n, 2), (1, n, 2) and (1, n).
+        Shapes (1, n, 2), (1, n, 2) and (1, n); the first two are half the sizes and the middles of what is drawn.
     shapes
         Ray transforms of discs, shape (1, n, 3, 3), or conics of ellipsoids, shape (1, n, 3).
     normals
         Of discs, shape (1, n, 3).
+    has_low_pass
+        Of discs: whether they are drawn as a circle at their middles where they are smaller.
     """
 
     radii_px: Tensor
@@ -57,11 +68,17 @@ class _Seen:
     depths_m: Tensor
     shapes: Tensor
     normals: Tensor | None
+    has_low_pass: bool = True
 
     def detached(self) -> _Seen:
         """Without gradients."""
-        normals = None if self.normals is None else self.normals.detach()
-        return _Seen(self.radii_px, self.centres_px.detach(), self.depths_m.detach(), self.shapes.detach(), normals)
+        return replace(
+            self,
+            centres_px=self.centres_px.detach(),
+            depths_m=self.depths_m.detach(),
+            shapes=self.shapes.detach(),
+            normals=None if self.normals is None else self.normals.detach(),
+        )
 
 
 def why_not_gsplat() -> str:
@@ -106,7 +123,8 @@ def rasterise_gsplat(
         projected = _projected_ellipsoids(means, quats_wxyz, scales, view, lens, settings)
         depths = depths_of(means, view)[:, None]
     else:
-        projected = _projected_discs(means, quats_wxyz, scales, view, lens, settings)
+        projecting = _blurred_discs if settings.antialiased else _projected_discs
+        projected = projecting(means, quats_wxyz, scales, view, lens, settings)
         depths = plane_channels(means, quats_wxyz, view)
     if screen_offsets is not None:
         projected = _moved(projected, screen_offsets)
@@ -153,6 +171,55 @@ def _projected_discs(
     )  # fmt: skip
 
 
+def _blurred_discs(
+    means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View, lens: Tensor, settings: RasterSettings
+) -> _Seen:
+    """The same, blurred; in float64, as `_shown`."""
+    rows = torch.nonzero(depths_of(means.detach(), view) > settings.near_m).squeeze(-1)
+    seen = project(means[rows].double(), quats_wxyz[rows].double(), scales[rows].double(), view)
+    seen = blurred(seen, settings.blur_px, steepest(min(view.fx_px, view.fy_px)))
+    middles, halves = boxes_of(seen, settings.reach, view)
+
+    def of_all(values: Tensor, like: Tensor) -> Tensor:
+        found = torch.zeros((len(means), *values.shape[1:]), dtype=like.dtype, device=means.device)
+        return found.index_put((rows,), values.to(like.dtype))[None]
+
+    return _Seen(
+        of_all(halves.ceil(), torch.zeros((), dtype=torch.int32)),
+        of_all(middles, means),
+        of_all(seen.depths_m, means),
+        of_all(ray_transforms(seen), means),
+        (rotations(quats_wxyz)[..., 2] @ view.cam_from_world.to(means)[:3, :3].T)[None],
+        False,
+    )
+
+
+def ray_transforms(projected: Projected) -> Tensor:
+    """Of discs, shape (n, 3, 3): (u, v, 1) to (x w, y w, w), with (x, y) the pixel and w the depth, metres."""
+    ones = torch.ones_like(projected.slopes[:, :1])
+    depths = torch.cat([projected.slopes, ones], dim=1)
+    moved = torch.cat([projected.jacobians_px, torch.zeros_like(projected.centres_px)[..., None]], dim=2)
+    rows = moved + projected.centres_px[..., None] * depths[:, None]
+    return projected.depths_m[:, None, None] * torch.cat([rows, depths[:, None]], dim=1)
+
+
+@torch.no_grad()
+def boxes_of(projected: Projected, reach: float, view: View) -> tuple[Tensor, Tensor]:
+    """Middles and half sizes of what discs cover up to so many standard deviations, each shape (n, 2), px.
+
+    Of those that reach behind the camera it is the whole picture.
+    """
+    jacobians, slopes = projected.jacobians_px, projected.slopes
+    left = 1.0 - reach * reach * slopes.square().sum(dim=1)
+    is_before = left > 0.0
+    share = (reach * reach / torch.where(is_before, left, 1.0))[:, None]
+    shift = -share * (jacobians @ slopes[..., None])[..., 0]
+    halves = torch.sqrt(shift.square() + share * jacobians.square().sum(dim=2))
+    whole = shift.new_tensor([view.width_px, view.height_px])
+    middles = torch.where(is_before[:, None], projected.centres_px + shift, 0.5 * whole)
+    return middles, torch.where(is_before[:, None], halves, whole).clamp(max=WIDEST_PX)
+
+
 def _projected_ellipsoids(
     means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View, lens: Tensor, settings: RasterSettings
 ) -> _Seen:
@@ -194,9 +261,8 @@ def _blend(channels: Tensor, opacities: Tensor, seen: _Seen, view: View) -> tupl
         picture, alphas = rasterize_to_pixels(seen.centres_px, seen.shapes, *colours, *of_tiles)
     else:
         densify = torch.zeros_like(seen.centres_px)
-        picture, alphas, *_ = rasterize_to_pixels_2dgs(
-            seen.centres_px, seen.shapes, *colours, seen.normals, densify, *of_tiles
-        )
+        circles = seen.centres_px if seen.has_low_pass else torch.full_like(seen.centres_px, FAR_PX)
+        picture, alphas, *_ = rasterize_to_pixels_2dgs(circles, seen.shapes, *colours, seen.normals, densify, *of_tiles)
     return picture[0], alphas[0, ..., 0]
 
 

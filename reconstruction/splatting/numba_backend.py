@@ -15,13 +15,13 @@ from planning.jit import chunks
 from reconstruction.splatting.ellipsoid_projection import slope_limits
 from reconstruction.splatting.numba_blend import blend_tiles
 from reconstruction.splatting.numba_blocks import LOW_PASS2, bytes_a_splat, limits_of
-from reconstruction.splatting.numba_ellipsoids import NO_DOT, gradients_of_ellipsoids, project_ellipsoids
+from reconstruction.splatting.numba_ellipsoids import gradients_of_ellipsoids, project_ellipsoids
 from reconstruction.splatting.numba_gradients import gradients_of_tiles
 from reconstruction.splatting.numba_lanes import N_LANES
 from reconstruction.splatting.numba_projection import N_GEOMETRY, Array, Floats, project_splats
 from reconstruction.splatting.numba_splat_gradients import N_OTHERS, gradients_of_splats
 from reconstruction.splatting.numba_tiles import Tiles, run_on_threads, sort_into_tiles
-from reconstruction.splatting.raster import SOLID, Raster, RasterSettings
+from reconstruction.splatting.raster import NO_DOT, SOLID, Raster, RasterSettings, steepest
 from reconstruction.splatting.views import View
 
 SPLATS_AT_ONCE, TILES_AT_ONCE = 4096, 8
@@ -102,9 +102,11 @@ def _projected(
     n, (camera, lens), size = len(means), _camera_of(view), (view.width_px, view.height_px)
     found = np.empty((n, N_GEOMETRY), np.float32), np.empty(n), np.empty((n, 4), np.int32), np.empty(n, np.float32)
     shared = means, quats, scales, opacities, offsets, camera, lens, size
-    least_change = settings.least_depth_change(min(view.fx_px, view.fy_px))
+    focal_px = min(view.fx_px, view.fy_px)
+    least_change = settings.least_depth_change(focal_px)
     both = settings.near_m, settings.min_alpha
-    of_discs = np.array([*both, settings.low_pass_px, settings.reach, least_change, _over_smallest(settings)])
+    blur = _blur_of_discs(settings), steepest(focal_px)
+    of_discs = np.array([*both, settings.low_pass_px, settings.reach, least_change, *blur])
     of_ellipsoids = np.array([*both, settings.blur_px, settings.antialiased])
     slopes = np.array(slope_limits(view))
 
@@ -138,14 +140,15 @@ def _take_back(
             blur_px, antialiased = settings.blur_px, settings.antialiased
             gradients_of_ellipsoids(*shapes, least, blur_px, antialiased, slopes, *places, *found)
         else:
-            gradients_of_splats(*shapes, geometry, least, _over_smallest(settings), *places, *found)
+            blur = _blur_of_discs(settings), steepest(min(view.fx_px, view.fy_px))
+            gradients_of_splats(*shapes, geometry, least, *blur, *places, *found)
 
     run_on_threads(of_splats, chunks(len(scales), SPLATS_AT_ONCE), settings.threads)
 
 
-def _over_smallest(settings: RasterSettings) -> float:
-    """1 / the area of the low-pass filter, by standard deviations; 0 where discs stay as opaque as they are."""
-    return 1.0 / settings.low_pass_px**2 if settings.antialiased else 0.0
+def _blur_of_discs(settings: RasterSettings) -> float:
+    """Standard deviation, px; 0 where discs have a low-pass filter and stay as opaque as they are."""
+    return settings.blur_px if settings.antialiased else 0.0
 
 
 def _camera_of(view: View) -> tuple[Array, Array]:

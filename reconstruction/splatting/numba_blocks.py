@@ -84,7 +84,7 @@ C1, C2, C3, C4, C5, C6 = np.array(
 def limits_of(settings: RasterSettings) -> Floats:
     """What kernels need of the settings."""
     s = settings
-    return np.array([s.min_alpha, s.max_alpha, s.min_transmittance, 1.0 / s.low_pass_px**2], np.float32)
+    return np.array([s.min_alpha, s.max_alpha, s.min_transmittance, s.over_low_pass2], np.float32)
 
 
 def bytes_a_splat(size: int) -> int:

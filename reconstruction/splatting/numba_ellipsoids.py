@@ -45,9 +45,6 @@ from reconstruction.splatting.numba_splat_gradients import (
     in_world,
 )
 
-NO_DOT = 1e30
-"""1 / sigma^2 of a low-pass filter that never counts."""
-
 LEAST_SQUARE = 1e-60
 """Of a picture's area without blur, px^4: far below what is ever drawn."""
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.jit import inline, kernel
-from reconstruction.splatting.projection import LEAST_NORM
+from reconstruction.splatting.projection import LEAST_NORM, SMALLEST
 from reconstruction.splatting.raster import FAINTEST
 from reconstruction.splatting.torch_twin import LEAST_AREA_PX2, LIMITS_WIDENED, MOST_CHANGE
 
@@ -149,9 +149,40 @@ def outline_of(jacobian: Four, slopes: Pair, reach: float) -> tuple[Four, Outlin
 
 
 @inline
-def disc_share(area: float, over_smallest: float) -> float:
-    """Of what is drawn that is the disc's own, see `footprints`; 1 where `over_smallest` is 0."""
-    return min(abs(area) * over_smallest, 1.0) if over_smallest > 0.0 else 1.0
+def covariance_of(jacobian: Four, blur2: float) -> tuple[Triple, float, float]:
+    """C of a disc that is blurred: xx, xy and yy, and the roots of its determinant and of that without blur."""
+    j_xu, j_xv, j_yu, j_yv = jacobian
+    area = j_xu * j_yv - j_xv * j_yu
+    xx, yy = j_xu * j_xu + j_xv * j_xv, j_yu * j_yu + j_yv * j_yv
+    root = math.sqrt(area * area + blur2 * (xx + yy + blur2))
+    return (xx + blur2, j_xu * j_yu + j_xv * j_yv, yy + blur2), root, area
+
+
+@inline
+def planes_of(
+    jacobian: Four, slopes: Pair, covariance: Triple, square: float, area: float, steepest: float
+) -> tuple[Pair, Pair, float]:
+    """-C^-1 J q, the disc's own plane p times the area, and what of the latter p' has, 1 over the area mostly."""
+    j_xu, j_xv, j_yu, j_yv = jacobian
+    xx, xy, yy = covariance
+    x, y = j_xu * slopes[0] + j_xv * slopes[1], j_yu * slopes[0] + j_yv * slopes[1]
+    likely = (xy * y - yy * x) / square, (xy * x - xx * y) / square
+    plane = j_yu * slopes[1] - j_yv * slopes[0], j_xv * slopes[0] - j_xu * slopes[1]
+    steepness2, limit = plane[0] * plane[0] + plane[1] * plane[1], steepest * steepest
+    if limit * area * area >= steepness2 and abs(area) >= SMALLEST:
+        return likely, plane, 1.0 / area
+    return likely, plane, limit * area / max(steepness2, SMALLEST * SMALLEST)
+
+
+@inline
+def blurred_disc(jacobian: Four, slopes: Pair, blur2: float, steepest: float) -> tuple[Four, Pair, float]:
+    """J' and q' of a disc that is blurred, and the share of what is drawn that is its own; see `projection.blurred`."""
+    covariance, root, area = covariance_of(jacobian, blur2)
+    likely, plane, over = planes_of(jacobian, slopes, covariance, root * root, area, steepest)
+    rest, upper = 1.0 - over * area, math.sqrt(covariance[0])
+    p_x, p_y = rest * likely[0] + over * plane[0], rest * likely[1] + over * plane[1]
+    beside, lower = covariance[1] / upper, root / upper
+    return (upper, 0.0, beside, lower), (-upper * p_x - beside * p_y, -lower * p_y), abs(area) / root
 
 
 @inline
@@ -251,14 +282,15 @@ def project_splats(
     camera, lens, size
         Model's frame to camera axes, shape (4, 4); fx, fy, cx, cy; width, height.
     limits
-        Nearest depth, least alpha, standard deviation of the low-pass filter, reach, least change of depth, and 1 /
-        the disc's area, standard deviations, below which it is the more transparent; 0 where it never is.
+        Nearest depth, least alpha, standard deviation of the low-pass filter, reach, least change of depth; the
+        standard deviation of a blur in the place of that filter, 0 where there is none, and `raster.steepest`.
     geometry, depths
         Shapes (n, 24) and (n,).
     boxes
         Half-open ranges of columns and rows, shape (n, 4): left, right, top, bottom.
     """
-    near_m, least, low_pass, far_reach, least_change, over_smallest = limits
+    near_m, least, low_pass, far_reach, least_change, blur_px, steepest = limits
+    low_pass = low_pass if blur_px == 0.0 else 0.0
     for i in range(start, stop):
         boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = 0, 0, 0, 0
         radii[i] = 0.0
@@ -273,9 +305,12 @@ def project_splats(
         cx, cy = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
         if len(offsets) > 0:
             cx, cy = cx + offsets[i, 0], cy + offsets[i, 1]
+        share = 1.0
+        if blur_px > 0.0:
+            jacobian, slopes, share = blurred_disc(jacobian, slopes, blur_px * blur_px, steepest)
+        shown = shown_opacity(opacity, share, least)
         j_xu, j_xv, j_yu, j_yv = jacobian
         area = j_xu * j_yv - j_xv * j_yu
-        shown = shown_opacity(opacity, disc_share(area, over_smallest), least)
         has_disc = abs(area) >= LEAST_AREA_PX2
         steepness = math.sqrt(slopes[0] * slopes[0] + slopes[1] * slopes[1])
         reach = math.sqrt(max(2.0 * math.log(shown / least), 0.0))

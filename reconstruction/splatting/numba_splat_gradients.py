@@ -26,10 +26,13 @@ from reconstruction.splatting.numba_projection import (
     Pair,
     Quat,
     Triple,
-    disc_share,
+    blurred_disc,
+    covariance_of,
+    planes_of,
     see,
     slopes_of_shown,
 )
+from reconstruction.splatting.projection import SMALLEST
 
 CENTRE_X, CENTRE_Y, OF_FEATURES = 6, 7, 8
 """Columns of a slot behind those of J, e and f: of the middle's pixel and, up to two from the end, of the features; the
@@ -68,6 +71,53 @@ def _back_through_disc(jacobian: Four, slopes: Pair, g: Array) -> tuple[Four, Pa
         g_yv + g_area * j_xu - g_e * q_u,
     )
     return g_jacobian, (g_f * j_xv - g_e * j_yv, g_e * j_yu - g_f * j_xu)
+
+
+@inline
+def _back_through_blur(
+    jacobian: Four, slopes: Pair, blur2: float, steepest: float, g_drawn: Four, g_slopes: Pair, g_share: float
+) -> tuple[Four, Pair]:
+    """From the gradients of J', q' and the share to those of J and q; `blurred_disc` has the formulas."""
+    j_xu, j_xv, j_yu, j_yv = jacobian
+    (xx, xy, yy), root, area = covariance_of(jacobian, blur2)
+    square = root * root
+    likely, plane, over = planes_of(jacobian, slopes, (xx, xy, yy), square, area, steepest)
+    rest, upper = 1.0 - over * area, math.sqrt(xx)
+    p_x, p_y = rest * likely[0] + over * plane[0], rest * likely[1] + over * plane[1]
+    beside, lower, over_upper = xy / upper, root / upper, 1.0 / upper
+    # q' to p' and J'.
+    g_px, g_py = -upper * g_slopes[0], -beside * g_slopes[0] - lower * g_slopes[1]
+    g_upper, g_beside = g_drawn[0] - p_x * g_slopes[0], g_drawn[2] - p_y * g_slopes[0]
+    g_lower = g_drawn[3] - p_y * g_slopes[1]
+    # p' to its two parts.
+    g_over = plane[0] * g_px + plane[1] * g_py - area * (likely[0] * g_px + likely[1] * g_py)
+    g_rx, g_ry = over * g_px, over * g_py
+    g_area = -over * (likely[0] * g_px + likely[1] * g_py)
+    steepness2, limit = plane[0] * plane[0] + plane[1] * plane[1], steepest * steepest
+    if limit * area * area >= steepness2 and abs(area) >= SMALLEST:
+        g_area -= over * over * g_over
+    elif steepness2 > SMALLEST * SMALLEST:
+        g_area += limit / steepness2 * g_over
+        by_plane = 2.0 * over / steepness2 * g_over
+        g_rx, g_ry = g_rx - by_plane * plane[0], g_ry - by_plane * plane[1]
+    by_x, by_y = rest * g_px / square, rest * g_py / square
+    x, y = j_xu * slopes[0] + j_xv * slopes[1], j_yu * slopes[0] + j_yv * slopes[1]
+    g_x, g_y = by_y * xy - by_x * yy, by_x * xy - by_y * xx
+    # C, its determinant, and the area.
+    g_root = g_lower * over_upper - g_share * abs(area) / square
+    g_square = 0.5 * g_root / root - by_x * likely[0] - by_y * likely[1]
+    g_xx = 0.5 * over_upper * (g_upper - (g_beside * beside + g_lower * lower) * over_upper) - by_y * y
+    g_xy, g_yy = g_beside * over_upper + by_x * y + by_y * x, -by_x * x
+    g_area += 2.0 * g_square * area + g_share * math.copysign(1.0 / root, area)
+    g_xx, g_yy = 2.0 * (g_xx + blur2 * g_square), 2.0 * (g_yy + blur2 * g_square)
+    g_jacobian = (
+        g_xx * j_xu + g_xy * j_yu + g_area * j_yv + g_x * slopes[0] - g_ry * slopes[1],
+        g_xx * j_xv + g_xy * j_yv - g_area * j_yu + g_x * slopes[1] + g_ry * slopes[0],
+        g_yy * j_yu + g_xy * j_xu - g_area * j_xv + g_y * slopes[0] + g_rx * slopes[1],
+        g_yy * j_yv + g_xy * j_xv + g_area * j_xu + g_y * slopes[1] - g_rx * slopes[0],
+    )
+    g_u = g_x * j_xu + g_y * j_yu + g_ry * j_xv - g_rx * j_yv
+    return g_jacobian, (g_u, g_x * j_xv + g_y * j_yv + g_rx * j_yu - g_ry * j_xu)
 
 
 @inline
@@ -110,7 +160,8 @@ def gradients_of_splats(
     lens: Array,
     geometry: Floats,
     least: float,
-    over_smallest: float,
+    blur_px: float,
+    steepest: float,
     firsts: NDArray[np.int64],
     places: NDArray[np.int32],
     slots: Floats,
@@ -127,8 +178,8 @@ def gradients_of_splats(
 
     Parameters
     ----------
-    least, over_smallest
-        The least alpha, and the last of `project_splats`' limits.
+    least, blur_px, steepest
+        The least alpha, and the last two of `project_splats`' limits.
     """
     n_features, width = g_features.shape[1], slots.shape[1]
     sums, g = np.empty(width, np.float32), np.empty(N_LANES)
@@ -144,20 +195,16 @@ def gradients_of_splats(
         g_offsets[i, 0], g_offsets[i, 1] = g[CENTRE_X], g[CENTRE_Y]
         (x, y, z), quat, first, second, (q_u, q_v), jacobian = see(means, quats_wxyz, scales, camera, lens, i)
         g_jacobian, g_slopes = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0)
-        if geometry[i, J_XU] != EDGE_ON_JACOBIAN:
+        if blur_px > 0.0:
+            blur2 = blur_px * blur_px
+            as_drawn, slopes, share = blurred_disc(jacobian, (q_u, q_v), blur2, steepest)
+            by_opacity, by_share = slopes_of_shown(opacities[i], share, least)
+            g_drawn, g_slopes = _back_through_disc(as_drawn, slopes, g)
+            g_share = np.float64(sums[width - 1]) * by_share
+            g_opacities[i] *= by_opacity
+            g_jacobian, g_slopes = _back_through_blur(jacobian, (q_u, q_v), blur2, steepest, g_drawn, g_slopes, g_share)
+        elif geometry[i, J_XU] != EDGE_ON_JACOBIAN:
             g_jacobian, g_slopes = _back_through_disc(jacobian, (q_u, q_v), g)
-        area = jacobian[0] * jacobian[3] - jacobian[1] * jacobian[2]
-        share = disc_share(area, over_smallest)
-        by_opacity, by_share = slopes_of_shown(opacities[i], share, least)
-        g_opacities[i] *= by_opacity
-        if share < 1.0:
-            g_area = np.float64(sums[width - 1]) * by_share * math.copysign(over_smallest, area)
-            g_jacobian = (
-                g_jacobian[0] + g_area * jacobian[3],
-                g_jacobian[1] - g_area * jacobian[2],
-                g_jacobian[2] - g_area * jacobian[1],
-                g_jacobian[3] + g_area * jacobian[0],
-            )
         # x / z and y / z appear in the middle's pixel and in the Jacobian; the rest is divided by z.
         over_z = 1.0 / z
         ux, vx = g_jacobian[0] * lens[0], g_jacobian[1] * lens[0]

@@ -11,11 +11,20 @@ u = n_u / D, v = n_v / D. Counted from the projection of the splat's own middle,
 
 and the depth of the meeting is z = Z a / D, with Z that of the middle. Nothing large cancels near the splat, wherever
 in the picture it is.
+
+A disc that is blurred in the picture by a standard deviation b is again a disc, with J' and q' in the place of J and q:
+
+    J' J'^T = J J^T + b^2 I = C        q' = -J'^T p'        t / a = p' . (x, y)
+
+J' is Cholesky's root here: any other draws the same. C is that of EWA splatting (Zwicker et al., 2001), by which
+ellipsoids are blurred too. The disc's own plane has p = -J^-T q, which grows without end as it is seen from the side.
+So p' is p up to the slope s of a plane at `FLAT_ENOUGH_RAD`, and (s / |p|)^2 of it beyond, where the rest is from
+-C^-1 J q: that is finite, and gives each pixel the depth of the disc's point that is most likely seen in it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
@@ -24,6 +33,10 @@ from reconstruction.splatting.views import View
 
 LEAST_NORM = 1e-12
 """Quaternions shorter than this say nothing about a rotation; they stand for none, and have no gradient."""
+
+
+SMALLEST = 1e-150
+"""Of areas, px^2, that are divided by; the square is still a number."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,3 +97,41 @@ def project(means: Tensor, quats_wxyz: Tensor, scales: Tensor, view: View) -> Pr
     )
     centres = torch.stack([view.fx_px * x / z + view.cx_px, view.fy_px * y / z + view.cy_px], dim=-1)
     return Projected(centres, z, jacobians, slopes)
+
+
+def blurred(projected: Projected, blur_px: float, steepest: float) -> Projected:
+    """Discs as a picture shows them that is blurred by so much; each still has an area of `blur_px` squared or more.
+
+    Parameters
+    ----------
+    steepest
+        |p| up to which p' is p, 1 / px; see `raster.steepest`.
+    """
+    jacobians, (q_u, q_v) = projected.jacobians_px, projected.slopes.unbind(dim=1)
+    (xu, xv), (yu, yv) = ((row[:, 0], row[:, 1]) for row in jacobians.unbind(dim=1))
+    blur2, area, square = blur_px * blur_px, areas_of(jacobians), blurred_areas2(jacobians, blur_px)
+    xx, xy, yy = xu * xu + xv * xv + blur2, xu * yu + xv * yv, yu * yu + yv * yv + blur2
+    along_x, along_y = xu * q_u + xv * q_v, yu * q_u + yv * q_v
+    likely = torch.stack([xy * along_y - yy * along_x, xy * along_x - xx * along_y], dim=1) / square[:, None]
+    plane = torch.stack([yu * q_v - yv * q_u, xv * q_u - xu * q_v], dim=1)
+    limit, steepness2 = steepest * steepest, plane.square().sum(dim=1)
+    is_flat = (limit * area * area >= steepness2) & (area.abs() >= SMALLEST)
+    tapered = limit * area / steepness2.clamp(min=SMALLEST**2)
+    over = torch.where(is_flat, 1.0 / torch.where(is_flat, area, 1.0), tapered)
+    p_x, p_y = ((1.0 - over * area)[:, None] * likely + over[:, None] * plane).unbind(dim=1)
+    upper = torch.sqrt(xx)
+    beside, lower = xy / upper, torch.sqrt(square) / upper
+    rows = torch.stack([upper, torch.zeros_like(upper)], dim=1), torch.stack([beside, lower], dim=1)
+    slopes = -torch.stack([upper * p_x + beside * p_y, lower * p_y], dim=1)
+    return replace(projected, jacobians_px=torch.stack(rows, dim=1), slopes=slopes)
+
+
+def blurred_areas2(jacobians_px: Tensor, blur_px: float) -> Tensor:
+    """det(J J^T + b^2 I), shape (n,): a^2 + b^2 (|J|^2 + b^2), in which nothing cancels, however thin a disc is."""
+    blur2 = blur_px * blur_px
+    return areas_of(jacobians_px).square() + blur2 * (jacobians_px.square().sum(dim=(1, 2)) + blur2)
+
+
+def areas_of(jacobians_px: Tensor) -> Tensor:
+    """Det J, shape (n,), px^2; below 0 where a disc is seen from behind."""
+    return jacobians_px[:, 0, 0] * jacobians_px[:, 1, 1] - jacobians_px[:, 0, 1] * jacobians_px[:, 1, 0]

@@ -19,6 +19,9 @@ FAINTEST = 2.0
 LEAST_ALPHA = 1e-4
 """Of `min_alpha`: as far as the compiled exponential reaches."""
 
+NO_DOT = 1e30
+"""1 / sigma^2 of a low-pass filter that never counts."""
+
 
 @dataclass(frozen=True, slots=True)
 class RasterSettings:
@@ -27,13 +30,15 @@ class RasterSettings:
     Parameters
     ----------
     low_pass_px
-        Standard deviation of the smallest disc a splat is drawn as, so that none falls between pixels; 2DGS (Huang et
-        al., 2024, Eq. 11) has sqrt(1/2).
+        Standard deviation of the smallest circle that a disc is drawn as where it is not antialiased, so that none
+        falls between pixels; 2DGS (Huang et al., 2024, Eq. 11) has sqrt(1/2).
     blur_px
-        Standard deviation of what ellipsoids are blurred by in the picture; 3DGS (Kerbl et al., 2023) has sqrt(0.3).
+        Standard deviation of what ellipsoids, and discs that are antialiased, are blurred by in the picture; 3DGS
+        (Kerbl et al., 2023) has sqrt(0.3).
     antialiased
-        Whether what is drawn larger than it is, by the low-pass filter or the blur, is as much more transparent; see
-        `shown_opacities`. In 2DGS and 3DGS it is not, and what is finer than a pixel grows with its distance.
+        Whether discs are blurred and not drawn as a circle where they are smaller, and whether what the blur makes
+        larger is as much more transparent; see `projection` and `shown_opacities`. In 2DGS and 3DGS it is not, and what
+        is finer than a pixel grows with its distance; long and thin discs of 2DGS have gaps, too.
     near_m
         Splats whose middle is nearer than this, along the optical axis, are not drawn, and what is nearer of the others
         is cut off.
@@ -87,9 +92,15 @@ class RasterSettings:
         """Standard deviations up to which an opaque splat counts."""
         return math.sqrt(-2.0 * math.log(self.min_alpha))
 
+    @property
+    def over_low_pass2(self) -> float:
+        """1 / sigma^2 of discs' low-pass filter; so large where there is none that it never counts."""
+        return NO_DOT if self.antialiased else 1.0 / self.low_pass_px**2
+
     def least_depth_change(self, focal_px: float) -> float:
         """Depth, as a share of that of its middle, by which any splat may differ from it; see `torch_twin`."""
-        return self.low_pass_px * self.reach * math.tan(FLAT_ENOUGH_RAD) / focal_px
+        smallest_px = self.blur_px if self.antialiased else self.low_pass_px
+        return smallest_px * self.reach * steepest(focal_px)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,3 +134,8 @@ class Raster:
     labels: Tensor | None
     weights: Tensor
     radii_px: Tensor
+
+
+def steepest(focal_px: float) -> float:
+    """Change of the depth from pixel to pixel, as a share of it, of a plane that is just flat enough."""
+    return math.tan(FLAT_ENOUGH_RAD) / focal_px

@@ -12,8 +12,8 @@ from torch import Tensor
 
 from reconstruction.splatting.ellipsoid_projection import project_ellipsoids
 from reconstruction.splatting.footprints import shown_opacities
-from reconstruction.splatting.projection import Projected, depths_of, project
-from reconstruction.splatting.raster import SOLID, Raster, RasterSettings
+from reconstruction.splatting.projection import Projected, blurred, depths_of, project
+from reconstruction.splatting.raster import SOLID, Raster, RasterSettings, steepest
 from reconstruction.splatting.views import View
 
 LEAST_AREA_PX2 = 1e-6
@@ -49,7 +49,12 @@ def rasterise_torch(
     drawn = _drawn_in_order(means, quats_wxyz, scales, opacities, view, settings)
     is_solid = scales.shape[1] == SOLID
     shapes = means[drawn], quats_wxyz[drawn], scales[drawn]
-    projected = project_ellipsoids(*shapes, view, settings.blur_px) if is_solid else project(*shapes, view)
+    if is_solid:
+        projected = project_ellipsoids(*shapes, view, settings.blur_px)
+    else:
+        projected = project(*shapes, view)
+        if settings.antialiased:
+            projected = blurred(projected, settings.blur_px, steepest(min(view.fx_px, view.fy_px)))
     shown = shown_opacities(*shapes, opacities[drawn], view, settings)
     if screen_offsets is not None:
         shifted = projected.centres_px + screen_offsets[drawn].to(means.dtype)
@@ -108,14 +113,17 @@ def _splat_image(
     focal_px: float,
     settings: RasterSettings,
 ) -> SplatImage:
-    """Alpha = opacity * exp(-min(disc, low pass) / 2), Eq. 11 of 2DGS; 0 where it is below the cut."""
+    """Alpha = opacity * exp(-min(disc, low pass) / 2), Eq. 11 of 2DGS; 0 where it is below the cut.
+
+    What is blurred has no low-pass filter besides.
+    """
     (j_xu, j_xv), (j_yu, j_yv) = (row.unbind() for row in splats.jacobians_px[place])
     q_u, q_v = splats.slopes[place].unbind()
     x, y = x_px - splats.centres_px[place, 0], y_px - splats.centres_px[place, 1]
     n_u, n_v = x * j_yv - y * j_xv, y * j_xu - x * j_yu
     area = j_xu * j_yv - j_xv * j_yu
     t = x * (j_yu * q_v - j_yv * q_u) + y * (j_xv * q_u - j_xu * q_v)
-    middle, low_pass = splats.depths_m[place], (x * x + y * y) / settings.low_pass_px**2
+    middle, low_pass = splats.depths_m[place], (x * x + y * y) * settings.over_low_pass2
     if bool(area.abs() >= LEAST_AREA_PX2):
         over_area = 1.0 / area
         lowest, highest = _depth_limits(middle, splats.slopes[place], focal_px, settings)

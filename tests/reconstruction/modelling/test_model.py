@@ -20,6 +20,7 @@ from reconstruction.reflections.photo_set import read_photo_set
 from reconstruction.reflections.shading import display_from_linear, reflected_directions
 from reconstruction.reflections.training import untrained_panels
 from reconstruction.splatting.initialise import InitialParameters, initial_splats
+from reconstruction.splatting.rasteriser import rasterise
 from reconstruction.splatting.sky import Sky
 from reconstruction.splatting.splats import FEATURES, NO_PANEL, SHAPES, Splats, logit
 from reconstruction.splatting.start_data import known_scene, model_origin
@@ -166,6 +167,49 @@ def test_glass_behind_a_wide_frame_mirrors_by_its_share_and_draws_the_frame_back
     picture.reflection[is_frame].sum().backward()
     assert (covered.opacity_logits.grad[len(splats) :] <= 0.0).all()
     assert (covered.opacity_logits.grad[len(splats) :] < 0.0).any()
+
+
+class Even(nn.Module):
+    """The same light from everywhere."""
+
+    def forward(self, points, omega_r, panels=None):
+        return torch.full_like(points, LIGHT)
+
+
+LIGHT = 0.5
+
+
+def test_where_glass_and_frame_share_a_pixel_each_is_shaded_for_itself(parts, samples):
+    source, origin, splats = parts
+    of_glass, of_frame = torch.tensor(DIFFUSE), torch.tensor([0.6, 0.5, 0.4])
+    is_frame = torch.arange(len(splats)) % 2 == 0
+    values = {name: getattr(splats, name).detach().clone() for name in SHAPES}
+    values["sh"][is_frame, 0] = (display_from_linear(of_frame) - 0.5) / 0.28209479
+    values["f0_logits"][is_frame] = 2.0
+    mixed = Splats(values, torch.where(is_frame, NO_PANEL, splats.panels))
+    model = SceneModel(
+        mixed, Sky(), GlassLight(Even(), source.panels, GlassLearned()), source.panels, origin, 1.0, "splats"
+    )
+    view, shares = samples[0].view, torch.stack([is_frame, (~is_frame) & (splats.panels >= 0)], dim=1).float()
+    with torch.no_grad():
+        picture = model(view)
+        drawn = splats.means, splats.quats, splats.scales, splats.opacities
+        of_pixel = rasterise(*drawn, shares, view).features
+    cosines = (view.directions() * torch.from_numpy(source.panels.normals_enu[0]).float()).sum(dim=-1).abs()
+    fresnel = F0 + (1.0 - F0) * (1.0 - cosines[..., None]) ** 5
+    mirrors = (1.0 - REFLECTIVITY) * of_glass + REFLECTIVITY * fresnel * LIGHT
+    expected = of_pixel[..., :1] * of_frame + of_pixel[..., 1:] * mirrors
+    at = inside(samples[0]) & (of_pixel.sum(dim=-1) > 0.95)
+    is_shared = at & (of_pixel.min(dim=-1).values > 0.2)
+    assert is_shared.sum() > 50
+    blended, whole = picture.raster.features, of_pixel.sum(dim=-1, keepdim=True)
+    found = blended[..., FEATURES["colour"]] + picture.reflection
+    assert (found - expected).abs()[is_shared].max() < 0.01
+    # With c and R blended each for itself, much of the frame's light is lost.
+    reflectivity = blended[..., FEATURES["reflectivity"]]
+    colours = of_pixel[..., :1] * of_frame + of_pixel[..., 1:] * of_glass
+    as_maps = (1.0 - reflectivity / whole) * colours + picture.reflection
+    assert (as_maps - expected).abs()[is_shared].mean() > 0.05
 
 
 def test_parts_add_up_and_exposure_and_vignetting_come_last(model_of, samples):

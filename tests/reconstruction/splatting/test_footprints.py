@@ -15,6 +15,7 @@ from torch import Tensor
 from reconstruction.splatting.footprints import footprint_shares, shown_opacities
 from reconstruction.splatting.raster import RasterSettings
 from reconstruction.splatting.rasteriser import rasterise
+from reconstruction.splatting.views import View
 from tests.reconstruction.splatting.drawn_splats import (
     MadeSplats,
     both,
@@ -64,18 +65,94 @@ def test_gradients_of_the_definition_are_differences_of_its_values(made: Callabl
     assert torch.autograd.gradcheck(values, inputs, eps=1e-7, atol=2e-3, rtol=1e-3, fast_mode=True)
 
 
-def test_discs_wider_than_a_pixel_are_the_same_bits_as_before() -> None:
+def test_discs_many_pixels_wide_are_drawn_as_without_antialiasing() -> None:
     view = turned_view(64, 48, 200.0)
     splats = random_splats(50, view, 4)
-    wide = splats.changed(scales=splats.scales.clamp(min=0.2), quats=torch.tensor([[1.0, 0.0, 0.0, 0.0]]).repeat(50, 1))
-    camera = view.cam_from_world[:3, :3]
-    facing = replace(view, cam_from_world=torch.block_diag(torch.eye(3), torch.ones(1, 1)).double())
-    wide = wide.changed(means=wide.means @ camera.T + view.cam_from_world[:3, 3])
-    plain = draw(rounded(wide), facing, "numba", settings=PLAIN)
-    found = draw(rounded(wide), facing, "numba", settings=ANTIALIASED)
-    assert float(plain.raster.alphas.mean()) > 0.1
-    assert torch.equal(found.raster.features, plain.raster.features)
-    assert all(torch.equal(a, b) for a, b in zip(found.gradients, plain.gradients, strict=True))
+    wide = splats.changed(scales=splats.scales.clamp(min=0.2))
+
+    def difference(factor: float) -> float:
+        larger = rounded(wide.changed(scales=factor * wide.scales))
+        plain, found = (draw(larger, view, "numba", settings=s, seed=None).raster for s in (PLAIN, ANTIALIASED))
+        assert float(plain.alphas.mean()) > 0.1
+        return relative_error(found.features, plain.features)
+
+    # Those that are seen from the side stay thin, however large they are.
+    assert difference(8.0) < 0.5 * difference(1.0) < 0.05
+
+
+BLURRED_AT = 8
+"""Times as finely as the picture."""
+
+
+def _blurred_picture(splats: MadeSplats, view: View) -> Tensor:
+    """Alphas as a picture blurred by `blur_px` shows them: drawn far more finely, blurred by sums, and looked up."""
+    by, n = BLURRED_AT, BLURRED_AT * view.width_px
+    fine = replace(
+        view,
+        width_px=n,
+        height_px=by * view.height_px,
+        fx_px=by * view.fx_px,
+        fy_px=by * view.fy_px,
+        cx_px=by * view.cx_px,
+        cy_px=by * view.cy_px,
+    )
+    alphas = draw(splats, fine, "torch", settings=replace(TO_THE_END, antialiased=False), seed=None).raster.alphas
+
+    def spread(n_fine: int) -> Tensor:
+        """Of a fine row or column to a coarse one."""
+        at = (torch.arange(n_fine, dtype=torch.float64) + 0.5) / by
+        middles = torch.arange(n_fine // by, dtype=torch.float64) + 0.5
+        weights = torch.exp(-0.5 * ((at - middles[:, None]) / TO_THE_END.blur_px) ** 2)
+        return weights / (by * TO_THE_END.blur_px * math.sqrt(2.0 * math.pi))
+
+    return spread(fine.height_px) @ alphas @ spread(n).T
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    across_px=st.floats(0.15, 0.6),
+    along_px=st.floats(0.15, 4.0),
+    turned_deg=st.floats(-180.0, 180.0),
+    tilt_deg=st.floats(0.0, 70.0),
+    x_px=st.floats(-0.5, 0.5),
+    y_px=st.floats(-0.5, 0.5),
+)
+def test_a_disc_is_drawn_as_a_blurred_picture_shows_it(
+    across_px: float, along_px: float, turned_deg: float, tilt_deg: float, x_px: float, y_px: float
+) -> None:
+    view, depth_m, half = level_view(), 10.0, math.radians(0.5 * turned_deg)
+    metres = depth_m / view.fx_px
+    splat = one_splat(
+        depth_m=depth_m,
+        tilt_deg=tilt_deg,
+        scale_m=(across_px * metres, along_px * metres),
+        x_m=x_px * metres,
+        y_m=y_px * metres,
+        opacity=0.5,
+    )
+    w, x, y, z = splat.quats[0].tolist()
+    turn = torch.tensor([math.cos(half), math.sin(half)], dtype=torch.float64)
+    quat = torch.tensor([[w, -z], [x, y], [y, -x], [z, w]], dtype=torch.float64) @ turn
+    splat = splat.changed(quats=quat[None])
+    truth = _blurred_picture(splat, view)
+    found = draw(splat, view, "torch", settings=TO_THE_END, seed=None).raster.alphas
+    # The fine picture has a low-pass filter of its own, a twelfth of a pixel wide.
+    assert float((found - truth).abs().max()) < 0.05 * float(truth.max()) + 2e-3
+
+
+def test_a_long_thin_disc_has_no_gaps_other_than_without_antialiasing() -> None:
+    view, depth_m = level_view(64, 64, 60.0), 10.0
+    metres, half = depth_m / view.fx_px, math.radians(12.0)
+    bar = one_splat(depth_m=depth_m, scale_m=(12.0 * metres, 0.1 * metres), opacity=0.9)
+    bar = bar.changed(quats=torch.tensor([[math.cos(half), 0.0, 0.0, math.sin(half)]], dtype=torch.float64))
+
+    def unevenness(settings_: RasterSettings) -> float:
+        """Of what the columns beside the middle show: of a bar that is twelve pixels long they show nearly the same."""
+        by_column = draw(bar, view, "numba", settings=settings_, seed=None).raster.alphas[:, 28:37].sum(dim=0)
+        return float(by_column.std() / by_column.mean())
+
+    assert unevenness(ANTIALIASED) < 0.1
+    assert unevenness(PLAIN) > 0.5
 
 
 @settings(max_examples=30, deadline=None)
@@ -175,4 +252,4 @@ def test_shares_of_things_in_the_way_hide_as_much_less() -> None:
         draw(together(front, behind), view, "numba", settings=s, seed=None).raster.weights for s in (PLAIN, ANTIALIASED)
     ]
     assert float(seen[0][0]) > 10.0 * float(seen[1][0])
-    assert float(seen[1][1]) > float(seen[0][1]) + 0.9 * float(seen[0][0] - seen[1][0])
+    assert float(seen[1][1]) > float(seen[0][1]) + 0.8 * float(seen[0][0] - seen[1][0])

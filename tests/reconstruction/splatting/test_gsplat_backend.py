@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -12,12 +13,15 @@ from torch import Tensor
 from planning.errors import InputError
 from reconstruction.splatting.gsplat_backend import (
     accumulated_weights,
+    boxes_of,
     heaviest_labels,
     plane_channels,
     plane_depths,
     rasterise_gsplat,
+    ray_transforms,
     why_not_gsplat,
 )
+from reconstruction.splatting.projection import blurred, depths_of, project
 from reconstruction.splatting.raster import RasterSettings
 from reconstruction.splatting.rasteriser import rasterise
 from reconstruction.splatting.views import View
@@ -35,6 +39,7 @@ from tests.reconstruction.splatting.drawn_splats import (
 )
 
 NEAR_M = 0.1
+REACH = 3.0
 
 on_cuda = pytest.mark.skipif(why_not_gsplat() != "", reason=f"no gsplat: {why_not_gsplat()}")
 
@@ -84,6 +89,35 @@ def test_weights_and_labels_from_channels_are_those_of_the_rasteriser() -> None:
     blend = blend_of(splats, view)
     torch.testing.assert_close(accumulated_weights(blend, splats.means.float()), raster.weights, atol=1e-4, rtol=1e-4)
     assert torch.equal(heaviest_labels(blend, labels), raster.labels)
+
+
+@pytest.mark.parametrize("blur_px", [0.0, 0.5])
+def test_ray_transforms_and_boxes_are_those_of_the_discs(blur_px: float) -> None:
+    view = turned_view(64, 48, 50.0)
+    splats = random_splats(60, view, 4)
+    seen = project(*(t[depths_of(splats.means, view) > NEAR_M] for t in splats.tensors[:3]), view)
+    seen = blurred(seen, blur_px, 0.1) if blur_px else seen
+    angles = torch.linspace(0.0, 2.0 * math.pi, 1000, dtype=torch.float64)
+    rim = REACH * torch.stack([angles.cos(), angles.sin(), torch.full_like(angles, 1.0 / REACH)])
+    across, down, depths = (ray_transforms(seen) @ rim).unbind(dim=1)
+    further = 1.0 + seen.slopes @ rim[:2]
+    torch.testing.assert_close(depths, seen.depths_m[:, None] * further)
+    places = seen.centres_px[..., None] + seen.jacobians_px @ rim[:2] / further[:, None]
+    is_before = further.min(dim=1).values > 0.0
+    assert is_before.sum() > 0
+    torch.testing.assert_close(torch.stack([across / depths, down / depths], dim=1), places)
+    middles, halves = boxes_of(seen, REACH, view)
+    low, high = places.min(dim=2).values, places.max(dim=2).values
+    torch.testing.assert_close((middles - halves)[is_before], low[is_before], atol=1e-2, rtol=1e-4)
+    torch.testing.assert_close((middles + halves)[is_before], high[is_before], atol=1e-2, rtol=1e-4)
+
+
+def test_boxes_of_discs_that_reach_behind_the_camera_are_the_whole_picture() -> None:
+    view = level_view(48, 24, 60.0)
+    near = one_splat(depth_m=0.5, tilt_deg=60.0, scale_m=(3.0, 0.1))
+    middles, halves = boxes_of(project(*near.tensors[:3], view), REACH, view)
+    assert (middles - halves <= 0.0).all()
+    assert (middles + halves >= torch.tensor([48.0, 24.0])).all()
 
 
 @pytest.mark.skipif(why_not_gsplat() == "", reason="gsplat works here")

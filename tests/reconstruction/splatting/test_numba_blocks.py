@@ -29,7 +29,9 @@ def blocks_reached(splats, view):
     geometry, depths = np.zeros((n, N_GEOMETRY), np.float32), np.zeros(n)
     boxes, radii = np.zeros((n, 4), np.int32), np.zeros(n, np.float32)
     least_change = SETTINGS.least_depth_change(min(view.fx_px, view.fy_px))
-    limits = np.array([SETTINGS.near_m, SETTINGS.min_alpha, SETTINGS.low_pass_px, SETTINGS.reach, least_change, 0.0])
+    limits = np.array(
+        [SETTINGS.near_m, SETTINGS.min_alpha, SETTINGS.low_pass_px, SETTINGS.reach, least_change, 0.0, 0.0]
+    )
     lens = np.array([view.fx_px, view.fy_px, view.cx_px, view.cy_px])
     project_splats(
         means, quats, scales, opacities, np.zeros((0, 2), np.float32), view.cam_from_world.numpy().copy(), lens,
