@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +15,15 @@ from reconstruction.exports.component_parts import ellipsoid_blocks
 from reconstruction.exports.ellipsoids import Ellipsoids
 from reconstruction.exports.turned_axes import Axes, turned
 from reconstruction.objects.gs_scene import GsScene
-from reconstruction.splatting.raster import FLAT
+from reconstruction.splatting.raster import FLAT, RasterSettings
 
 SMALLEST_M = 1e-30
 """A size of 0 has no logarithm."""
 
 MORTON_BITS = 21
+
+MOST_BLUR_PX = 10.0
+"""Standard deviation; a tenth of it is usual."""
 
 
 def blocks_of(scene: GsScene, axes: Axes, least_opacity: float, monitor: Monitor, stage: str) -> Iterator[Ellipsoids]:
@@ -45,9 +49,18 @@ def are_discs(scene: GsScene) -> bool:
 
 def is_antialiased(scene: GsScene) -> bool:
     """Whether what is drawn larger than it is has to be as much more transparent, as when it was learned."""
-    config = scene.training.get("config")
-    raster = config.get("raster") if isinstance(config, Mapping) else None
-    return isinstance(raster, Mapping) and raster.get("antialiased") is True
+    return raster_of(scene).antialiased
+
+
+def raster_of(scene: GsScene) -> RasterSettings:
+    """How splats are to be blurred: as when they were learned, and as usual where nothing or nonsense is said of it."""
+    config, usual = scene.training.get("config"), RasterSettings()
+    said = config.get("raster") if isinstance(config, Mapping) else None
+    if not isinstance(said, Mapping) or said.get("antialiased") is not True:
+        return usual
+    blur_px = said.get("blur_px", usual.blur_px)
+    is_sensible = isinstance(blur_px, float) and 0.0 < blur_px < MOST_BLUR_PX
+    return replace(usual, antialiased=True, blur_px=blur_px if is_sensible else usual.blur_px)
 
 
 def log_scales(ellipsoids: Ellipsoids) -> NDArray[np.float32]:

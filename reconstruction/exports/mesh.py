@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from planning.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
-from reconstruction.exports.gaussian_blocks import is_antialiased
+from reconstruction.exports.gaussian_blocks import raster_of
 from reconstruction.exports.glb import FLOAT, INDICES, UINT16, VERTICES, GlbBuffer, limits_of, write_glb
 from reconstruction.exports.gltf import component_extras, frame_of, scene_extras
 from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, attributes_of, plain
@@ -111,7 +111,7 @@ def write_mesh(
         raise InputError(f"{path}: not written: there are no panels; choose other components")
     views = [_view(scene, element, path, options) for element in elements]
     atlas = _packed(elements, views, path, options)
-    raster = RasterSettings(antialiased=is_antialiased(scene))
+    raster = raster_of(scene)
     buffer = GlbBuffer()
     images = [
         {"bufferView": buffer.add(content), "mimeType": "image/png", "name": f"panels {page + 1}"}

@@ -23,7 +23,7 @@ from planning.errors import InputError
 from planning.folders import make_folder
 from planning.progress import QUIET, Monitor
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
-from reconstruction.exports.gaussian_blocks import is_antialiased
+from reconstruction.exports.gaussian_blocks import raster_of
 from reconstruction.exports.web_gaussians import COLOUR_RANGE, MAX_GAUSSIANS, MAX_PANES, N_AT_ONCE, packed
 from reconstruction.exports.web_model import described_panes, first_view, panes_of
 from reconstruction.exports.web_pictures import small_jpeg
@@ -126,7 +126,7 @@ def write_web(
     OperationCancelled
         The user cancelled; nothing was written.
     """
-    options = options or WebOptions()
+    options, raster = options or WebOptions(), raster_of(scene)
     _check_folder(folder)
     elements = tuple(element for _, element in scene.elements)
     parts_of_scene = {part.global_id for part in scene.components} | {element.global_id for element in elements}
@@ -139,7 +139,8 @@ def write_web(
         "title": options.title or scene.name,
         "scene": scene.global_id,
         "is_baked": options.is_baked,
-        "is_antialiased": is_antialiased(scene),
+        "is_antialiased": raster.antialiased,
+        "blur_px2": raster.blur_px**2,
         "n": len(chunks),
         "at_once": N_AT_ONCE,
         "degree": options.degree,

@@ -184,7 +184,8 @@ class Picture {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     this.use(this.splats, camera, ratio);
     this.bind(this.data, this.colours);
-    this.splats.use({ uData: 0, uColours: 1, uAntialiased: this.model.is_antialiased, uBefore: before });
+    const { is_antialiased, blur_px2 } = this.model;
+    this.splats.use({ uData: 0, uColours: 1, uBlur: blur_px2, uAntialiased: is_antialiased, uBefore: before });
     gl.bindVertexArray(this.order.array);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.nOrdered);
   }

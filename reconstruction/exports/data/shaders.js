@@ -75,11 +75,12 @@ void main() {
   found = vec4(mix(colour, tint.rgb * (0.65 + 0.5 * grey), tint.a), float(b.w >> 24) / 255.0);
 }`;
 
-// Ellipsoids projected to ellipses (Zwicker et al., 2001; Kerbl et al., 2023), with their low-pass of 0.3 square pixels.
+// Ellipsoids projected to ellipses (Zwicker et al., 2001; Kerbl et al., 2023), with their low-pass, as when they were learned.
 const SPLAT_VERTEX = `${CAMERA}${LIGHT}
 precision highp usampler2D;
 uniform usampler2D uData;
 uniform sampler2D uColours;
+uniform float uBlur;      // its variance, square pixels
 uniform bool uAntialiased; // what the low-pass makes larger is as much more transparent (Yu et al., 2024)
 uniform float uBefore;    // above 0: of what lies on no pane and before this depth, how much it hides
 layout(location = 0) in uint aIndex;
@@ -122,7 +123,7 @@ void main() {
     spread += outerProduct(t, t);
   }
   float sharp = determinant(spread);
-  spread += mat2(0.3, 0.0, 0.0, 0.3);
+  spread += mat2(uBlur, 0.0, 0.0, uBlur);
   float share = uAntialiased ? sqrt(clamp(sharp / determinant(spread), 0.0, 1.0)) : 1.0;
   opacity = min(opacity, max(opacity * share, 2.0 / 255.0)); // surfaces of small ones do not vanish from afar
   float middle = 0.5 * (spread[0][0] + spread[1][1]);
@@ -130,7 +131,7 @@ void main() {
   float far = sqrt(half_ * half_ + spread[0][1] * spread[0][1]);
   float angle = 0.5 * atan(spread[0][1], far < 1e-6 ? 1.0 : half_);
   vec2 long_ = vec2(cos(angle), sin(angle));
-  vec2 lengths = sqrt(vec2(middle + far, max(middle - far, 0.1)));
+  vec2 lengths = sqrt(vec2(middle + far, max(middle - far, 0.5 * uBlur)));
   float reach = sqrt(2.0 * log(255.0 * opacity));
   vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
   vPlace = corner * reach;

@@ -1,5 +1,6 @@
 """Scenes that formats may stumble over, and what several tests of formats ask."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -20,9 +21,12 @@ def scene_with(n=40, **columns):
     return scene
 
 
-def antialiased(scene, is_on=True):
+USUAL_BLUR_PX = math.sqrt(0.3)
+
+
+def antialiased(scene, is_on=True, blur_px=USUAL_BLUR_PX):
     """The scene, as if it had been learned so."""
-    return replace(scene, training={**scene.training, "config": {"raster": {"antialiased": is_on}}})
+    return replace(scene, training={**scene.training, "config": {"raster": {"antialiased": is_on, "blur_px": blur_px}}})
 
 
 def spread(scene, furthest_m, seed=0):
