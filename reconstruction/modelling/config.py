@@ -25,7 +25,8 @@ Device = Literal["cpu", "cuda"]
 
 DensifyWish = Literal["adaptive", "mcmc", "none"]
 
-ANTIALIASED = RasterSettings(antialiased=True)
+ANTIALIASED = RasterSettings(blur_px=math.sqrt(0.1), antialiased=True)
+"""With the blur of Mip-Splatting (Yu et al., 2024), about as wide as a pixel, which is 1/12 px^2; 3DGS has 0.3."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from reconstruction.splatting.raster import RasterSettings
 from tests.tables.scales import Scale
 from tests.tables.trainings import Case
 
@@ -58,7 +59,8 @@ PAPER_WIDTH_PX = 5280
 """Of its photos; larger ones there are none."""
 
 NOT_ANTIALIASED = "not antialiased"
-PLAIN: dict[str, Any] = {"raster": {"antialiased": False}}
+PLAIN: dict[str, Any] = {"raster": {"antialiased": False, "blur_px": RasterSettings().blur_px}}
+"""Splats as their papers draw them: smaller ones than the blur, or 2DGS's circle, as large as that and no fainter."""
 
 
 def tables(scale: Scale) -> tuple[Table, ...]:

@@ -26,6 +26,9 @@ class Result:
         Of processor time.
     views
         Share of a view's pixels that shows glass, and PSNR, of each: `0.312:27.41 0.094:25.80`.
+    glass_db
+        Mean over views of the PSNR of pixels that show one panel and nothing beside it; None where it was not asked
+        for yet.
     """
 
     scene: str
@@ -42,6 +45,7 @@ class Result:
     n_splats: int
     machine: str
     views: str = ""
+    glass_db: float | None = None
 
     @property
     def key(self) -> tuple[str, str, int]:
@@ -63,7 +67,8 @@ def _of(row: dict[str, str]) -> Result:
         found[name] = int(row[name])
     for name in ("psnr_db", "worst_db", "ssim", "seconds"):
         found[name] = float(row[name])
-    found["lpips"] = float(row["lpips"]) if row["lpips"] else None
+    for name in ("lpips", "glass_db"):
+        found[name] = float(row[name]) if row.get(name) else None
     return Result(**found)  # type: ignore[arg-type]
 
 

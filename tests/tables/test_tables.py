@@ -1,5 +1,6 @@
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tests.tables.__main__ import main
@@ -7,7 +8,7 @@ from tests.tables.definitions import Above, tables
 from tests.tables.page import gap_db, write_page
 from tests.tables.results import Result, keep, of_case, read_results
 from tests.tables.scales import PAPER, SCALES, SMALL, SMOKE
-from tests.tables.trainings import Case
+from tests.tables.trainings import Case, whole_panels
 
 TABLE_5 = tables(SMALL)[-1]
 
@@ -109,7 +110,25 @@ def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):
 def test_the_page_has_means_seeds_and_the_paper_s_numbers(tmp_path):
     case = TABLE_5.cases[0]
     text = page(tmp_path, [result(case, 25.0, 1), result(case, 26.0, 0)])
-    assert f"| {case.title} | 25.50 | 20.00 | 0.9000 |  | 60 | 9 | 0: 26.00, 1: 25.00 | 28.25 |" in text
+    assert f"| {case.title} | 25.50 | 20.00 |  | 0.9000 |  | 60 | 9 | 0: 26.00, 1: 25.00 | 28.25 |" in text
+
+
+def test_glass_alone_is_shown_and_compared_where_it_is_known_of_all(tmp_path):
+    *others, whole = TABLE_5.cases
+    results = [replace(result(case, 25.0), glass_db=24.0) for case in others]
+    text = page(tmp_path, [*results, replace(result(whole, 24.5), glass_db=26.5)])
+    assert f"| {whole.title} | 24.50 | 20.00 | 26.50 |" in text
+    assert f"- {whole.title} above {others[0].title}: -0.50 dB (at least 0: **missed**)" in text
+    assert f"- {whole.title} above {others[0].title}, on glass alone: +2.50 dB (at least 0: met)" in text
+    assert "on glass alone" not in page(tmp_path, [*results, result(whole, 24.5)])
+
+
+def test_pixels_of_glass_alone_have_neighbours_of_the_same_panel():
+    numbers = np.full((6, 9), -1)
+    numbers[1:6, 1:4], numbers[1:6, 4:9] = 3, 4
+    within = whole_panels(numbers)
+    assert set(zip(*np.nonzero(within), strict=True)) == {(y, x) for y in (2, 3, 4) for x in (2, 5, 6, 7)}
+    assert not whole_panels(np.full((4, 4), -1)).any()
 
 
 @pytest.mark.parametrize(("whole_db", "word"), [(25.5, "met"), (24.5, "**missed**")])
@@ -144,6 +163,7 @@ def test_plans_are_flown_photographed_learned_from_and_scored(tmp_path):
     kept = read_results(tmp_path / "tables" / "results.csv")
     assert {each.case for each in kept} == {case.title for case in tables(SMOKE)[0].cases}
     assert all(5.0 < each.psnr_db < 40.0 and each.n_steps == 12 for each in kept)
+    assert all(each.glass_db is not None and 5.0 < each.glass_db < 40.0 for each in kept)
     for each in kept:
         views = [tuple(map(float, view.split(":"))) for view in each.views.split()]
         assert all(0.0 <= share <= 1.0 for share, _ in views)
