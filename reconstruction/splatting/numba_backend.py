@@ -133,15 +133,14 @@ def _take_back(
     means, quats, scales, opacities = inputs[:4]
     (camera, lens), slopes = _camera_of(view), np.array(slope_limits(view))
     shapes, least = (means, quats, scales, opacities, camera, lens), settings.min_alpha
+    blur_px, limit = _blur_of_discs(settings), steepest(min(view.fx_px, view.fy_px))
 
     def of_splats(start: int, stop: int) -> None:
         places = tiles.slots, tiles.places, slots, start, stop
         if scales.shape[1] == SOLID:
-            blur_px, antialiased = settings.blur_px, settings.antialiased
-            gradients_of_ellipsoids(*shapes, least, blur_px, antialiased, slopes, *places, *found)
+            gradients_of_ellipsoids(*shapes, least, settings.blur_px, settings.antialiased, slopes, *places, *found)
         else:
-            blur = _blur_of_discs(settings), steepest(min(view.fx_px, view.fy_px))
-            gradients_of_splats(*shapes, geometry, least, *blur, *places, *found)
+            gradients_of_splats(*shapes, geometry, least, blur_px, limit, *places, *found)
 
     run_on_threads(of_splats, chunks(len(scales), SPLATS_AT_ONCE), settings.threads)
 
