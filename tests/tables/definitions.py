@@ -114,13 +114,17 @@ def _longer(scale: Scale) -> Table:
     cases = []
     for usual in _three():
         cases += [usual, Case(f"{usual.title}, longer", usual.method, _more(usual, scale, LONGER, scale.longer))]
+        cases.append(
+            Case(f"{usual.title}, blur of 3DGS", usual.method, {"raster": {"blur_px": RasterSettings().blur_px}})
+        )
         cases.append(Case(f"{usual.title}, {NOT_ANTIALIASED}", usual.method, PLAIN))
     return Table(
         "3b",
         "What more time and other settings bring",
         f"Not in the paper. Methods of Table 3, and the same with {LONGER} times as many steps, also of light alone, "
-        "and as much time, at `small` with a larger network in RefGlass-GS (6 x 256, L = 6); and with splats as 2DGS "
-        "and 3DGS draw them, which are as opaque as they are however small.",
+        "and as much time, at `small` with a larger network in RefGlass-GS (6 x 256, L = 6); with splats that are blurred "
+        "by 0.3 px^2, as 3DGS does, and not by 0.1; and with splats as 2DGS and 3DGS draw them, which are as opaque as "
+        "they are however small.",
         (ST, UST),
         tuple(cases),
         (Above(f"{PAPERS}, longer", ("GaussianShader, longer",), 3.0),),

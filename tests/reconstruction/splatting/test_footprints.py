@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from torch import Tensor
 
 from reconstruction.splatting.footprints import footprint_shares, shown_opacities
-from reconstruction.splatting.raster import RasterSettings
+from reconstruction.splatting.projection import Projected, areas_of, blurred, blurred_areas2
+from reconstruction.splatting.raster import RasterSettings, steepest
 from reconstruction.splatting.rasteriser import rasterise
 from reconstruction.splatting.views import View
 from tests.reconstruction.splatting.drawn_splats import (
@@ -253,3 +254,60 @@ def test_shares_of_things_in_the_way_hide_as_much_less() -> None:
     ]
     assert float(seen[0][0]) > 10.0 * float(seen[1][0])
     assert float(seen[1][1]) > float(seen[0][1]) + 0.8 * float(seen[0][0] - seen[1][0])
+
+
+@st.composite
+def _projections(draw_: st.DrawFn) -> Projected:
+    """A disc of any size that is seen from anywhere, from the front or from behind, and exactly from the side."""
+    sizes = [10.0 ** draw_(st.floats(-6.0, 4.0)) for _ in range(2)]
+    tilt, turn = draw_(st.floats(-math.pi / 2.0, math.pi / 2.0)), draw_(st.floats(-math.pi, math.pi))
+    tilt = draw_(st.sampled_from([tilt, 0.5 * math.pi]))
+    across = torch.tensor([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]], dtype=torch.float64)
+    sizes_px = torch.diag(torch.tensor(sizes, dtype=torch.float64))
+    jacobian = across @ torch.diag(torch.tensor([math.cos(tilt), 1.0], dtype=torch.float64)) @ sizes_px
+    slopes = torch.tensor([[math.sin(tilt) * sizes[0] / FOCAL_PX, 0.0]], dtype=torch.float64)
+    place = torch.zeros(1, 2, dtype=torch.float64)
+    return Projected(place, torch.ones(1, dtype=torch.float64), jacobian[None], slopes)
+
+
+FOCAL_PX = 60.0
+
+
+def _planes(projected: Projected) -> Tensor:
+    """p of discs that are not seen from the side, shape (n, 2)."""
+    return -torch.linalg.solve(projected.jacobians_px.mT, projected.slopes[..., None])[..., 0]
+
+
+@settings(max_examples=200, deadline=None)
+@given(_projections(), st.floats(0.1, 1.0))
+def test_a_blurred_disc_has_the_covariance_and_as_long_as_it_is_flat_enough_the_plane(
+    disc: Projected, blur_px: float
+) -> None:
+    found = blurred(disc, blur_px, steepest(FOCAL_PX))
+    jacobians = disc.jacobians_px
+    covariance = jacobians @ jacobians.mT + blur_px**2 * torch.eye(2, dtype=torch.float64)
+    torch.testing.assert_close(found.jacobians_px @ found.jacobians_px.mT, covariance, rtol=1e-9, atol=1e-9)
+    root = float(torch.sqrt(blurred_areas2(jacobians, blur_px))[0])
+    assert float(areas_of(found.jacobians_px)[0]) == pytest.approx(root, rel=1e-9)
+    assert root >= blur_px**2
+    is_flat = abs(float(areas_of(jacobians)[0])) > 1e-6 * float(jacobians.square().sum())
+    limit, planes = steepest(FOCAL_PX), _planes(found)
+    assert planes.isfinite().all()
+    if is_flat and float(_planes(disc).norm()) < 0.999 * limit:
+        torch.testing.assert_close(planes, _planes(disc), rtol=1e-6, atol=1e-9)
+    # What is likely is never steeper than the disc is deep over how wide it is drawn.
+    assert float(planes.norm()) <= limit + float(disc.slopes.norm()) / blur_px
+
+
+@settings(max_examples=100, deadline=None)
+@given(_projections(), st.floats(-1e-7, 1e-7))
+def test_a_blurred_disc_changes_little_where_it_turns_over_from_front_to_back(disc: Projected, by_rad: float) -> None:
+    def turned(tilt_rad: float) -> Projected:
+        """Of a size that shows, seen nearly from the side."""
+        jacobian = torch.tensor([[math.cos(tilt_rad), 0.0], [0.0, 1.0]], dtype=torch.float64)
+        slopes = torch.tensor([[math.sin(tilt_rad) / FOCAL_PX, 0.0]], dtype=torch.float64)
+        return blurred(replace(disc, jacobians_px=jacobian[None], slopes=slopes), 0.3, steepest(FOCAL_PX))
+
+    one, other = turned(0.5 * math.pi), turned(0.5 * math.pi + by_rad)
+    torch.testing.assert_close(one.jacobians_px, other.jacobians_px, rtol=0.0, atol=1e-6)
+    torch.testing.assert_close(one.slopes, other.slopes, rtol=0.0, atol=1e-6)
