@@ -122,8 +122,8 @@ def _longer(scale: Scale) -> Table:
         "3b",
         "What more time and other settings bring",
         f"Not in the paper. Methods of Table 3, and the same with {LONGER} times as many steps, also of light alone, "
-        "and as much time, at `small` with a larger network in RefGlass-GS (6 x 256, L = 6); with splats that are blurred "
-        "by 0.3 px^2, as 3DGS does, and not by 0.1; and with splats as 2DGS and 3DGS draw them, which are as opaque as "
+        "and as much time, at `small` with a larger network in RefGlass-GS (6 x 256, L = 6); with splats blurred by "
+        "0.3 px^2, as 3DGS has it, and not by 0.1; and with splats as 2DGS and 3DGS draw them, which are as opaque as "
         "they are however small.",
         (ST, UST),
         tuple(cases),

@@ -31,8 +31,8 @@ Written by `make tables` (`python -m tests.tables`); do not edit by hand. `--onl
 part, and keeps the others; `--scale paper` is for a computer with CUDA; `--cluster ADDRESS` shares the work over a Dask
 cluster; `--lpips FILE` adds LPIPS. PSNR and SSIM are of the facades of unseen views, drawn at random among all places
 that can be flown to, mean over views and then over seeds. In photos as small as those of `small` most pixels of a
-facade show a frame, too; the column glass has the PSNR of pixels whose neighbours, too, show the same panel, of views of
-which these are {least_glass:.0%} or more. Each view's PSNR, and how much of it is glass, are in
+facade show a frame, too; the column glass has the PSNR of pixels whose neighbours, too, show the same panel, of views
+of which these are {least_glass:.0%} or more. Each view's PSNR, and how much of it is glass, are in
 [tables/results.csv](tables/results.csv) of the later trainings. Seconds are those of a processor's core, without
 rendering photos. The paper's numbers are of its real photos, with other sites, cameras and times: orders can be
 compared, values cannot.
