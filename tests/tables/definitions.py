@@ -135,7 +135,10 @@ def _larger(scale: Scale) -> Table:
     window = {"window_px": 3 * scale.width_px**2 // 4}
     cases = tuple(
         replace(
-            case, settings={**_more(case, scale, LARGER_TIME, scale.larger), **window}, width_px=LARGER * scale.width_px
+            case,
+            title=f"{case.title}, larger",
+            settings={**_more(case, scale, LARGER_TIME, scale.larger), **window},
+            width_px=LARGER * scale.width_px,
         )
         for case in _three()
     )
@@ -147,7 +150,7 @@ def _larger(scale: Scale) -> Table:
         "as the photos of Table 3. At `small` with a larger network in RefGlass-GS (6 x 192, L = 5).",
         (ST, UST),
         cases,
-        (Above(PAPERS, (cases[0].title,), 3.0), Above(OURS, (PAPERS,), 0.0)),
+        (Above(cases[1].title, (cases[0].title,), 3.0), Above(cases[2].title, (cases[1].title,), 0.0)),
     )
 
 

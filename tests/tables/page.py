@@ -11,7 +11,7 @@ from typing import Literal
 from reconstruction.modelling.methods import METHODS
 from tests.tables.definitions import Above, Table
 from tests.tables.measured import gap_section, measured_sections
-from tests.tables.results import Result, of_case
+from tests.tables.results import Result, of_case, older_of_case
 from tests.tables.scales import Scale
 from tests.tables.trainings import LEAST_GLASS, Case
 
@@ -21,6 +21,9 @@ Score = Literal["psnr_db", "glass_db"]
 
 OF_WHAT: dict[Score, str] = {"psnr_db": "", "glass_db": ", on glass alone"}
 """What is compared, and how a line says so."""
+
+OLDER = "older settings"
+"""Of a row that was not made again after something of its settings was changed."""
 
 PICTURES = "tables"
 """Folder beside the page."""
@@ -34,7 +37,8 @@ that can be flown to, mean over views and then over seeds. In photos as small as
 facade show a frame, too; the column glass has the PSNR of pixels whose neighbours, too, show the same panel, of views
 of which these are {least_glass:.0%} or more. Each view's PSNR, and how much of it is glass, are in
 [tables/results.csv](tables/results.csv) of the later trainings. Seconds are those of a processor's core, without
-rendering photos. The paper's numbers are of its real photos, with other sites, cameras and times: orders can be
+rendering photos. Rows of {older} were made before some setting was changed; they are not compared with others, nor
+shown in later pictures. The paper's numbers are of its real photos, with other sites, cameras and times: orders can be
 compared, values cannot.
 """
 
@@ -42,7 +46,7 @@ compared, values cannot.
 def write_page(path: Path, tables: Sequence[Table], scale: Scale, results: Sequence[Result]) -> None:
     """Write the page, of results of one scale."""
     parts = [
-        HEADER.format(least_glass=LEAST_GLASS),
+        HEADER.format(least_glass=LEAST_GLASS, older=OLDER),
         _setup(scale),
         _methods(),
         "\n".join(measured_sections(path.parent)),
@@ -95,13 +99,15 @@ def _section(table: Table, scale: Scale, results: Sequence[Result], folder: Path
 
 def _line(case: Case, scene: str, scale: Scale, results: Sequence[Result]) -> str:
     paper = f"{case.paper[scene]:.2f}" if scene in case.paper else ""
-    found = of_case(results, scene, case.made_with(scene, scale))
+    found, title = of_case(results, scene, case.made_with(scene, scale)), case.title
+    if not found:
+        found, title = older_of_case(results, scene, scale.name, case.title), f"{case.title} ({OLDER})"
     if not found:
         return f"| {case.title} | not run | | | | | | | | {paper} |"
     mean, glass_db = (_mean(found, name) for name in ("psnr_db", "glass_db"))
     lpips = [each.lpips for each in found if each.lpips is not None]
     cells = (
-        case.title,
+        title,
         f"{mean:.2f}",
         f"{min(each.worst_db for each in found):.2f}",
         "" if glass_db is None else f"{glass_db:.2f}",

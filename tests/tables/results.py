@@ -87,3 +87,9 @@ def keep(path: Path, new: Iterable[Result]) -> None:
 def of_case(results: Sequence[Result], scene: str, made_with: str) -> list[Result]:
     """All seeds of a case, made with the settings that it has now."""
     return [each for each in results if (each.scene, each.made_with) == (scene, made_with)]
+
+
+def older_of_case(results: Sequence[Result], scene: str, scale: str, title: str) -> list[Result]:
+    """All seeds of a case of that title, made with the settings that it had last."""
+    named = [each for each in results if (each.scene, each.scale, each.case) == (scene, scale, title)]
+    return of_case(named, scene, named[-1].made_with) if named else []

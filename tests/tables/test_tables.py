@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.tables import trainings
 from tests.tables.__main__ import main
 from tests.tables.definitions import Above, tables
 from tests.tables.page import gap_db, write_page
@@ -39,6 +40,14 @@ def test_a_case_is_another_one_with_other_settings_or_photos_but_not_with_anothe
     assert case.config(SMALL, 1) == replace(case.config(SMALL, 0), seed=1)
     assert case.made_with("planar", SMALL) != made_with != case.made_with("curved", SMOKE)
     assert replace(case, settings={"rates": {"means": 1e-3}}).made_with("curved", SMALL) != made_with
+
+
+def test_a_case_is_another_one_after_the_program_changed_what_it_depends_on(monkeypatch):
+    discs, ellipsoids = Case("2DGS", "2dgs"), Case("3DGS", "3dgs")
+    before = [case.made_with("planar", SMALL) for case in (discs, ellipsoids)]
+    monkeypatch.setattr(trainings, "_changes", lambda config: [])
+    assert discs.made_with("planar", SMALL) != before[0]
+    assert ellipsoids.made_with("planar", SMALL) == before[1]
 
 
 def test_a_method_s_own_settings_of_a_scale_come_before_the_case_s():
@@ -89,11 +98,15 @@ def test_what_benchmarks_measured_stands_beside_the_paper_s_numbers(tmp_path):
     assert "| 100 | 77.2 % |  |  |  |" in text
 
 
-def test_results_of_other_settings_are_not_shown(tmp_path):
-    case = TABLE_5.cases[0]
-    old = replace(result(case, 25.0), made_with="0123456789")
-    assert of_case([old], "curved", case.made_with("curved", SMALL)) == []
-    assert f"| {case.title} | not run |" in page(tmp_path, [old])
+def test_results_of_other_settings_are_said_to_be_older_and_not_compared(tmp_path):
+    *others, whole = TABLE_5.cases
+    oldest, old = (replace(result(whole, db), made_with=f"{db}") for db in (24.0, 25.0))
+    assert of_case([old], "curved", whole.made_with("curved", SMALL)) == []
+    text = page(tmp_path, [oldest, old, *(result(case, 26.0) for case in others)])
+    assert f"| {whole.title} (older settings) | 25.00 |" in text
+    assert "24.00" not in text
+    assert f"{whole.title} above" not in text.partition("## Table 5")[2]
+    assert f"| {whole.title} | not run |" in page(tmp_path, [replace(old, scale="smoke"), replace(old, scene="planar")])
 
 
 def test_a_training_that_several_tables_have_is_shown_in_each(tmp_path):

@@ -78,14 +78,24 @@ class Case:
         return Photos(scene, self.planner, scale.n_views, width_px), Photos(scene, "unseen", scale.n_unseen, width_px)
 
     def made_with(self, scene: str, scale: Scale) -> str:
-        """Checksum of all that its numbers depend on, but for the program and the seed."""
+        """Checksum of all that its numbers depend on, but for the seed; of the program, of what `_changes` says."""
         config = self.config(scale, 0)
         settings = asdict(config)
         if not config.trained_by.knows_panels:
             settings = {name: value for name, value in settings.items() if name not in OF_PANELS}
             settings["rates"].pop("glass_geometry")
-        what = [settings, [asdict(each) for each in self.photos(scene, scale)]]
+        what = [settings, [asdict(each) for each in self.photos(scene, scale)], *_changes(config)]
         return hashlib.sha256(json.dumps(what, sort_keys=True, default=str).encode()).hexdigest()[:10]
+
+
+def _changes(config: TrainConfig) -> list[str]:
+    """What the program does otherwise than when the first results were kept, of what numbers depend on."""
+    found = []
+    if config.raster.antialiased and config.trained_by.primitive == "discs":
+        found.append("discs are blurred")
+    if config.trained_by.knows_panels:
+        found.append("surfaces that share a pixel are shaded each for itself")
+    return found
 
 
 def trained_and_scored(
