@@ -12,6 +12,7 @@ from reconstruction.exports.coarser_parts import coarser_part
 from reconstruction.exports.ellipsoids import ellipsoids_of
 from reconstruction.exports.tiles3d_tree import branches_of, part_of_branch
 from reconstruction.splatting.detail_tree import FEWEST
+from reconstruction.splatting.raster import RasterSettings
 from reconstruction.splatting.splats import Splats
 from tests.reconstruction.objects.made_scene import made_scene, pane
 from tests.reconstruction.splatting.test_merged_splats import drawn, from_south
@@ -69,6 +70,10 @@ def test_each_panel_has_its_own_and_none_is_lost(sizes, at_most, seed):
         assert np.isfinite(value).all()
 
 
+OF_VIEWERS = RasterSettings(antialiased=True)
+"""With the blur that other programs have."""
+
+
 def test_from_afar_they_look_like_the_many():
     facade = facade_of((4000, 3000, 5000, 2000))
     found = coarser_part(halves_of(facade, 7000), 3000)
@@ -81,12 +86,12 @@ def test_from_afar_they_look_like_the_many():
     for component in (facade, found.component):
         panels = torch.from_numpy(ellipsoids_of(component).panels)
         table = {name: torch.from_numpy(value) for name, value in component.gaussians.values.items()}
-        features, alphas = drawn(Splats(table, panels), view)
+        features, alphas = drawn(Splats(table, panels), view, OF_VIEWERS)
         pictures.append(torch.cat([features[..., :3], alphas[..., None]], dim=-1))
     many, few = pictures
     assert many[..., 3].max() > 0.8
     # Against the light that a picture without them would lack.
-    assert (few - many).square().mean() < 0.003 * many.square().mean()
+    assert (few - many).square().mean() < 0.005 * many.square().mean()
 
 
 def test_of_merged_ones_there_can_be_fewer_again():
