@@ -68,7 +68,8 @@ def test_a_surface_drawn_by_fewer_is_the_mean_of_a_fine_picture(n_sizes, opacity
     assert error < 0.02
     # Cubes are coarser than pixels; but of the faintest splats those are missing that lie below the cut by themselves.
     assert error < (0.9 if opacity < 0.2 else 4.0) * usual
-    assert float((covers - covered).mean().abs()) < 0.03
+    # Those of half an opacity lie over each other here and there, which areas do not know.
+    assert float((covers - covered).mean().abs()) < 0.06
     assert torch.allclose(found[..., normal] / covers, -torch.tensor(FORWARD), atol=0.01)
 
 
