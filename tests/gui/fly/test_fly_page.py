@@ -83,7 +83,9 @@ def page(desk):
 
 
 def press(page, request):
-    page.buttons.button(request).click()
+    button = page.buttons.button(request)
+    assert button.isEnabled(), f"{request} cannot be pressed"
+    button.click()
 
 
 def connect(application, page, speed_up=20.0, autopilot=Autopilot.ARDUPILOT):
@@ -401,6 +403,8 @@ def test_parameters_of_a_real_vehicle_are_set_only_where_allowed_and_after_a_que
     assert "restarted" in page.questions.asked[-1]
     assert page.desk.in_hand.view.phase is None
     page.questions.sets = True
+    # On a busy computer the link may be late for a moment.
+    turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
     press(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
