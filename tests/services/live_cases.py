@@ -32,9 +32,9 @@ def sortie():
 SPEED_UP = 40.0
 
 
-def simulation(**changes):
+def simulation(speed_up=SPEED_UP, **changes):
     model, plan = planned()
-    return Simulation(plan, model, speed_up=SPEED_UP, **changes)
+    return Simulation(plan, model, speed_up=speed_up, **changes)
 
 
 class Cut:
@@ -75,7 +75,7 @@ class Reopening:
 
     def open(self, orders, clock, observe):
         if self._opened is None:
-            opened = simulation().open(orders, clock, observe)
+            opened = simulation(self.speed_up).open(orders, clock, observe)
             self._opened = replace(opened, link=Cut(opened.link))
         if self.cut.is_unplugged.is_set():
             raise LinkError("there is no radio")
