@@ -6,12 +6,13 @@ import math
 import time
 import tracemalloc
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import torch
 from torch import Tensor
 
+from reconstruction.modelling.config import ANTIALIASED
 from reconstruction.splatting.raster import Raster, RasterSettings
 from reconstruction.splatting.rasteriser import rasterise
 from reconstruction.splatting.views import View
@@ -121,7 +122,7 @@ def as_ellipsoids(scene: Scene) -> Scene:
 
 
 def _compiled(scene: Scene, threads: int, is_antialiased: bool = False) -> Raster:
-    settings = RasterSettings(threads=threads, antialiased=is_antialiased)
+    settings = replace(ANTIALIASED if is_antialiased else RasterSettings(), threads=threads)
     return rasterise(*scene.inputs, scene.view, settings=settings, backend="numba")
 
 
