@@ -60,7 +60,7 @@ PAPER_WIDTH_PX = 5280
 
 NOT_ANTIALIASED = "not antialiased"
 PLAIN: dict[str, Any] = {"raster": {"antialiased": False, "blur_px": RasterSettings().blur_px}}
-"""Splats as their papers draw them: smaller ones than the blur, or 2DGS's circle, as large as that and no fainter."""
+"""Splats as 3DGS and 2DGS draw them: with the blur of the one or the circle of the other, and no fainter for it."""
 
 
 def tables(scale: Scale) -> tuple[Table, ...]:

@@ -152,7 +152,7 @@ def trained_and_scored(
 def glass_scores(trained: TrainedModel, source: PhotoSet) -> list[float]:
     """PSNR of each view of the pixels that show one panel and nothing beside it, of views that have enough of them.
 
-    Of small photos most pixels of a facade show a frame, too, which all methods draw alike; of the paper's few do.
+    Of small photos most pixels of a facade show a frame, too; of photos as large as the paper's few do.
     """
     found = []
     for photo in source.photos:

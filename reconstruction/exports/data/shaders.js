@@ -75,7 +75,7 @@ void main() {
   found = vec4(mix(colour, tint.rgb * (0.65 + 0.5 * grey), tint.a), float(b.w >> 24) / 255.0);
 }`;
 
-// Ellipsoids projected to ellipses (Zwicker et al., 2001; Kerbl et al., 2023), with their low-pass, as when they were learned.
+// Ellipsoids projected to ellipses (Zwicker et al., 2001; Kerbl et al., 2023), with the low-pass they were learned with.
 const SPLAT_VERTEX = `${CAMERA}${LIGHT}
 precision highp usampler2D;
 uniform usampler2D uData;
