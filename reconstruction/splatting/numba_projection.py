@@ -161,8 +161,8 @@ def covariance_of(jacobian: Four, blur2: float) -> tuple[Triple, float, float]:
 @inline
 def planes_of(
     jacobian: Four, slopes: Pair, covariance: Triple, square: float, area: float, steepest: float
-) -> tuple[Pair, Pair, float]:
-    """-C^-1 J q, the disc's own plane p times the area, and what of the latter p' has, 1 over the area mostly."""
+) -> tuple[Pair, Pair, float, bool]:
+    """-C^-1 J q, the disc's own plane p times the area, what of the latter p' has, and whether that is all of p."""
     j_xu, j_xv, j_yu, j_yv = jacobian
     xx, xy, yy = covariance
     x, y = j_xu * slopes[0] + j_xv * slopes[1], j_yu * slopes[0] + j_yv * slopes[1]
@@ -170,15 +170,15 @@ def planes_of(
     plane = j_yu * slopes[1] - j_yv * slopes[0], j_xv * slopes[0] - j_xu * slopes[1]
     steepness2, limit = plane[0] * plane[0] + plane[1] * plane[1], steepest * steepest
     if limit * area * area >= steepness2 and abs(area) >= SMALLEST:
-        return likely, plane, 1.0 / area
-    return likely, plane, limit * area / max(steepness2, SMALLEST * SMALLEST)
+        return likely, plane, 1.0 / area, True
+    return likely, plane, limit * area / max(steepness2, SMALLEST * SMALLEST), False
 
 
 @inline
 def blurred_disc(jacobian: Four, slopes: Pair, blur2: float, steepest: float) -> tuple[Four, Pair, float]:
     """J' and q' of a disc that is blurred, and the share of what is drawn that is its own; see `projection.blurred`."""
     covariance, root, area = covariance_of(jacobian, blur2)
-    likely, plane, over = planes_of(jacobian, slopes, covariance, root * root, area, steepest)
+    likely, plane, over, _ = planes_of(jacobian, slopes, covariance, root * root, area, steepest)
     rest, upper = 1.0 - over * area, math.sqrt(covariance[0])
     p_x, p_y = rest * likely[0] + over * plane[0], rest * likely[1] + over * plane[1]
     beside, lower = covariance[1] / upper, root / upper

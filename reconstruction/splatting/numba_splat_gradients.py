@@ -81,7 +81,7 @@ def _back_through_blur(
     j_xu, j_xv, j_yu, j_yv = jacobian
     (xx, xy, yy), root, area = covariance_of(jacobian, blur2)
     square = root * root
-    likely, plane, over = planes_of(jacobian, slopes, (xx, xy, yy), square, area, steepest)
+    likely, plane, over, is_flat = planes_of(jacobian, slopes, (xx, xy, yy), square, area, steepest)
     rest, upper = 1.0 - over * area, math.sqrt(xx)
     p_x, p_y = rest * likely[0] + over * plane[0], rest * likely[1] + over * plane[1]
     beside, lower, over_upper = xy / upper, root / upper, 1.0 / upper
@@ -93,11 +93,11 @@ def _back_through_blur(
     g_over = plane[0] * g_px + plane[1] * g_py - area * (likely[0] * g_px + likely[1] * g_py)
     g_rx, g_ry = over * g_px, over * g_py
     g_area = -over * (likely[0] * g_px + likely[1] * g_py)
-    steepness2, limit = plane[0] * plane[0] + plane[1] * plane[1], steepest * steepest
-    if limit * area * area >= steepness2 and abs(area) >= SMALLEST:
+    steepness2 = plane[0] * plane[0] + plane[1] * plane[1]
+    if is_flat:
         g_area -= over * over * g_over
     elif steepness2 > SMALLEST * SMALLEST:
-        g_area += limit / steepness2 * g_over
+        g_area += steepest * steepest / steepness2 * g_over
         by_plane = 2.0 * over / steepness2 * g_over
         g_rx, g_ry = g_rx - by_plane * plane[0], g_ry - by_plane * plane[1]
     by_x, by_y = rest * g_px / square, rest * g_py / square
