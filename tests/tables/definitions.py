@@ -171,11 +171,11 @@ def _more(usual: Case, scale: Scale, factor: int, of_methods: Mapping[str, Mappi
 
 
 def _of_scale(scale: Scale, **shape: object) -> dict[str, Any]:
-    """The scale's settings of light in the place of RefGlass-GS's own, the MLP's shape, and plain splats."""
+    """The scale's settings of light in the place of RefGlass-GS's own, and the MLP's shape."""
     config = scale.config
     alone, usual = config.reflections, asdict(config.reflections.mlp)
     light = {"steps": alone.steps, "batch": alone.batch, "mlp_decay": alone.mlp_decay, "mlp": {**usual, **shape}}
-    return {"light_share": config.light_share, "rates": {"light": config.rates.light}, "reflections": light, **PLAIN}
+    return {"light_share": config.light_share, "rates": {"light": config.rates.light}, "reflections": light}
 
 
 def _shapes(scale: Scale) -> Table:
@@ -206,8 +206,7 @@ def _shapes(scale: Scale) -> Table:
         "Architecture of the Reflection MLP",
         "One factor of case 4 changed at a time. At this scale networks are smaller and orders lower than the paper's, "
         "in the same time. Light is learned with the scale's settings and not with RefGlass-GS's own (at `small`: many "
-        "small batches, decay, a network of 6 x 128), and splats are not antialiased: case 4 is not the RefGlass-GS of "
-        "the other tables.",
+        "small batches, decay, a network of 6 x 128): case 4 is not the RefGlass-GS of the other tables.",
         (UST,),
         cases,
         tuple(Above(cases[3].title, (each,), 0.0) for each in others),
