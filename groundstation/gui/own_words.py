@@ -11,6 +11,7 @@ from functools import cache
 
 from PySide6.QtCore import QCoreApplication
 
+from groundstation.gui.sentences import sentence_tables
 from groundstation.services.sentences import Phrasebook
 from groundstation.services.units import UnitSystem
 from planning.findings import Finding
@@ -19,46 +20,7 @@ from planning.findings import Finding
 @cache
 def phrasebook() -> Phrasebook:
     """All templates; read when the first sentence is told."""
-    from groundstation.gui.sentences import (
-        dji,
-        exports,
-        fly,
-        insight,
-        mission,
-        parts,
-        photos,
-        plan,
-        project,
-        reconstruct,
-        records,
-        refine,
-        report,
-        scenes,
-        site,
-        site_import,
-        stages,
-    )
-
-    tables = (
-        dji,
-        exports,
-        fly,
-        insight,
-        mission,
-        parts,
-        photos,
-        plan,
-        project,
-        reconstruct,
-        records,
-        refine,
-        report,
-        scenes,
-        site,
-        site_import,
-        stages,
-    )
-    return Phrasebook(source for table in tables for source in table.SENTENCES)
+    return Phrasebook(template for table in sentence_tables().values() for template in table)
 
 
 def own_words(text: str, units: UnitSystem) -> str:

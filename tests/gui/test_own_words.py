@@ -8,28 +8,9 @@ from functools import cache
 import pytest
 from PySide6.QtCore import QTranslator
 
-from groundstation.gui import sentences
 from groundstation.gui.languages import FOLDER
 from groundstation.gui.own_words import own_words, phrasebook
-from groundstation.gui.sentences import (
-    dji,
-    exports,
-    fly,
-    insight,
-    mission,
-    parts,
-    photos,
-    plan,
-    project,
-    reconstruct,
-    records,
-    refine,
-    report,
-    scenes,
-    site,
-    site_import,
-    stages,
-)
+from groundstation.gui.sentences import sentence_tables
 from groundstation.services.sentences import Template
 from groundstation.services.site_findings import site_findings
 from groundstation.services.site_sources import preview_import
@@ -49,27 +30,8 @@ from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
-FROM_SOURCES = (
-    *(
-        dji,
-        exports,
-        fly,
-        insight,
-        mission,
-        photos,
-        plan,
-        project,
-        reconstruct,
-        records,
-        refine,
-        report,
-        scenes,
-        site,
-        site_import,
-        stages,
-    ),
-)
-"""Tables of whole sentences; `parts` holds words and what Python says."""
+OTHER_TABLES = {"parts"}
+"""Words and what Python says; all others are of whole sentences."""
 
 NOT_SHOWN = {
     **{
@@ -236,10 +198,6 @@ def unmarked(template):
     return re.sub(r"\{(\d+):[mn]\}", r"{\1}", template)
 
 
-def tables():
-    return [(table.__name__.rpartition(".")[2], table.SENTENCES) for table in (*FROM_SOURCES, parts)]
-
-
 @pytest.fixture
 def german(application):
     translator = QTranslator()
@@ -250,16 +208,16 @@ def german(application):
 
 
 def test_every_sentence_of_the_sources_is_known_to_the_window():
-    known = {unmarked(template) for _, table in tables() for template in table}
+    known = {unmarked(template) for table in sentence_tables().values() for template in table}
     missing = {place: text for text, place in sentences_of_sources().items() if text not in known}
     assert not missing, "add them to groundstation/gui/sentences, run `make translations` and translate them"
 
 
 def test_every_sentence_of_the_window_is_still_made_somewhere():
     made = sentences_of_sources()
-    for name, table in tables():
-        if name != "parts":
-            assert not [text for text in table if unmarked(text) not in made], f"{sentences.__name__}.{name}"
+    for name, table in sentence_tables().items():
+        if name not in OTHER_TABLES:
+            assert not [text for text in table if unmarked(text) not in made], name
 
 
 def test_nothing_is_left_out_that_is_not_there():
@@ -269,13 +227,13 @@ def test_nothing_is_left_out_that_is_not_there():
 
 
 def test_no_sentence_stands_in_two_tables():
-    everything = [text for _, table in tables() for text in table]
+    everything = [text for table in sentence_tables().values() for text in table]
     assert len(everything) == len(set(everything))
 
 
-@pytest.mark.parametrize(("name", "table"), tables(), ids=[name for name, _ in tables()])
-def test_every_sentence_is_recognised_with_any_values_and_stays_as_it_is_in_english(application, name, table):
-    for template in table:
+@pytest.mark.parametrize("name", sentence_tables())
+def test_every_sentence_is_recognised_with_any_values_and_stays_as_it_is_in_english(application, name):
+    for template in sentence_tables()[name]:
         values = ["12.5" if mark == "n" else "3.5, -2" if mark == "m" else "Xy" for mark in Template.of(template).kinds]
         text = filled(template, values)
         found = phrasebook().find(text)
