@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
+from PySide6.QtCore import QEvent, QRectF
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.plan.curve_plot import ticks
+from groundstation.gui.axes import PAD_PX, Axes, box_of_axes
 from groundstation.gui.theme import colours
 from groundstation.services.photo_tradeoff import Knob, Trial
 from groundstation.services.units import UnitSystem, sampling_unit
 
-PAD_PX, DOT_PX = 6.0, 4.0
+DOT_PX = 4.0
 ROOM_ABOVE = 1.15
 
 
@@ -42,38 +42,21 @@ class TrialPlot(QWidget):
         painter.fillRect(self.rect(), QColor(look.base))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         line = QFontMetricsF(self.font()).height()
-        box = QRectF(self.rect()).adjusted(44.0, line + PAD_PX, -2.0 * PAD_PX, -2.0 * line - PAD_PX)
         heights = [unit.shown(trial.sigma_m or 0.0) for trial in self._trials]
         end_x = ROOM_ABOVE * max((trial.seconds for trial in self._trials), default=1.0)
         end_y = ROOM_ABOVE * max(heights, default=1.0)
+        axes = Axes(box_of_axes(QRectF(self.rect()), self.font(), line), end_x, end_y)
+        axes.paint(painter, look, self.tr("time of the search in s"))
         painter.setPen(QColor(look.text))
         painter.drawText(QRectF(PAD_PX, 0.0, self.width(), line), self.tr("\u00b1 {0} at a corner").format(unit.symbol))
-        below = QRectF(box.left(), self.height() - line, box.width(), line)
-        painter.drawText(below, Qt.AlignmentFlag.AlignHCenter, self.tr("time of the search in s"))
-        for x in ticks(end_x, 40.0 / max(box.width(), 1.0)):
-            at = QPointF(box.left() + box.width() * x / end_x, box.bottom())
-            _grid_line(painter, at, QPointF(at.x(), box.top()))
-            place = QRectF(at.x() - 30.0, at.y() + 2.0, 60.0, line)
-            painter.drawText(place, Qt.AlignmentFlag.AlignHCenter, f"{x:g}")
-        for y in ticks(end_y, 30.0 / max(box.height(), 1.0)):
-            at = QPointF(box.left(), box.bottom() - box.height() * y / end_y)
-            _grid_line(painter, at, QPointF(box.right(), at.y()))
-            beside = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-            painter.drawText(QRectF(0.0, at.y() - line, box.left() - PAD_PX, 2.0 * line), beside, f"{y:g}")
-        self._paint_line(painter, "scale", QColor(look.covered), box, QPointF(end_x, end_y))
-        self._paint_line(painter, "photos", QColor(look.open), box, QPointF(end_x, end_y))
+        self._paint_line(painter, "scale", QColor(look.covered), axes)
+        self._paint_line(painter, "photos", QColor(look.open), axes)
         painter.end()
 
-    def _paint_line(self, painter: QPainter, knob: Knob, colour: QColor, box: QRectF, ends: QPointF) -> None:
+    def _paint_line(self, painter: QPainter, knob: Knob, colour: QColor, axes: Axes) -> None:
         unit = sampling_unit(self._units)
-        points = [
-            QPointF(
-                box.left() + box.width() * trial.seconds / ends.x(),
-                box.bottom() - box.height() * unit.shown(trial.sigma_m or 0.0) / ends.y(),
-            )
-            for trial in self._trials
-            if trial.knob == knob
-        ]
+        known = [(trial.seconds, unit.shown(trial.sigma_m or 0.0)) for trial in self._trials if trial.knob == knob]
+        points = [axes.place(x, y) for x, y in known]
         painter.setPen(QPen(colour, 2.0))
         painter.drawPolyline(points)
         painter.setBrush(colour)
@@ -136,12 +119,3 @@ class TrialChart(QWidget):
         return self.tr("{0:.1f} s, {1} panels, \u00b1 {2:.3g} {3}").format(
             trial.seconds, trial.n_panels, unit.shown(trial.sigma_m), unit.symbol
         )
-
-
-def _grid_line(painter: QPainter, start: QPointF, end: QPointF) -> None:
-    """A faint line; the pen for texts is there afterwards."""
-    faint = QColor(colours().line)
-    faint.setAlpha(130)
-    painter.setPen(faint)
-    painter.drawLine(start, end)
-    painter.setPen(QColor(colours().text))

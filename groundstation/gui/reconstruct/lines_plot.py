@@ -1,4 +1,4 @@
-"""Several lines over time in one chart, painted by Qt alone; it is drawn several times a second beside a training."""
+"""Several lines over time in one chart; it is drawn several times a second beside a training."""
 
 from __future__ import annotations
 
@@ -11,15 +11,10 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
+from groundstation.gui.axes import PAD_PX, Axes, box_of_axes
 from groundstation.gui.theme import SORTIES, Colours, colours
-from groundstation.services.map_shapes import round_length
 
-PAD_PX, MARK_PX = 6.0, 27.0
-
-TICKS_X_PX, TICKS_Y_PX = 60.0, 26.0
-"""Least distance of neighbouring ticks: their numbers must not touch."""
-
-WIDEST_NUMBER = "0.0005"
+MARK_PX = 27.0
 
 DOT_PX, MOST_DOTS = 5.0, 40
 """So few points are dots, too."""
@@ -84,76 +79,42 @@ class LinesPlot(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
         """Axes, lines, legend."""
-        painter, look, box = QPainter(self), colours(), self._box()
+        painter, look = QPainter(self), colours()
         painter.fillRect(self.rect(), QColor(look.base))
-        end_x = max([1.0, *(1.02 * float(line.x[-1]) for line in self._lines if len(line.x))])
-        low, high = self.range_y()
-
-        def place(x: float, y: float) -> QPointF:
-            return QPointF(box.left() + box.width() * x / end_x, box.bottom() - box.height() * (y - low) / (high - low))
-
         if not any(len(line.x) for line in self._lines):
             painter.setPen(QColor(look.muted))
             flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
             painter.drawText(QRectF(self.rect()).adjusted(PAD_PX, PAD_PX, -PAD_PX, -PAD_PX), int(flags), self._empty)
             painter.end()
             return
-        self._paint_axes(painter, look, box, end_x, low, high)
-        painter.setClipRect(box.adjusted(-1.0, -1.0, 1.0, 1.0))
+        axes = self._axes()
+        axes.paint(painter, look, self._title_x, self._title_y)
+        painter.setClipRect(axes.box.adjusted(-1.0, -1.0, 1.0, 1.0))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for number, line in enumerate(self._lines):
-            points = [place(x, y) for x, y in zip(line.x.tolist(), line.y.tolist(), strict=True) if math.isfinite(y)]
+            corners = zip(line.x.tolist(), line.y.tolist(), strict=True)
+            points = [axes.place(x, y) for x, y in corners if math.isfinite(y)]
             painter.setPen(_pen(number, look))
             painter.drawPolyline(points)
             if len(points) <= MOST_DOTS:
                 painter.setPen(QPen(_pen(number, look).color(), DOT_PX, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
                 painter.drawPoints(points)
         painter.setClipping(False)
-        self._paint_legend(painter, look, box)
+        self._paint_legend(painter, look, axes.box)
         painter.end()
 
-    def _box(self) -> QRectF:
-        metrics = QFontMetricsF(self.font())
-        line = metrics.height()
-        left = line + metrics.horizontalAdvance(WIDEST_NUMBER) + 2.0 * PAD_PX
-        above = PAD_PX + line * (0 if len(self._lines) < 2 else math.ceil(len(self._lines) / self._columns()))
-        inner = QRectF(self.rect()).adjusted(left, above, -2.0 * PAD_PX, -2.0 * line - PAD_PX)
-        return inner if inner.width() > 1.0 and inner.height() > 1.0 else QRectF(left, PAD_PX, 1.0, 1.0)
+    def _axes(self) -> Axes:
+        rows = 0 if len(self._lines) < 2 else math.ceil(len(self._lines) / self._columns())
+        box = box_of_axes(QRectF(self.rect()), self.font(), rows * QFontMetricsF(self.font()).height())
+        end_x = max([1.0, *(1.02 * float(line.x[-1]) for line in self._lines if len(line.x))])
+        low, high = self.range_y()
+        return Axes(box, end_x, high, low)
 
     def _columns(self) -> int:
         """Of the legend: two where all names have room."""
         metrics = QFontMetricsF(self.font())
         widest = max((metrics.horizontalAdvance(line.name) for line in self._lines), default=0.0)
         return 2 if 2.0 * (widest + MARK_PX + 4.0) < 0.75 * self.width() else 1
-
-    def _paint_axes(self, painter: QPainter, look: Colours, box: QRectF, end_x: float, low: float, high: float) -> None:
-        metrics = QFontMetricsF(self.font())
-        line = metrics.height()
-        grid, text = QColor(look.line), QColor(look.text)
-        grid.setAlpha(130)
-        below, beside = Qt.AlignmentFlag.AlignHCenter, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-        for x in between(0.0, end_x, TICKS_X_PX / box.width()):
-            at = box.left() + box.width() * x / end_x
-            painter.setPen(grid)
-            painter.drawLine(QPointF(at, box.bottom()), QPointF(at, box.top()))
-            painter.setPen(text)
-            painter.drawText(QRectF(at - 40.0, box.bottom() + 2.0, 80.0, line), below, f"{x:g}")
-        for y in between(low, high, TICKS_Y_PX / box.height()):
-            at = box.bottom() - box.height() * (y - low) / (high - low)
-            painter.setPen(grid)
-            painter.drawLine(QPointF(box.left(), at), QPointF(box.right(), at))
-            painter.setPen(text)
-            painter.drawText(QRectF(0.0, at - line, box.left() - PAD_PX, 2.0 * line), beside, f"{y:.4g}")
-        painter.drawText(QRectF(box.left(), box.bottom() + line, box.width(), line), below, self._title_x)
-        painter.save()
-        length = metrics.horizontalAdvance(self._title_y)
-        painter.translate(PAD_PX, max(box.center().y(), 0.5 * length))
-        painter.rotate(-90.0)
-        painter.drawText(QRectF(-0.5 * length, 0.0, length, line), below, self._title_y)
-        painter.restore()
-        painter.setPen(QColor(look.line))
-        painter.drawLine(box.topLeft(), box.bottomLeft())
-        painter.drawLine(box.bottomLeft(), box.bottomRight())
 
     def _paint_legend(self, painter: QPainter, look: Colours, box: QRectF) -> None:
         if len(self._lines) < 2:
@@ -168,13 +129,6 @@ class LinesPlot(QWidget):
             place = QRectF(left + MARK_PX, top, width - MARK_PX - 2.0, height)
             name = QFontMetricsF(self.font()).elidedText(line.name, Qt.TextElideMode.ElideRight, place.width())
             painter.drawText(place, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, name)
-
-
-def between(low: float, high: float, least: float) -> list[float]:
-    """Round numbers between two, evenly apart, by at least the part `least` of their distance."""
-    step = round_length(max(2.5 * least * (high - low), 1e-12))
-    first = math.ceil(low / step - 1e-9)
-    return [step * number for number in range(first, math.floor(high / step + 1e-9) + 1)]
 
 
 def _pen(number: int, look: Colours) -> QPen:

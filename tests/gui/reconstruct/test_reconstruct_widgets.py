@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QApplication
 
 from groundstation.gui.reconstruct.choice_form import ChoiceForm
 from groundstation.gui.reconstruct.led_camera import LedCamera
-from groundstation.gui.reconstruct.lines_plot import Line, LinesPlot, between
+from groundstation.gui.reconstruct.lines_plot import Line, LinesPlot
 from groundstation.gui.reconstruct.looks import image_of
 from groundstation.gui.reconstruct.model_view import (
     FASTER,
@@ -253,14 +253,6 @@ def test_a_choice_is_shown_and_given_back(application):
     assert heard[-1].minutes == 7.0
     form.time.setCurrentIndex(1)
     assert (heard[-1].preset, heard[-1].minutes) == ("1h", None)
-
-
-@pytest.mark.parametrize("ends", [(0.0, 1.0), (21.3, 24.9), (0.00012, 0.00019), (1e6, 3e6), (-5.0, 5.0)])
-def test_ticks_are_round_and_between_the_ends(ends):
-    low, high = ends
-    found = between(low, high, 0.15)
-    assert 2 <= len(found) <= 8
-    assert all(low - 1e-9 <= tick <= high * (1.0 + 1e-9) + 1e-12 for tick in found)
 
 
 def test_charts_are_drawn_whatever_comes(application):
