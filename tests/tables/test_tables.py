@@ -40,6 +40,15 @@ def test_a_case_is_another_one_with_other_settings_or_photos_but_not_with_anothe
     assert case.config(SMALL, 1) == replace(case.config(SMALL, 0), seed=1)
     assert case.made_with("planar", SMALL) != made_with != case.made_with("curved", SMOKE)
     assert replace(case, settings={"rates": {"means": 1e-3}}).made_with("curved", SMALL) != made_with
+    assert replace(case, n_views=SMALL.n_views).made_with("curved", SMALL) == made_with
+
+
+def test_a_case_with_more_photos_is_scored_on_the_same_views():
+    case = TABLE_5.cases[0]
+    more = replace(case, n_views=999)
+    assert [each.photos("curved", SMALL)[0].n_views for each in (case, more)] == [SMALL.n_views, 999]
+    assert case.photos("curved", SMALL)[1] == more.photos("curved", SMALL)[1]
+    assert case.made_with("curved", SMALL) != more.made_with("curved", SMALL)
 
 
 def test_a_case_is_another_one_after_the_program_changed_what_it_depends_on(monkeypatch):

@@ -54,8 +54,8 @@ class Case:
         Of the photos that are learned from.
     paper
         The paper's PSNR by its scene, ST (planar) and UST (curved), where it has one.
-    width_px
-        Of its photos; None for the scale's.
+    width_px, n_views
+        Of the photos, and how many are learned from; None for the scale's.
     """
 
     title: str
@@ -64,6 +64,7 @@ class Case:
     planner: Planner = "greedy"
     paper: Mapping[str, float] = field(default_factory=dict)
     width_px: int | None = None
+    n_views: int | None = None
 
     def config(self, scale: Scale, seed: int) -> TrainConfig:
         """Of its trainings."""
@@ -74,8 +75,8 @@ class Case:
 
     def photos(self, scene: str, scale: Scale) -> tuple[Photos, Photos]:
         """To learn from, and to be scored on."""
-        width_px = self.width_px or scale.width_px
-        return Photos(scene, self.planner, scale.n_views, width_px), Photos(scene, "unseen", scale.n_unseen, width_px)
+        width_px, n_views = self.width_px or scale.width_px, self.n_views or scale.n_views
+        return Photos(scene, self.planner, n_views, width_px), Photos(scene, "unseen", scale.n_unseen, width_px)
 
     def made_with(self, scene: str, scale: Scale) -> str:
         """Checksum of all that its numbers depend on, but for the seed; of the program, of what `_changes` says."""
