@@ -4,6 +4,7 @@
     PREPARING  -> UPLOADING   it sends what is watched, and its parameters are as they should be (it may be rebooted)
     UPLOADING  -> CHECKING    mission and geofence were read back and are equal
     CHECKING   -> READY       nothing on the pre-flight list is missing
+    READY      -> CHECKING    something on it is no longer well while the pilot waits, such as the wind
     READY      -> STARTING    the pilot said so (or nobody was to be asked)
     STARTING   -> FLYING      armed and in the mission's mode
     FLYING     -> ENDED       landed and disarmed

@@ -62,6 +62,7 @@ def sortie_steps(run: FlightRun) -> Steps:
     run.phase = Phase.READY
     while not run.may_start:
         yield None
+        run.phase = Phase.READY if is_ready(run.checks()) else Phase.CHECKING
     run.phase = Phase.STARTING
     yield from _start(run)
     run.phase = Phase.FLYING

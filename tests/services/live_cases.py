@@ -115,11 +115,6 @@ class Follower:
     def until_may(self, request):
         return self.until(lambda event: isinstance(event, FlightChanged) and request in event.view.may)
 
-    def until_in(self, phase):
-        """Wait for a phase; the view that told of it may have come before something else that was waited for."""
-        if self.view is None or self.view.phase is not phase:
-            self.until(lambda event: isinstance(event, FlightChanged) and event.view.phase is phase)
-
     def until_closed(self):
         return self.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.CLOSED)
 

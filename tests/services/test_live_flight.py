@@ -21,6 +21,7 @@ from groundstation.services.live_events import (
 from groundstation.services.live_flight import LiveFlight
 from groundstation.services.live_sortie import prepare_sortie
 from groundstation.vehicle.duration import items_duration_s
+from groundstation.vehicle.preflight import Verdict
 from groundstation.vehicle.run_records import Phase
 from missions.flight.flight_file import read_flight
 from missions.flight.logs.read import read_log
@@ -143,15 +144,19 @@ def test_what_cannot_be_done_now_is_refused_in_words(flight):
 
 
 def test_start_is_refused_while_the_list_is_not_well(flight):
-    """A wind that no lull takes below the aircraft's limit stands on the list."""
+    """A wind above the aircraft's limit stands on the list; its lulls, which come, are no reason to wait for."""
     live, follower = flight(simulation(conditions=Conditions(wind_m_s=18.0), wishes={"wind": "on"}))
     follower.until_may(Request.UPLOAD)
     live.request(Request.UPLOAD)
     follower.until(lambda event: isinstance(event, Answered) and event.request is Request.UPLOAD)
-    follower.until_in(Phase.CHECKING)
+
+    def blows(event):
+        checks = event.view.checks if isinstance(event, FlightChanged) else ()
+        return any(check.code == "wind" and check.verdict is Verdict.BAD for check in checks)
+
+    follower.until(blows)
+    assert follower.view.phase is Phase.CHECKING
     assert Request.START not in follower.view.may
-    bad = [check.code for check in follower.view.checks if check.verdict.value != "ok"]
-    assert "wind" in bad
 
 
 @pytest.mark.parametrize(
@@ -192,7 +197,11 @@ def test_a_link_that_breaks_in_flight_is_opened_again_and_the_sortie_goes_on(fli
 
 
 def test_silence_is_shown_within_three_seconds_and_survived(flight):
-    """The radio loses everything for a while; what was photographed meanwhile is in the record all the same."""
+    """The radio loses everything for a while; what was photographed meanwhile is in the record all the same.
+
+    How many photos were counted depends on how fast the simulation goes: reports that got lost may be asked for again
+    before the aircraft has landed, or not.
+    """
     radio = Reopening()
     live, follower = flight(radio)
     fly(live, follower)
@@ -205,7 +214,7 @@ def test_silence_is_shown_within_three_seconds_and_survived(flight):
     follower.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.ALIVE)
     ended = follower.until_ended()
     assert ended.record is not None
-    assert len(ended.record.photos) > len(follower.of(PhotoCounted))
+    assert len(ended.record.photos) == len(sortie().viewpoint_ids)
 
 
 def test_disconnecting_in_flight_keeps_what_was_flown(flight):

@@ -341,6 +341,28 @@ def test_a_run_waits_for_the_pilot_where_it_must_not_start_by_itself(orders):
     assert ready_s[-1] - ready_s[0] > 9.0
 
 
+def test_what_is_no_longer_well_takes_readiness_back_until_it_is_well_again(orders):
+    """The charge falls below what the sortie needs while the pilot waits; then a fuller battery is put in."""
+    toy = toy_at_home(orders)
+    run = FlightRun(orders, replace(OPTIONS, starts_itself=False), "toy")
+    phases = []
+
+    def show(view):
+        assert is_ready(view.checks) or view.phase is not Phase.READY
+        if phases[-1:] != [view.phase]:
+            phases.append(view.phase)
+        if view.phase is Phase.READY:
+            toy.battery = 3 if phases.count(Phase.READY) == 1 else 99
+            if phases.count(Phase.READY) == 2:
+                run.begin()
+        elif view.phase is Phase.CHECKING and phases.count(Phase.READY) == 1:
+            toy.battery = 99
+
+    assert conduct(run, ToyLink(toy), lambda: toy.now_s, show=show).succeeded
+    since = phases[phases.index(Phase.READY) :]
+    assert since[:4] == [Phase.READY, Phase.CHECKING, Phase.READY, Phase.STARTING]
+
+
 def test_a_photo_that_stays_away_is_warned_of_in_flight(orders):
     toy = toy_at_home(orders, drops_photo=2)
     _, outcome = fly(orders, toy)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QObject
 
 from groundstation.gui.fly.fly_desk import FlyDesk
 from groundstation.gui.workspace import Workspace
-from groundstation.services.live_events import LinkState, LiveView, Request
+from groundstation.services.live_events import LinkState, LiveView
 from groundstation.vehicle.run_records import Phase
 
 
@@ -61,8 +61,6 @@ class FlightWords(QObject):
         text = texts[view.phase]
         if not self._desk.is_for_shown_plan and not view.state.is_armed:
             return self.tr("This connection is for another plan. Disconnect, and connect for the plan that is shown.")
-        if view.phase is Phase.READY and Request.START not in view.may:
-            return texts[Phase.CHECKING]
         what, done, total = view.doing
         if view.phase is Phase.UPLOADING and total > 0.0:
             return self.tr("{0} {1} ({2:.0f} of {3:.0f})").format(text, self._workspace.words(what), done, total)
