@@ -21,6 +21,9 @@ LightWish = Literal["auto", "harmonics", "environment-map", "mlp", "radiance-gri
 GeometrySource = Literal["panels", "splats"]
 """Where place and normal of a mirroring pixel come from: the panels' planes, or the splats as rendered."""
 
+StartFrom = Literal["surfaces", "points"]
+"""What splats begin on: panels and mesh, or points of photogrammetry, as published methods do."""
+
 Device = Literal["cpu", "cuda"]
 
 DensifyWish = Literal["adaptive", "mcmc", "none"]
@@ -163,6 +166,9 @@ class TrainConfig:
         Of the time that is left when light begins to be learned alone, at most, for that.
     reflections
         How light is learned alone, from random rays of glass.
+    start_from
+        With `points`, no mesh and no ground are known, and panels to methods alone that know panels. Points on glass
+        are left out: photogrammetry finds none there that is where it seems.
     n_splats, max_splats
         To start from, and never more than.
     densification
@@ -199,6 +205,7 @@ class TrainConfig:
     time_limit_s: float | None = None
     light_share: float = 0.35
     reflections: ReflectionConfig = field(default_factory=ReflectionConfig)
+    start_from: StartFrom = "surfaces"
     n_splats: int = 12_000
     max_splats: int = 30_000
     densification: DensifyWish = "adaptive"

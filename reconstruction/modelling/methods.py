@@ -1,8 +1,9 @@
 """Methods that a model can be trained with: what each is, where it is from, and what of it we made simpler.
 
 All are written from their papers, on the same rasteriser, start, photos, exposure, sky and densification, so that a
-difference between two is one of the methods. All have antialiased splats (`raster.antialiased`), which none of the
-papers has. This module loads nothing, for lists on the command line.
+difference between two is one of the methods. All begin on known surfaces (`start_from`) and have antialiased splats
+(`raster.antialiased`), as none of the papers has; settings can make them begin and draw as published. This module loads
+nothing, for lists on the command line.
 """
 
 from __future__ import annotations
@@ -95,7 +96,7 @@ METHODS: dict[str, Method] = {
         "3DGS",
         "Kerbl et al., 3D Gaussian Splatting for Real-Time Radiance Field Rendering, SIGGRAPH 2023",
         "ellipsoids whose colour depends on the direction by spherical harmonics",
-        "begins on known surfaces and not at points; opacities are not reset",
+        "opacities are not reset",
         {"losses": {"normal_consistency": 0.0}},
         primitive="ellipsoids",
     ),
@@ -103,7 +104,7 @@ METHODS: dict[str, Method] = {
         "2DGS",
         "Huang et al., 2D Gaussian Splatting for Geometrically Accurate Radiance Fields, SIGGRAPH 2024",
         "flat discs whose colour depends on the direction by spherical harmonics",
-        "no depth distortion term: splats begin on known surfaces",
+        "no depth distortion term",
     ),
     "gaussian-shader": Method(
         "GaussianShader",

@@ -33,7 +33,7 @@ from reconstruction.reflections.training import TrainedReflections, train_reflec
 from reconstruction.splatting.initialise import InitialParameters, initial_splats
 from reconstruction.splatting.sky import Sky
 from reconstruction.splatting.splats import Splats, splats_from_tensors, splats_to_tensors
-from reconstruction.splatting.start_data import known_scene, model_origin
+from reconstruction.splatting.start_data import known_scene, model_origin, points_alone
 
 Array = NDArray[np.float64]
 
@@ -115,7 +115,9 @@ def start_model(
         splats = with_primitive(splats, config.trained_by.primitive)
     else:
         parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)
-        splats = initial_splats(scene, learned, origin, parameters, source.picture, monitor)
+        from_points = config.start_from == "points"
+        begin = points_alone(scene, knows_panels=config.trained_by.knows_panels) if from_points else scene
+        splats = initial_splats(begin, learned, origin, parameters, source.picture, monitor)
     light: TrainedReflections | None = None
     shader: Shader | None = None
     decisions: tuple[Decision, ...] = ()

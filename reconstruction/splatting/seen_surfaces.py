@@ -14,7 +14,7 @@ from planning.mesh import from_corners, join
 from planning.site import panel_triangles
 from reconstruction.cameras import PosedPhoto
 from reconstruction.ray_casting import RayCaster
-from reconstruction.splatting.start_data import KnownScene
+from reconstruction.splatting.start_data import SAME_SURFACE_M, KnownScene
 from reconstruction.splatting.surfels import beside_panels
 
 Array = NDArray[np.float64]
@@ -33,9 +33,6 @@ LEAST_SLOPE = 0.02
 
 LEAST_COSINE = 0.02
 """Of incidence: at 89 degrees a surface is seen as finely as it ever matters."""
-
-SAME_SURFACE_M = 0.3
-"""Off a panel's plane, inside its outline: that is the panel, as a coarser model has it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

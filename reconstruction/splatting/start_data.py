@@ -15,6 +15,7 @@ from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.record import ColmapModel
 from reconstruction.reflections.photo_set import PhotoSet
 from reconstruction.splatting.ply_file import read_blocks, read_header
+from reconstruction.splatting.surfels import beside_panels
 
 Array = NDArray[np.float64]
 
@@ -27,6 +28,9 @@ SITE = "site.json"
 """That `scene render` leaves in the folder."""
 
 COLOURS = ("red", "green", "blue")
+
+SAME_SURFACE_M = 0.3
+"""Off a panel's plane, inside its outline: that is the panel, as a coarser model has it."""
 
 WORST_PX = 2.0
 """Reprojection error from which on a COLMAP point is left out."""
@@ -92,6 +96,25 @@ def known_scene(photo_set: PhotoSet) -> KnownScene:
     elif (folder / MODEL).is_dir():
         points, rgb = colmap_points(read_model(folder / MODEL))
     return KnownScene(photo_set.panels.corners_enu_m, mesh, points, rgb, _ground_z_m(folder, mesh))
+
+
+def points_alone(scene: KnownScene, *, knows_panels: bool) -> KnownScene:
+    """What a method knows that begins at points of photogrammetry, none of which are on glass, and maybe of panels.
+
+    Raises
+    ------
+    InputError
+        There are no such points.
+    """
+    corners = scene.corners_enu_m
+    on_glass = beside_panels(scene.points_enu_m, corners, SAME_SURFACE_M, 0.0).panels >= 0
+    if on_glass.all():
+        raise InputError(
+            f"of {len(on_glass)} points of photogrammetry none is away from glass, so splats cannot start from points; "
+            "put points.ply or a COLMAP model (sparse/0) into the folder, or start from surfaces"
+        )
+    corners = corners if knows_panels else corners[:0]
+    return KnownScene(corners, empty_mesh(), scene.points_enu_m[~on_glass], scene.rgb[~on_glass])
 
 
 def _ground_z_m(folder: Path, mesh: TriangleMesh) -> float | None:

@@ -82,6 +82,8 @@ class Case:
         """Checksum of all that its numbers depend on, but for the seed; of the program, of what `_changes` says."""
         config = self.config(scale, 0)
         settings = asdict(config)
+        if config.start_from == "surfaces":
+            del settings["start_from"]  # as all did before there was a choice
         if not config.trained_by.knows_panels:
             settings = {name: value for name, value in settings.items() if name not in OF_PANELS}
             settings["rates"].pop("glass_geometry")

@@ -8,7 +8,7 @@ from reconstruction.colmap.record import ColmapModel, ColmapPoints
 from reconstruction.dataset.records import coloured_ply
 from reconstruction.reflections.photo_set import PanelPlanes, PhotoSet
 from reconstruction.splatting.ply_file import write_blocks
-from reconstruction.splatting.start_data import known_scene, read_points
+from reconstruction.splatting.start_data import KnownScene, known_scene, points_alone, read_points
 
 XYZ = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
 RGB = np.array([[10, 20, 30], [40, 50, 60]], np.uint8)
@@ -70,3 +70,22 @@ def test_without_a_file_of_their_own_points_are_those_of_colmap_but_for_those_th
     assert np.array_equal(found.rgb, RGB[:1])
     (tmp_path / "points.ply").write_bytes(coloured_ply(XYZ, RGB))
     assert len(known_scene(photo_set(tmp_path)).points_enu_m) == 2
+
+
+@pytest.mark.parametrize("knows_panels", [False, True])
+def test_a_start_at_points_leaves_out_what_photogrammetry_does_not_find(knows_panels):
+    """Glass, the mesh and the ground; what is mirrored stands behind glass, where points stay."""
+    on_glass, on_frame, behind = (0.5, 0.1, 0.5), (1.1, 0.0, 0.5), (0.5, 4.0, 0.5)
+    mesh = from_corners(np.ones((1, 3, 3)))
+    points, rgb = np.array([on_glass, on_frame, behind]), np.arange(9, dtype=np.uint8).reshape(3, 3)
+    found = points_alone(KnownScene(PANEL, mesh, points, rgb, 0.0), knows_panels=knows_panels)
+    assert found.points_enu_m.tolist() == [list(on_frame), list(behind)]
+    assert np.array_equal(found.rgb, rgb[1:])
+    assert (len(found.corners_enu_m), len(found.mesh.triangles), found.ground_z_m) == (int(knows_panels), 0, None)
+
+
+@pytest.mark.parametrize("points", [np.zeros((0, 3)), np.array([[0.5, 0.0, 0.5]])])
+def test_a_start_at_points_needs_some_away_from_glass(points):
+    scene = KnownScene(PANEL, from_corners(np.ones((1, 3, 3))), points, np.zeros((len(points), 3), np.uint8), 0.0)
+    with pytest.raises(InputError, match=f"of {len(points)} points of photogrammetry none is away from glass"):
+        points_alone(scene, knows_panels=True)
