@@ -40,6 +40,7 @@ def test_a_case_is_another_one_with_other_settings_or_photos_but_not_with_anothe
     assert case.config(SMALL, 1) == replace(case.config(SMALL, 0), seed=1)
     assert case.made_with("planar", SMALL) != made_with != case.made_with("curved", SMOKE)
     assert replace(case, settings={"rates": {"means": 1e-3}}).made_with("curved", SMALL) != made_with
+    assert replace(case, settings={**case.settings, "start_from": "points"}).made_with("curved", SMALL) != made_with
     assert replace(case, n_views=SMALL.n_views).made_with("curved", SMALL) == made_with
 
 
