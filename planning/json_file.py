@@ -8,12 +8,13 @@ import os
 import re
 import tempfile
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
+import msgspec.inspect
 
 from planning.errors import InputError
 
@@ -80,7 +81,7 @@ def to_record(content: Any, record: type[Record], path: Path) -> Record:
     try:
         return msgspec.convert(content, record)
     except msgspec.ValidationError as error:
-        raise InputError(f"{path}: {_in_words(str(error))}") from error
+        raise InputError(f"{path}: {_in_words(str(error), record)}") from error
 
 
 def expect_format(content: Any, expected: str, path: Path) -> None:
@@ -107,16 +108,38 @@ _WORDS = {
 }
 
 
-def _in_words(message: str) -> str:
+def _in_words(message: str, record: type[Any]) -> str:
     """Turn "Expected `float`, got `str` - at `$.a.b`" into "a.b: expected number, got text"."""
     text, _, place = message.partition(" - at `$")
     place = place.rstrip("`").lstrip(".")
     text = re.sub(r"`(\w+(?: \| \w+)*)`", lambda found: _kind(found[1]), text).replace("`", "'")
     text = re.sub(r"^Object missing", "missing", text)
     text = text[:1].lower() + text[1:] if text.startswith("Expected") else text
+    wrong = text.partition(" enum value ")[2]
+    if wrong and (choices := _choices(record, place)):
+        text = f"expected {', '.join(choices)}, got {wrong}"
     if not place:
         return text
     return f"{place}.{text}" if re.match(r"\w+(\[\d+\])*: ", text) else f"{place}: {text}"
+
+
+def _choices(record: type[Any], place: str) -> list[str]:
+    """What a word at a place such as "a.b[3]" of a record may be; none where that is not told by its types."""
+    kinds = _alternatives(msgspec.inspect.type_info(record))
+    for step in re.findall(r"\[[^\]]*\]|\w+", place):
+        if step.startswith("["):
+            within = [getattr(kind, "item_type", None) or getattr(kind, "value_type", None) for kind in kinds]
+        else:
+            named = [field for kind in kinds for field in getattr(kind, "fields", ())]
+            within = [field.type for field in named if field.encode_name == step]
+        kinds = [each for kind in within if kind is not None for each in _alternatives(kind)]
+    literals = [value for kind in kinds for value in getattr(kind, "values", ())]
+    members = [member.value for kind in kinds if isinstance(kind, msgspec.inspect.EnumType) for member in kind.cls]
+    return [str(value) for value in (*literals, *members)]
+
+
+def _alternatives(kind: msgspec.inspect.Type) -> Sequence[msgspec.inspect.Type]:
+    return kind.types if isinstance(kind, msgspec.inspect.UnionType) else (kind,)
 
 
 def _kind(types: str) -> str:

@@ -115,9 +115,11 @@ def start_model(
         splats = with_primitive(splats, config.trained_by.primitive)
     else:
         parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)
-        from_points = config.start_from == "points"
-        begin = points_alone(scene, knows_panels=config.trained_by.knows_panels) if from_points else scene
-        splats = initial_splats(begin, learned, origin, parameters, source.picture, monitor)
+        if config.start_from == "points":
+            known = points_alone(scene, source.folder, knows_panels=config.trained_by.knows_panels)
+        else:
+            known = scene
+        splats = initial_splats(known, learned, origin, parameters, source.picture, monitor)
     light: TrainedReflections | None = None
     shader: Shader | None = None
     decisions: tuple[Decision, ...] = ()
@@ -131,10 +133,10 @@ def start_model(
     cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
     if light is not None:
         hand_over(light.panels, splats, source.panels, origin, cameras)
-    known = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
+    exposures = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
     return Start(
         _joined(source, learned, splats, light, shader, origin, config),
-        Exposures(known),
+        Exposures(exposures),
         learned,
         held_out,
         _extent_m(cameras),

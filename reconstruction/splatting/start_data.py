@@ -98,20 +98,20 @@ def known_scene(photo_set: PhotoSet) -> KnownScene:
     return KnownScene(photo_set.panels.corners_enu_m, mesh, points, rgb, _ground_z_m(folder, mesh))
 
 
-def points_alone(scene: KnownScene, *, knows_panels: bool) -> KnownScene:
+def points_alone(scene: KnownScene, folder: Path, *, knows_panels: bool) -> KnownScene:
     """What a method knows that begins at points of photogrammetry, none of which are on glass, and maybe of panels.
 
     Raises
     ------
     InputError
-        There are no such points.
+        There are no such points; the message names the folder that the scene is of.
     """
     corners = scene.corners_enu_m
     on_glass = beside_panels(scene.points_enu_m, corners, SAME_SURFACE_M, 0.0).panels >= 0
     if on_glass.all():
         raise InputError(
-            f"of {len(on_glass)} points of photogrammetry none is away from glass, so splats cannot start from points; "
-            "put points.ply or a COLMAP model (sparse/0) into the folder, or start from surfaces"
+            f"{folder}: of {len(on_glass)} points of photogrammetry none is away from glass, so splats cannot start "
+            f"from points; put some there ({POINTS}, or a COLMAP model in {MODEL.as_posix()}), or start from surfaces"
         )
     corners = corners if knows_panels else corners[:0]
     return KnownScene(corners, empty_mesh(), scene.points_enu_m[~on_glass], scene.rgb[~on_glass])

@@ -2,6 +2,9 @@
 
 import os
 import stat
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Literal
 
 import pytest
 
@@ -131,3 +134,39 @@ def test_another_format_is_named_before_any_field(tmp_path):
 def test_kinds_are_told_in_words(tmp_path, content, kind, message):
     with pytest.raises(InputError, match=message):
         to_record(content, kind, tmp_path / "x.json")
+
+
+class Side(Enum):
+    LEFT, RIGHT = "left", "right"
+
+
+@dataclass(frozen=True)
+class Inner:
+    kind: Literal["big", "small"] = "big"
+    side: Side | None = None
+
+
+@dataclass(frozen=True)
+class Outer:
+    inner: Inner | None = None
+    more: tuple[Inner, ...] = ()
+    named: dict[str, Inner] = field(default_factory=dict)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ({"inner": {"kind": "large"}}, "inner.kind: expected big, small, got 'large'"),
+        ({"more": [{}, {"side": "up"}]}, "more[1].side: expected left, right, got 'up'"),
+        ({"named": {"a b": {"kind": "large"}}}, "named[...].kind: expected big, small, got 'large'"),
+    ],
+)
+def test_words_that_may_stand_there_are_told(tmp_path, content, message):
+    with pytest.raises(InputError) as caught:
+        to_record(content, Outer, tmp_path / "x.json")
+    assert str(caught.value) == f"{tmp_path / 'x.json'}: {message}"
+
+
+def test_a_word_in_a_list_of_words_is_told_too(tmp_path):
+    with pytest.raises(InputError, match=r"\[1\]: expected big, small, got 'large'"):
+        to_record(["big", "large"], list[Literal["big", "small"]], tmp_path / "x.json")

@@ -152,6 +152,11 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
+        "of {0} points of photogrammetry none is away from glass, so splats cannot start from points; put some there"
+        " ({1}, or a COLMAP model in {2}), or start from surfaces",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
         "there are no panels, no mesh and no points to start from; prepare the data set again",
     ),
     QT_TRANSLATE_NOOP("Sentences", "its points have no '{0}'"),

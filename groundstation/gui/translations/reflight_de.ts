@@ -10537,6 +10537,10 @@ Take it over?</source>
         <translation>keine Scheibe, kein Netz und kein Punkt im Umkreis von {0} m um die Mitte des Modells ist auf einem der {1} Fotos zu sehen; liegen Posen und Punkte in einem gemeinsamen System?</translation>
     </message>
     <message>
+        <source>of {0} points of photogrammetry none is away from glass, so splats cannot start from points; put some there ({1}, or a COLMAP model in {2}), or start from surfaces</source>
+        <translation>von {0} Punkten der Photogrammetrie liegt keiner abseits von Glas, also können Splats nicht bei Punkten beginnen; legen Sie welche dorthin ({1} oder ein COLMAP-Modell in {2}), oder beginnen Sie auf Flächen</translation>
+    </message>
+    <message>
         <source>there are no panels, no mesh and no points to start from; prepare the data set again</source>
         <translation>es gibt keine Scheiben, kein Netz und keine Punkte für den Anfang; bereiten Sie den Datensatz neu auf</translation>
     </message>

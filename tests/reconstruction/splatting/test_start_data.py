@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -78,7 +80,7 @@ def test_a_start_at_points_leaves_out_what_photogrammetry_does_not_find(knows_pa
     on_glass, on_frame, behind = (0.5, 0.1, 0.5), (1.1, 0.0, 0.5), (0.5, 4.0, 0.5)
     mesh = from_corners(np.ones((1, 3, 3)))
     points, rgb = np.array([on_glass, on_frame, behind]), np.arange(9, dtype=np.uint8).reshape(3, 3)
-    found = points_alone(KnownScene(PANEL, mesh, points, rgb, 0.0), knows_panels=knows_panels)
+    found = points_alone(KnownScene(PANEL, mesh, points, rgb, 0.0), Path("here"), knows_panels=knows_panels)
     assert found.points_enu_m.tolist() == [list(on_frame), list(behind)]
     assert np.array_equal(found.rgb, rgb[1:])
     assert (len(found.corners_enu_m), len(found.mesh.triangles), found.ground_z_m) == (int(knows_panels), 0, None)
@@ -87,5 +89,5 @@ def test_a_start_at_points_leaves_out_what_photogrammetry_does_not_find(knows_pa
 @pytest.mark.parametrize("points", [np.zeros((0, 3)), np.array([[0.5, 0.0, 0.5]])])
 def test_a_start_at_points_needs_some_away_from_glass(points):
     scene = KnownScene(PANEL, from_corners(np.ones((1, 3, 3))), points, np.zeros((len(points), 3), np.uint8), 0.0)
-    with pytest.raises(InputError, match=f"of {len(points)} points of photogrammetry none is away from glass"):
-        points_alone(scene, knows_panels=True)
+    with pytest.raises(InputError, match=f"here: of {len(points)} points of photogrammetry none is away from glass"):
+        points_alone(scene, Path("here"), knows_panels=True)
