@@ -115,9 +115,9 @@ def _in_words(message: str, record: type[Any]) -> str:
     text = re.sub(r"`(\w+(?: \| \w+)*)`", lambda found: _kind(found[1]), text).replace("`", "'")
     text = re.sub(r"^Object missing", "missing", text)
     text = text[:1].lower() + text[1:] if text.startswith("Expected") else text
-    wrong = text.partition(" enum value ")[2]
+    wrong = re.match(r"^Invalid enum value (.+)$", text)
     if wrong and (choices := _choices(record, place)):
-        text = f"expected {', '.join(choices)}, got {wrong}"
+        text = f"expected {', '.join(choices)}, got {wrong[1]}"
     if not place:
         return text
     return f"{place}.{text}" if re.match(r"\w+(\[\d+\])*: ", text) else f"{place}: {text}"

@@ -124,7 +124,7 @@ NO_SENTENCE = {
     "stands in `parts` without its colon": ("focal lengths are from: ",),
     "patterns that other messages are searched for": (
         *(" - at `$", "^Object missing", "\\bsortie (\\d+), leg (\\d+)\\b", "sortie (\\d+)", "QGC WPL (\\d+)"),
-        " to WGS 84",
+        *(" to WGS 84", "^Invalid enum value (.+)$"),
     ),
     "content of files": (
         *("QGC WPL 110", '<?xml version="1.0" encoding="UTF-8"?>', '"use strict";\n(() => {\n'),
