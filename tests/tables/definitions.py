@@ -107,7 +107,8 @@ def _methods() -> Table:
         "3",
         "Methods",
         "The same photos of our plan, and the same limits of steps and of processor time for each; where steps are "
-        "dear, the time is up first. All draw antialiased splats, which their papers do not (Table 3b).",
+        "dear, the time is up first. All begin on known surfaces and draw antialiased splats, which their papers do "
+        "not; Table 3e compares them as the paper does.",
         (ST, UST),
         cases,
         _first(cases),
