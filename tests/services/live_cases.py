@@ -101,7 +101,7 @@ class Follower:
     def __call__(self, event):
         self._queue.put(event)
 
-    def until(self, condition, timeout_s=60.0):
+    def until(self, condition, timeout_s=180.0):
         """Take events until one meets the condition; returns it."""
         end = time.monotonic() + timeout_s
         while True:
@@ -118,7 +118,7 @@ class Follower:
     def until_closed(self):
         return self.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.CLOSED)
 
-    def until_ended(self, timeout_s=90.0):
+    def until_ended(self, timeout_s=180.0):
         return self.until(lambda event: isinstance(event, FlightEnded), timeout_s)
 
     def of(self, kind):
