@@ -104,7 +104,7 @@ METHODS: dict[str, Method] = {
         "2DGS",
         "Huang et al., 2D Gaussian Splatting for Geometrically Accurate Radiance Fields, SIGGRAPH 2024",
         "flat discs whose colour depends on the direction by spherical harmonics",
-        "no depth distortion term",
+        "no depth distortion term: splats usually begin on known surfaces (`start_from`)",
     ),
     "gaussian-shader": Method(
         "GaussianShader",
