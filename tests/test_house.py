@@ -1,5 +1,6 @@
 """The house rules: import directions, nothing heavy before it is needed, the agreed layout."""
 
+import ast
 import subprocess
 import sys
 import time
@@ -78,3 +79,74 @@ def test_only_one_module_each_imports_nlopt_casadi_and_pyvrp():
             if f"import {library}" in path.read_text("utf-8") or f"from {library}" in path.read_text("utf-8")
         ]
         assert len(users) == 1, (library, users)
+
+
+def qt_names(tree):
+    """Names in a module that stand for something of PySide6: imported, or another name for such a thing."""
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "PySide6":
+            names |= {alias.asname or alias.name for alias in node.names}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Attribute) and root_of(node.value) in names:
+            names |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+    return names
+
+
+def root_of(node):
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else None
+
+
+def identities_of_qt(source):
+    """Lines that compare something with a member of a Qt enum by `is`."""
+    tree = ast.parse(source)
+    names = qt_names(tree)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare) and any(isinstance(op, (ast.Is, ast.IsNot)) for op in node.ops):
+            sides = (node.left, *node.comparators)
+            if any(isinstance(side, ast.Attribute) and root_of(side) in names for side in sides):
+                yield node.lineno
+
+
+def calls_of(source, classes):
+    """Lines that call a method of one of some classes, by the class."""
+    for node in ast.walk(ast.parse(source)):
+        called = node.func if isinstance(node, ast.Call) else None
+        if isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name) and called.value.id in classes:
+            yield node.lineno
+
+
+def test_the_check_for_identities_sees_them_in_every_dress():
+    source = """
+from PySide6.QtWidgets import QMessageBox as Box
+buttons = Box.StandardButton
+a = said is Box.StandardButton.Yes
+b = buttons.Yes is not said
+c = said == buttons.Yes
+d = said is None
+"""
+    assert list(identities_of_qt(source)) == [4, 5]
+
+
+@pytest.mark.parametrize("folder", ["groundstation/gui", "tests/gui"])
+def test_members_of_qt_enums_are_compared_by_value(folder):
+    """Qt gives a number where an enum is expected, or a new member for flags: `is` is then false without a word."""
+    found = [
+        f"{path.relative_to(ROOT)}:{line}"
+        for path in sorted((ROOT / folder).rglob("*.py"))
+        for line in identities_of_qt(path.read_text())
+    ]
+    assert found == [], "compare members of Qt enums with == and !="
+
+
+def test_dialogs_of_qt_are_asked_in_one_place():
+    asking = {"QMessageBox", "QFileDialog", "QInputDialog"}
+    found = [
+        f"{path.relative_to(ROOT)}:{line}"
+        for path in sorted((ROOT / "groundstation" / "gui").rglob("*.py"))
+        if path.name != "questions.py" or path.parent.name != "gui"
+        for line in calls_of(path.read_text(), asking)
+    ]
+    assert found == [], "ask by the functions of groundstation.gui.questions: they give a bool or a path"

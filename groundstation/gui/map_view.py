@@ -17,7 +17,7 @@ from PySide6.QtGui import (
     QPaintEvent,
     QResizeEvent,
 )
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.mission.map_canvas import MapCanvas
 from groundstation.gui.mission.map_layer import MapLayer
@@ -34,6 +34,7 @@ from groundstation.gui.mission.map_pick import find_item, place_of
 from groundstation.gui.mission.tile_store import TileStore
 from groundstation.gui.mission.viewport import Viewport
 from groundstation.gui.own_words import own_words
+from groundstation.gui.questions import choose_file
 from groundstation.gui.theme import colours
 from groundstation.services.document import Document, Item
 from groundstation.services.map_shapes import PlanShapes, SiteShapes, plan_shapes, site_shapes
@@ -263,11 +264,9 @@ class MapView(MapCanvas):
         self.update()
 
     def _choose_map(self) -> None:
-        name, _ = QFileDialog.getOpenFileName(
-            self, self.tr("Open map"), "", self.tr("Offline maps (*.mbtiles);;All files (*)")
-        )
-        if name:
-            self.open_map(Path(name))
+        path = choose_file(self, self.tr("Open map"), self.tr("Offline maps (*.mbtiles);;All files (*)"))
+        if path is not None:
+            self.open_map(path)
 
     def _compute_shapes(self, model: SiteModel) -> None:
         self._shapesReady.emit(model, site_shapes(model))

@@ -106,7 +106,7 @@ SUNLIGHT = Colours(
 def colours_of(theme: Theme) -> Colours:
     """Colours of a theme; `system` follows the desktop."""
     if theme is Theme.SYSTEM:
-        dark = QGuiApplication.styleHints().colorScheme() is Qt.ColorScheme.Dark
+        dark = QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
         return DARK if dark else LIGHT
     return {Theme.LIGHT: LIGHT, Theme.DARK: DARK, Theme.SUNLIGHT: SUNLIGHT}[theme]
 

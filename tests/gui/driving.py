@@ -1,18 +1,237 @@
-"""Driving the real window in tests: turning the event loop until something has happened, and answering questions."""
+"""Driving the real window in tests: turning the event loop until something has happened, and clicking dialogs.
+
+No test answers in place of a dialog. `clicked` waits for the dialogs that an action brings up and works each as a user
+does: it presses a button, types a path, or leaves by Escape.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import ClassVar
 
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import QPoint, Qt, QTimer
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QDialog,
+    QFileDialog,
+    QLabel,
+    QLineEdit,
+    QMessageBox,
+    QWidget,
+)
 
 from groundstation.gui.questions import Answer, Questions
 
 SETTLE_S, CALM_S = 0.35, 0.05
 """Time without a job after which none follows: where a timer still runs (effects are looked at 0.3 s after the last
 change), and where none does."""
+
+LOOK_MS, STAND_MS = 15, 30
+"""How often the hand looks for a dialog, and how long a dialog stands before it is touched."""
+
+DIALOG_S = 20.0
+"""Longest wait for a dialog; nothing but a job stands before one."""
+
+Step = Callable[[QDialog], None]
+
+
+def press(button: str | QMessageBox.StandardButton) -> Step:
+    """A step: click the button with this text, or of this kind in any language."""
+
+    def step(dialog: QDialog) -> None:
+        click_on(dialog, _button_of(dialog, button))
+
+    return step
+
+
+def escape(dialog: QDialog) -> None:
+    """A step: leave by the Escape key."""
+    QTest.keyClick(dialog, Qt.Key.Key_Escape)
+
+
+def shut(dialog: QDialog) -> None:
+    """A step: close by the cross in the title bar."""
+    dialog.close()
+
+
+def choose(*paths: Path | str) -> Step:
+    """A step: type a path into a file dialog, or some, and accept."""
+
+    def step(dialog: QDialog) -> None:
+        assert isinstance(dialog, QFileDialog), f"expected a file dialog, got “{dialog.windowTitle()}”"
+        line = next(box for box in dialog.findChildren(QLineEdit) if box.objectName() == "fileNameEdit")
+        text = str(paths[0]) if len(paths) == 1 else " ".join(f'"{path}"' for path in paths)
+        type_into(line, text)
+        accept = next(
+            button
+            for button in dialog.findChildren(QAbstractButton)
+            if _plain(button.text()) in ("Open", "Save", "Choose") and button.isVisible()
+        )
+        click_on(dialog, accept)
+
+    return step
+
+
+def type_into(line: QLineEdit, text: str) -> None:
+    """Replace what stands in a line, key by key."""
+    line.setFocus()
+    line.selectAll()
+    QTest.keyClick(line, Qt.Key.Key_Backspace)
+    QTest.keyClicks(line, text)
+
+
+def click_on(window: QWidget, widget: QWidget, at: QPoint | None = None) -> None:
+    """Click a widget of a window where a user can: it is enabled, inside the screen, and nothing lies over it."""
+    place = widget.rect().center() if at is None else at
+    assert widget.isVisible(), f"“{_name(widget)}” is not shown"
+    assert widget.isEnabled(), f"“{_name(widget)}” cannot be pressed"
+    on_top = window.childAt(widget.mapTo(window, place))
+    assert on_top is not None, f"“{_name(widget)}” is outside its window"
+    assert on_top is widget or widget.isAncestorOf(on_top), f"“{_name(on_top)}” lies over “{_name(widget)}”"
+    screen = widget.screen().availableGeometry()
+    assert screen.contains(widget.mapToGlobal(place)), f"“{_name(widget)}” is off the screen"
+    QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=place)
+
+
+def words_of(dialog: QDialog) -> str:
+    """Title and text of a dialog."""
+    if isinstance(dialog, QMessageBox):
+        return f"{dialog.windowTitle()}\n{dialog.text()}"
+    texts = (label.text() for label in dialog.findChildren(QLabel) if label.isVisible())
+    return "\n".join((dialog.windowTitle(), *texts))
+
+
+class Hand:
+    """Works modal dialogs, one step each, in the order in which they come up."""
+
+    active: ClassVar[list[Hand]] = []
+
+    def __init__(self, steps: Sequence[Step], is_endless: bool = False) -> None:
+        self.words: list[str] = []
+        self.problem: str | None = None
+        self._steps, self._is_endless, self._ended = list(steps), is_endless, False
+        self._seen: list[QDialog] = []
+
+    @property
+    def is_done(self) -> bool:
+        """Whether every step was taken, or one failed."""
+        return not self._steps or self.problem is not None
+
+    def start(self) -> None:
+        """Look from now on for dialogs that come up."""
+        stands = QApplication.activeModalWidget()
+        self._seen = [stands] if isinstance(stands, QDialog) else []
+        self.active.append(self)
+        QTimer.singleShot(LOOK_MS, self._look)
+
+    def end(self) -> None:
+        """Look no longer."""
+        self._ended = True
+        self.active.remove(self)
+
+    def _look(self) -> None:
+        if self._ended:
+            return
+        # The next look is on its way before anything is clicked: a click may open a dialog of its own and come back
+        # only when that has gone.
+        dialog = QApplication.activeModalWidget()
+        if not isinstance(dialog, QDialog) or not dialog.isVisible() or self.active[-1] is not self:
+            QTimer.singleShot(LOOK_MS, self._look)
+            return
+        QTimer.singleShot(LOOK_MS + STAND_MS, self._look)
+        self._seen = [seen for seen in self._seen if _stands(seen)]
+        if self.problem is not None or dialog in self._seen:
+            return
+        if not self._steps:
+            self._fail(dialog, f"a dialog that nobody awaited: {words_of(dialog)}")
+            return
+        self._seen.append(dialog)
+        self.words.append(words_of(dialog))
+        step = self._steps[0] if self._is_endless else self._steps.pop(0)
+        try:
+            step(dialog)
+        except Exception as error:
+            self._fail(dialog, f"{type(error).__name__}: {error}; in the dialog {self.words[-1]}")
+
+    def _fail(self, dialog: QDialog, problem: str) -> None:
+        self.problem = problem
+        if _stands(dialog):
+            dialog.reject()
+
+
+@contextmanager
+def clicked(*steps: Step | str, timeout_s: float = DIALOG_S) -> Iterator[list[str]]:
+    """Work the dialogs that the block brings up: one step each, a text standing for the button with that text.
+
+    Yields the words of the dialogs, filled as they come. Ends when every step was taken.
+
+    Raises
+    ------
+    AssertionError
+        A dialog did not come up, one came up that nobody awaited, or a step could not be taken.
+    """
+    hand = Hand([press(step) if isinstance(step, str) else step for step in steps])
+    hand.start()
+    try:
+        yield hand.words
+        end = time.perf_counter() + timeout_s
+        while not hand.is_done and time.perf_counter() < end:
+            QApplication.processEvents()
+            time.sleep(0.002)
+        QApplication.processEvents()
+    finally:
+        hand.end()
+    assert hand.problem is None, hand.problem
+    assert not hand._steps, f"{len(hand._steps)} of {len(steps)} dialogs did not come up"
+
+
+def close_desk(desk) -> None:
+    """Close the window as somebody does who wants to leave, whatever is asked, and let go of everything."""
+    buttons = QMessageBox.StandardButton
+
+    def leave(dialog: QDialog) -> None:
+        box = dialog if isinstance(dialog, QMessageBox) else None
+        known = [kind for kind in (buttons.Discard, buttons.Yes) if box is not None and box.button(kind) is not None]
+        (press(known[0]) if known else escape)(dialog)
+
+    hand = Hand([leave], is_endless=True)
+    hand.start()
+    try:
+        desk.window.close()
+    finally:
+        hand.end()
+    desk.close()
+
+
+def _button_of(dialog: QDialog, wanted: str | QMessageBox.StandardButton) -> QAbstractButton:
+    if not isinstance(wanted, str):
+        assert isinstance(dialog, QMessageBox)
+        return dialog.button(wanted)
+    buttons = [button for button in dialog.findChildren(QAbstractButton) if button.isVisible()]
+    found = [button for button in buttons if _plain(button.text()) == wanted]
+    assert found, f"no button “{wanted}”, but {[_plain(button.text()) for button in buttons]}"
+    return found[0]
+
+
+def _stands(dialog: QDialog) -> bool:
+    try:
+        return dialog.isVisible()
+    except RuntimeError:  # it is deleted
+        return False
+
+
+def _plain(text: str) -> str:
+    return text.replace("&", "")
+
+
+def _name(widget: QWidget) -> str:
+    text = widget.text() if isinstance(widget, QAbstractButton) else widget.accessibleName()
+    return _plain(text) or type(widget).__name__
 
 
 class Answers(Questions):

@@ -71,7 +71,7 @@ class PhotoBox(QWidget):
 
     def event(self, event: QEvent) -> bool:
         """Let the space bar press the button that has the keyboard; elsewhere it flies through the sortie."""
-        is_override = isinstance(event, QKeyEvent) and event.type() is QEvent.Type.ShortcutOverride
+        is_override = isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride
         if is_override and event.key() == Qt.Key.Key_Space:
             event.accept()
             return True

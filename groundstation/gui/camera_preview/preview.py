@@ -297,7 +297,7 @@ class CameraPreview(QWidget):
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Follow the theme."""
         super().changeEvent(event)
-        if event.type() is QEvent.Type.PaletteChange and hasattr(self, "_clock_text"):
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_clock_text"):
             if self._scene is not None:
                 self._scene = site_scene(self._scene.model, colours())
             covered = self._covered

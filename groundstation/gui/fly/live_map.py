@@ -51,7 +51,7 @@ class LiveMap(QWidget):
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Be as large as the map."""
-        if event.type() is QEvent.Type.Resize:
+        if event.type() == QEvent.Type.Resize:
             self.setGeometry(self._map.rect())
         return False
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QMessageBox, QWidget
+from PySide6.QtWidgets import QWidget
 
+from groundstation.gui.questions import agrees
 from groundstation.services.live_limit import TooLong
 from groundstation.services.live_settings import SetParameter
 from groundstation.services.live_sortie import TakeOff
@@ -18,14 +19,7 @@ class FlightQuestions(QObject):
 
     def start(self, parent: QWidget, take_off: TakeOff, units: UnitSystem) -> bool:
         """Whether to take off."""
-        said = QMessageBox.question(
-            parent,
-            self.tr("Start the flight"),
-            self.start_text(take_off, units),
-            QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Cancel,
-            QMessageBox.StandardButton.Cancel,
-        )
-        return said is QMessageBox.StandardButton.Yes
+        return agrees(parent, self.tr("Start the flight"), self.start_text(take_off, units))
 
     def start_text(self, take_off: TakeOff, units: UnitSystem) -> str:
         """What will happen."""
@@ -47,28 +41,20 @@ class FlightQuestions(QObject):
 
     def share_out(self, parent: QWidget, found: TooLong) -> bool:
         """Whether to share the views of a plan out among more sorties."""
-        said = QMessageBox.question(
+        return agrees(
             parent,
             self.tr("Too many photos for one sortie"),
             self.tr(
                 "{0} keeps the items of about {1} photos, and a sortie of this plan has {2}: the vehicle would refuse "
                 "it. Share the same views out among more sorties, as a plan of its own, and connect for that?"
             ).format(found.autopilot.value, found.limit, found.longest),
-            QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Cancel,
-            QMessageBox.StandardButton.Yes,
+            is_usual=True,
         )
-        return said is QMessageBox.StandardButton.Yes
 
     def set_parameters(self, parent: QWidget, parameters: Sequence[SetParameter]) -> bool:
         """Whether to set parameters of a real vehicle."""
-        said = QMessageBox.warning(
-            parent,
-            self.tr("Set parameters of the vehicle"),
-            self.parameters_text(parameters),
-            QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Cancel,
-            QMessageBox.StandardButton.Cancel,
-        )
-        return said is QMessageBox.StandardButton.Yes
+        title, text = self.tr("Set parameters of the vehicle"), self.parameters_text(parameters)
+        return agrees(parent, title, text, warns=True)
 
     def parameters_text(self, parameters: Sequence[SetParameter]) -> str:
         """What would be set."""
@@ -86,14 +72,12 @@ class FlightQuestions(QObject):
 
     def leave_in_flight(self, parent: QWidget) -> bool:
         """Whether to stop watching an aircraft that is in the air."""
-        said = QMessageBox.warning(
+        return agrees(
             parent,
             self.tr("The aircraft is in the air"),
             self.tr(
                 "It goes on with what it does now, without this window: nothing will warn you, and you fly it by the "
                 "remote control. What was recorded so far is kept. Leave it?"
             ),
-            QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Cancel,
-            QMessageBox.StandardButton.Cancel,
+            warns=True,
         )
-        return said is QMessageBox.StandardButton.Yes

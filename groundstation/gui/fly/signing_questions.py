@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFormLayout, QLabel, QLineEdit, QMessageBox, QWidget
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFormLayout, QLabel, QLineEdit, QWidget
 
+from groundstation.gui.questions import agrees
 from groundstation.services.signing import MIN_PASSPHRASE
 
 
@@ -72,37 +73,35 @@ class SigningQuestions(QObject):
 
     def give(self, parent: QWidget, url: str) -> bool:
         """Whether to give the vehicle the key."""
-        return self._asked(
+        return agrees(
             parent,
             self.tr("Give the vehicle the key"),
             self.tr(
                 "The key goes to the vehicle at {0} as it is: whoever listens to that link learns it. Use a cable. "
                 "From then on the vehicle obeys signed links only. Give it the key?"
             ).format(url),
+            warns=True,
         )
 
     def withdraw(self, parent: QWidget, url: str) -> bool:
         """Whether to take the key back."""
-        return self._asked(
+        return agrees(
             parent,
             self.tr("Withdraw the key from the vehicle"),
             self.tr(
                 "The vehicle at {0} forgets the key, and obeys everybody who reaches it from then on. Withdraw the key?"
             ).format(url),
+            warns=True,
         )
 
     def forget(self, parent: QWidget) -> bool:
         """Whether to keep no key on this computer."""
-        return self._asked(
+        return agrees(
             parent,
             self.tr("Forget the key"),
             self.tr(
                 "Vehicles that know the key keep it, and obey this computer again only when the same passphrase is set "
                 "once more. Forget the key on this computer?"
             ),
+            warns=True,
         )
-
-    def _asked(self, parent: QWidget, title: str, text: str) -> bool:
-        buttons = QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Cancel
-        said = QMessageBox.warning(parent, title, text, buttons, QMessageBox.StandardButton.Cancel)
-        return said is QMessageBox.StandardButton.Yes

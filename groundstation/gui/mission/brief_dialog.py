@@ -11,7 +11,6 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
-    QFileDialog,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -22,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
 from groundstation.gui.own_words import finding_in_own_words
+from groundstation.gui.questions import choose_new_file
 from groundstation.gui.workspace import Workspace
 from groundstation.services.brief_html import MAP, brief_html, brief_pictures
 from groundstation.services.flight_brief import flight_brief
@@ -147,11 +147,10 @@ class BriefDialog(QDialog):
             button.setEnabled(is_ready)
 
     def _choose_pdf(self) -> None:
-        name, _ = QFileDialog.getSaveFileName(
-            self, self.tr("Save the flight brief"), str(self._folder / f"{self._name}.pdf"), self.tr("PDF (*.pdf)")
-        )
-        if name:
-            self.save_pdf(Path(name) if Path(name).suffix else Path(name).with_suffix(".pdf"))
+        proposed, kinds = self._folder / f"{self._name}.pdf", self.tr("PDF (*.pdf)")
+        path = choose_new_file(self, self.tr("Save the flight brief"), proposed, kinds)
+        if path is not None:
+            self.save_pdf(path if path.suffix else path.with_suffix(".pdf"))
 
     def _choose_printer(self) -> None:
         from PySide6.QtPrintSupport import QPrintDialog, QPrinter
@@ -167,5 +166,5 @@ class BriefDialog(QDialog):
 
 def is_letter_usual(units: UnitSystem) -> bool:
     """Whether people who read these units here print on US Letter."""
-    usual = QLocale().measurementSystem() is QLocale.MeasurementSystem.ImperialUSSystem
+    usual = QLocale().measurementSystem() == QLocale.MeasurementSystem.ImperialUSSystem
     return usual or units is UnitSystem.IMPERIAL

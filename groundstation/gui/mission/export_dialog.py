@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QTimer, Signal
-from PySide6.QtWidgets import QDialog, QFileDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.mission.export_form import ExportForm
 from groundstation.gui.mission.findings_list import FindingsList
+from groundstation.gui.questions import agrees, choose_new_file
 from groundstation.gui.workspace import Workspace
 from groundstation.services.jobs import JobContext
 from groundstation.services.mission_files import (
@@ -164,26 +165,21 @@ class ExportDialog(QDialog):
         file_format, _ = self._form.value()
         suffix = SUFFIXES[file_format][0]
         proposed = self._folder / f"{self._plan.site}{suffix}"
-        name, _ = QFileDialog.getSaveFileName(
-            self, self.tr("Write mission files"), str(proposed), self.tr("Mission files (*{0})").format(suffix)
-        )
-        if not name or self._prepared is None:
+        kinds = self.tr("Mission files (*{0})").format(suffix)
+        path = choose_new_file(self, self.tr("Write mission files"), proposed, kinds)
+        if path is None or self._prepared is None:
             return
-        path = Path(name) if Path(name).suffix else Path(name).with_suffix(suffix)
+        path = path if path.suffix else path.with_suffix(suffix)
         if self._may_replace(path):
             self.write(path)
 
     def _may_replace(self, path: Path) -> bool:
         """Ask before files of further sorties are replaced; for the first the file dialog has asked."""
-        from PySide6.QtWidgets import QMessageBox
-
         there = [p.name for p in export_paths(self._prepared, path)[1:] if p.exists()] if self._prepared else []
         if not there:
             return True
-        answer = QMessageBox.question(
-            self, self.tr("Replace files?"), self.tr("These files are replaced: {0}").format(", ".join(there))
-        )
-        return answer is QMessageBox.StandardButton.Yes
+        text = self.tr("These files are replaced: {0}").format(", ".join(there))
+        return agrees(self, self.tr("Replace files?"), text, warns=True)
 
     def _when_written(self, paths: tuple[Path, ...]) -> None:
         self._workspace.say(Severity.OK, self.tr("Written: {0}").format(", ".join(str(path) for path in paths)))

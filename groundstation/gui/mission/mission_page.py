@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtGui import QAction, QKeySequence
-from PySide6.QtWidgets import QFileDialog, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog
@@ -14,6 +14,7 @@ from groundstation.gui.mission.findings_view import FindingsView
 from groundstation.gui.mission.mission_desk import MissionDesk
 from groundstation.gui.mission.mission_lists import MissionLists
 from groundstation.gui.mission.sortie_table import SortieTable
+from groundstation.gui.questions import choose_files
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item
@@ -114,15 +115,11 @@ class MissionPage(QObject):
         self.desk.compare_files(self._ask_for_files(self.tr("Compare the plan with mission files")))
 
     def _ask_for_files(self, title: str) -> tuple[Path, ...]:
-        names, _ = QFileDialog.getOpenFileNames(
-            self._stage.window(),
-            title,
-            str(self._export_folder()),
-            self.tr("Missions ({0});;All files (*)").format(READABLE),
-        )
-        if names:
-            self._folder = Path(names[0]).parent
-        return in_order_of_sorties([Path(name) for name in names])
+        kinds = self.tr("Missions ({0});;All files (*)").format(READABLE)
+        paths = choose_files(self._stage.window(), title, kinds, self._export_folder())
+        if paths:
+            self._folder = paths[0].parent
+        return in_order_of_sorties(list(paths))
 
     def _export_folder(self) -> Path:
         """Where files went last; else the project's folder for missions."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QAction, QCloseEvent
-from PySide6.QtWidgets import QDialog, QFileDialog, QHBoxLayout, QSplitter, QWidget
+from PySide6.QtWidgets import QDialog, QHBoxLayout, QSplitter, QWidget
 
 from groundstation.gui.main_window import MainWindow
 from groundstation.gui.model.export_dialog import ExportDialog
@@ -15,7 +15,7 @@ from groundstation.gui.model.panel_side import PanelSide
 from groundstation.gui.model.record_side import KIND_TITLES, RecordSide
 from groundstation.gui.model.report_maker import ReportMaker
 from groundstation.gui.model.scene_pane import ScenePane
-from groundstation.gui.questions import Questions
+from groundstation.gui.questions import Questions, choose_new_file
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.model_export import ENDINGS, ModelFormat, with_ending
@@ -114,11 +114,10 @@ class ModelPage(QObject):
         self._search.start()
 
     def _save_picture(self) -> None:
-        name, _ = QFileDialog.getSaveFileName(
-            self._stage.window(), self.tr("Save the picture"), "", self.tr("Pictures (*.png)")
-        )
-        if name:
-            self.save_picture(Path(name))
+        title, kinds = self.tr("Save the picture"), self.tr("Pictures (*.png)")
+        path = choose_new_file(self._stage.window(), title, self._proposed(".png"), kinds)
+        if path is not None:
+            self.save_picture(path)
 
     def save_picture(self, path: Path) -> None:
         """Keep what is shown, with what is drawn over it."""
@@ -144,15 +143,18 @@ class ModelPage(QObject):
         title, ending = self.tr("Export the model"), ENDINGS.get(kind)
         if ending is None:
             return self.questions.new_folder(self._stage.window(), title)
-        found, _ = QFileDialog.getSaveFileName(self._stage.window(), title, f"{name}{ending}", f"*{ending}")
-        return with_ending(Path(found), kind) if found else None
+        found = choose_new_file(self._stage.window(), title, f"{name}{ending}", f"*{ending}")
+        return None if found is None else with_ending(found, kind)
 
     def _make_report(self) -> None:
-        name, _ = QFileDialog.getSaveFileName(
-            self._stage.window(), self.tr("Save the report"), "", self.tr("Documents (*.pdf)")
-        )
-        if name:
-            self.make_report(Path(name))
+        title, kinds = self.tr("Save the report"), self.tr("Documents (*.pdf)")
+        path = choose_new_file(self._stage.window(), title, self._proposed(".pdf"), kinds)
+        if path is not None:
+            self.make_report(path)
+
+    def _proposed(self, ending: str) -> str:
+        """A name for a file about the model that is open."""
+        return "" if self.desk.card is None else f"{self.desk.card.name}{ending}"
 
     def make_report(self, path: Path) -> None:
         """Write a report of the panels that are marked in the list, or of the one that is chosen."""

@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
     QDialogButtonBox,
-    QFileDialog,
     QFormLayout,
     QLabel,
     QLineEdit,
@@ -24,6 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.model.record_words import choice_words, field_words, kind_words
+from groundstation.gui.questions import choose_file
 from planning.errors import GroundStationError
 from reconstruction.records.entries import STANDARD, TYPES, Attribute, Defect, Document, Entry, Inspection, Maintenance
 
@@ -153,9 +153,9 @@ class RecordDialog(QDialog):
 
     def _choose_file(self) -> None:
         kinds = self.tr("Pictures (*.png *.jpg *.jpeg *.webp)") if self._kind is Defect else self.tr("Files (*)")
-        name, _ = QFileDialog.getOpenFileName(self, self.windowTitle(), "", kinds)
-        if name:
-            self.take_file(Path(name))
+        path = choose_file(self, self.windowTitle(), kinds)
+        if path is not None:
+            self.take_file(path)
 
     def take_file(self, path: Path) -> None:
         """A picture or document that goes with the record."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QFileDialog, QWidget
+from PySide6.QtWidgets import QComboBox, QWidget
 
+from groundstation.gui.questions import choose_file
 from planning.catalogue import Profile, profile, profiles
 from planning.errors import GroundStationError
 
@@ -61,10 +62,7 @@ class AircraftBox(QComboBox):
 
     def _chosen(self) -> None:
         if self.currentData() is None:
-            name, _ = QFileDialog.getOpenFileName(
-                self, self.tr("Aircraft and camera"), "", self.tr("Aircraft (*.toml)")
-            )
-            self.use_file(Path(name) if name else None)
+            self.use_file(choose_file(self, self.tr("Aircraft and camera"), self.tr("Aircraft (*.toml)")))
         elif self.currentData() != self._value:
             self._value = str(self.currentData())
             self.valueChanged.emit(self._value)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QFileDialog, QTabWidget, QWidget
+from PySide6.QtWidgets import QTabWidget, QWidget
 
 from groundstation.gui.mission.waypoint_table import WaypointTable
 from groundstation.gui.plan.clearance_chart import ClearanceChart
 from groundstation.gui.plan.plan_desk import PlanDesk
 from groundstation.gui.plan.plans_list import PlansList
 from groundstation.gui.plan.reach_table import ReachTable, ReasonRow
+from groundstation.gui.questions import choose_file
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
 from groundstation.services.jobs import Job
@@ -207,9 +206,9 @@ class PlanLists(QTabWidget):
         )
 
     def _ask_plan(self) -> None:
-        name, _ = QFileDialog.getOpenFileName(self, self.tr("Open plan"), "", self.tr("Plans (*.json)"))
-        if name:
-            self._desk.open_plan(Path(name))
+        path = choose_file(self, self.tr("Open plan"), self.tr("Plans (*.json)"))
+        if path is not None:
+            self._desk.open_plan(path)
 
     def compare(self, plan_ids: tuple[str, ...]) -> None:
         """Show plans side by side."""

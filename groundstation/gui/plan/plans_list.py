@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QItemSelectionModel, Signal
-from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QInputDialog, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.plan.method_names import method_name
 from groundstation.gui.plan.table_view import Column, RowModel, table_of
+from groundstation.gui.questions import ask_text
 from groundstation.services.document import Document, PlanEntry
 from groundstation.services.units import UnitSystem, distance_unit, minutes_text
 
@@ -122,6 +123,6 @@ class PlansList(QWidget):
 
     def _ask_name(self) -> None:
         entry = next(entry for entry in self._model.rows() if entry.id == self.selected()[0])
-        name, ok = QInputDialog.getText(self, self.tr("Rename plan"), self.tr("Name"), text=entry.title)
-        if ok and name.strip():
+        name = ask_text(self, self.tr("Rename plan"), self.tr("Name"), entry.title)
+        if name is not None and name.strip():
             self.renamed.emit(entry.id, name.strip())

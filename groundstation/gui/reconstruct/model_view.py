@@ -266,7 +266,7 @@ class ModelView(QWidget):
         size = metrics.boundingRect(words).size()
         box = QRectF(0.0, 0.0, size.width() + 2.0 * PAD_PX, size.height() + PAD_PX)
         box.moveTop(room.top() + PAD_PX)
-        if side is Qt.AlignmentFlag.AlignLeft:
+        if side == Qt.AlignmentFlag.AlignLeft:
             box.moveLeft(room.left() + PAD_PX)
         else:
             box.moveRight(room.right() - PAD_PX)
@@ -298,13 +298,13 @@ class ModelView(QWidget):
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Take hold of the line, or of the scene."""
         self._grabbed = event.position()
-        self._pressed = event.position() if event.button() is Qt.MouseButton.LeftButton else None
-        self._holds_line = self._is_at_line(event.position()) and event.button() is Qt.MouseButton.LeftButton
+        self._pressed = event.position() if event.button() == Qt.MouseButton.LeftButton else None
+        self._holds_line = self._is_at_line(event.position()) and event.button() == Qt.MouseButton.LeftButton
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Drag the line; or orbit, with the right button or Shift shift, with Ctrl turn."""
         at, buttons = event.position(), event.buttons()
-        if buttons is Qt.MouseButton.NoButton or not buttons:
+        if buttons == Qt.MouseButton.NoButton or not buttons:
             is_line = self._is_at_line(at)
             self.setCursor(Qt.CursorShape.SplitHCursor if is_line else Qt.CursorShape.ArrowCursor)
             self.pointed.emit(*self._shares(at))
@@ -345,7 +345,7 @@ class ModelView(QWidget):
 
     def event(self, event: QEvent) -> bool:
         """Keys that fly are no shortcuts of the window while the view has the keyboard."""
-        if event.type() is QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and _flies(event):
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and _flies(event):
             event.accept()
             return True
         return super().event(event)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QMessageBox, QWidget
+from PySide6.QtWidgets import QWidget
+
+from groundstation.gui.questions import agrees
 
 
 class ReconstructQuestions(QObject):
@@ -11,14 +13,11 @@ class ReconstructQuestions(QObject):
 
     def break_off(self, parent: QWidget) -> bool:
         """Whether to break a training off because the window closes."""
-        said = QMessageBox.question(
+        return agrees(
             parent,
             self.tr("A model is being trained"),
             self.tr(
                 "Closing the window breaks the training off. What it has reached is kept, and the Reconstruct tab "
                 "goes on with it later. Close the window?"
             ),
-            QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.Cancel,
-            QMessageBox.StandardButton.Cancel,
         )
-        return said is QMessageBox.StandardButton.Yes

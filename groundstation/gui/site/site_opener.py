@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QFileDialog, QMenu, QWidget
+from PySide6.QtWidgets import QMenu, QWidget
 
+from groundstation.gui.questions import choose_file
 from groundstation.gui.workspace import Workspace
 from groundstation.services.project_facades import facades_beside
 from groundstation.services.site_sources import bundled_site, open_site, with_new_site
@@ -31,23 +32,17 @@ class SiteOpener(QObject):
 
     def choose_site(self) -> None:
         """Ask for a site file and open it."""
-        name, _ = QFileDialog.getOpenFileName(
-            self._window, self.tr("Open site"), "", self.tr("Sites (*.json);;All files (*)")
-        )
-        if name:
-            self.open_site(Path(name))
+        path = choose_file(self._window, self.tr("Open site"), self.tr("Sites (*.json);;All files (*)"))
+        if path is not None:
+            self.open_site(path)
 
     def choose_import(self) -> None:
         """Ask for a building model and look at it."""
         kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
-        name, _ = QFileDialog.getOpenFileName(
-            self._window,
-            self.tr("Import a building model"),
-            "",
-            self.tr("Building models ({0});;All files (*)").format(kinds),
-        )
-        if name:
-            self.import_site(Path(name))
+        kinds = self.tr("Building models ({0});;All files (*)").format(kinds)
+        path = choose_file(self._window, self.tr("Import a building model"), kinds)
+        if path is not None:
+            self.import_site(path)
 
     def open_site(self, path: Path) -> None:
         """Open a site file."""

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QFileDialog, QGridLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QGridLayout, QPushButton, QWidget
 
+from groundstation.gui.questions import choose_file
 from groundstation.gui.site.pages import Edit
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.stage import Stage, StagePage
@@ -236,6 +237,6 @@ class SiteTools(QWidget):
 
     def _choose_mesh(self) -> None:
         kinds = " ".join(f"*{suffix}" for suffix in MESH_SUFFIXES)
-        name, _ = QFileDialog.getOpenFileName(self, self.tr("Obstacle mesh"), "", self.tr("Meshes ({0})").format(kinds))
-        if name:
-            self.add_mesh(Path(name))
+        path = choose_file(self, self.tr("Obstacle mesh"), self.tr("Meshes ({0})").format(kinds))
+        if path is not None:
+            self.add_mesh(path)

@@ -114,12 +114,12 @@ class Gestures(QObject):
         if isinstance(event, QKeyEvent) and kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
             # What nobody uses goes on to the parent, never to the widget: VTK has keys of its own, such as w and q.
             event.ignore()
-            if kind is QEvent.Type.KeyPress:
+            if kind == QEvent.Type.KeyPress:
                 self.keyed.emit(event)
             return True
         if isinstance(event, QFocusEvent):
             self.keysTaken.emit(event.gotFocus() and event.reason() in KEY_REASONS)
-        if kind is QEvent.Type.Leave:
+        if kind == QEvent.Type.Leave:
             self._hover = None
             self.left.emit()
         return False
@@ -137,7 +137,7 @@ class Gestures(QObject):
                     self._release(place, modifiers)
             case QEvent.Type.MouseButtonDblClick:
                 self._state = State.IDLE
-                if event.button() is Qt.MouseButton.LeftButton:
+                if event.button() == Qt.MouseButton.LeftButton:
                     self.double_clicked.emit(place, modifiers)
 
     def _press(self, place: QPointF, button: Qt.MouseButton) -> None:
@@ -154,7 +154,7 @@ class Gestures(QObject):
         moved = place - self._start
         if self._state is State.PRESSED and moved.manhattanLength() >= CLICK_PX:
             self._state = State.DRAGGING
-            is_turn = self._button is Qt.MouseButton.LeftButton
+            is_turn = self._button == Qt.MouseButton.LeftButton
             self.drag_started.emit(self._start, Drag.TURN if is_turn else Drag.SHIFT, modifiers)
         if self._state is State.DRAGGING:
             step, self._last = place - self._last, place
@@ -164,7 +164,7 @@ class Gestures(QObject):
         was, self._state = self._state, State.IDLE
         if was is State.DRAGGING:
             self.drag_ended.emit(place, modifiers)
-        elif was is State.PRESSED and self._button is Qt.MouseButton.LeftButton:
+        elif was is State.PRESSED and self._button == Qt.MouseButton.LeftButton:
             self.clicked.emit(place, modifiers)
 
     def _touch(self, event: QTouchEvent) -> None:

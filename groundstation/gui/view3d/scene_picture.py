@@ -286,7 +286,7 @@ class ScenePicture(QWidget):
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Follow the theme."""
         super().changeEvent(event)
-        if event.type() is QEvent.Type.PaletteChange and hasattr(self, "_texts"):
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_texts"):
             self._dress()
 
     def _dress(self) -> None:

@@ -11,41 +11,13 @@ from groundstation.services.live_events import LinkState, Request, ViewState
 from groundstation.services.units import UnitSystem
 from missions.mavlink.autopilots import Autopilot
 from planning.findings import Severity
-from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.gui.driving import click_on, clicked, close_desk, escape, shut, turn_until, turn_until_idle
 from tests.services.live_cases import Reopening, planned
 
 ONE_IN = 100
 """One turn of so many may be longer."""
 
 GAP_S = 0.05
-
-
-class Says:
-    """A pilot whose answers are known before."""
-
-    def __init__(self):
-        self.starts = self.leaves = self.shares = self.sets = True
-        self.asked = []
-
-    def start(self, parent, take_off, units):
-        from groundstation.gui.fly.questions import FlightQuestions
-
-        self.asked.append(FlightQuestions().start_text(take_off, units))
-        return self.starts
-
-    def leave_in_flight(self, parent):
-        self.asked.append("leave")
-        return self.leaves
-
-    def share_out(self, parent, found):
-        self.asked.append(found)
-        return self.shares
-
-    def set_parameters(self, parent, parameters):
-        from groundstation.gui.fly.questions import FlightQuestions
-
-        self.asked.append(FlightQuestions().parameters_text(parameters))
-        return self.sets
 
 
 @pytest.fixture
@@ -61,7 +33,7 @@ def desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
     from groundstation.gui.desk import Desk
 
-    desk = Desk(application, Answers(), worker)
+    desk = Desk(application, worker=worker)
     desk.show()
     desk.window.setGeometry(0, 0, 1280, 720)
     turn_until(application, lambda: desk.window.stage.scene() is not None)
@@ -70,22 +42,17 @@ def desk(application, worker, tmp_path, monkeypatch):
     desk.window.show_tab("fly")
     turn_until_idle(application, desk)
     yield desk
-    desk.window.tab("fly").questions = Says()
-    desk.window.close()
-    desk.close()
+    close_desk(desk)
 
 
 @pytest.fixture
 def page(desk):
-    page = desk.window.tab("fly")
-    page.questions = Says()
-    return page
+    return desk.window.tab("fly")
 
 
 def press(page, request):
     button = page.buttons.button(request)
-    assert button.isEnabled(), f"{request} cannot be pressed"
-    button.click()
+    click_on(button.window(), button)
 
 
 def connect(application, page, speed_up=20.0, autopilot=Autopilot.ARDUPILOT):
@@ -98,7 +65,8 @@ def connect(application, page, speed_up=20.0, autopilot=Autopilot.ARDUPILOT):
 def take_off(application, page):
     press(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
-    press(page, Request.START)
+    with clicked("Yes"):
+        press(page, Request.START)
     turn_until(application, lambda: n_photos(page) >= 1)
 
 
@@ -123,8 +91,9 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
     well = page.checks.text().count("\u2713") + page.checks.text().count("!")
     assert well == len(page.checks.text().splitlines())
-    press(page, Request.START)
-    assert "takes 6 photos" in page.questions.asked[0]
+    with clicked("Yes") as asked:
+        press(page, Request.START)
+    assert "takes 6 photos" in asked[0]
     turn_until(application, lambda: n_photos(page) >= 1)
     gc.collect()
     turns = []
@@ -239,13 +208,14 @@ def test_an_address_that_leads_nowhere_is_told_and_another_can_be_tried(applicat
     assert page.desk.is_connected
 
 
-def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page):
+@pytest.mark.parametrize("no", ["Cancel", escape, shut])
+def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page, no):
     connect(application, page)
     press(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
-    page.questions.starts = False
-    press(page, Request.START)
-    assert len(page.questions.asked) == 1
+    with clicked(no) as asked:
+        press(page, Request.START)
+    assert "Is everybody clear of the aircraft?" in asked[0]
     end = time.monotonic() + 0.5
     while time.monotonic() < end:
         application.processEvents()
@@ -256,14 +226,18 @@ def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page
 def test_closing_the_window_in_flight_asks_and_keeps_what_was_flown(application, desk, page, tmp_path):
     connect(application, page)
     take_off(application, page)
-    page.questions.leaves = False
-    desk.window.close()
-    assert desk.window.isVisible()
+    for no in ("Cancel", escape):
+        with clicked(no) as asked:
+            desk.window.close()
+        assert "nothing will warn you" in asked[-1]
+        assert desk.window.isVisible()
+        assert page.desk.is_connected
+    with clicked("Cancel"):
+        click_on(desk.window, page.connection.button)
     assert page.desk.is_connected
-    page.questions.leaves = True
-    desk.window.close()
+    with clicked("Yes"):
+        desk.window.close()
     assert not desk.window.isVisible()
-    assert page.questions.asked.count("leave") == 2
     folder = tmp_path / "data" / "flights"
     assert list(folder.glob("*.json"))
     assert list(folder.glob("*.tlog"))
@@ -289,7 +263,6 @@ def test_a_new_window_takes_the_flight_over(application, desk, page):
     desk._rebuild_window()
     turn_until(application, lambda: desk.window.stage.scene() is not None)
     again = desk.window.tab("fly")
-    again.questions = Says()
     assert again.desk is page.desk
     before = n_photos(again)
     turn_until(application, lambda: n_photos(again) > before)
@@ -356,14 +329,15 @@ def few_items(monkeypatch, limit):
 
 def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, desk, page, monkeypatch):
     few_items(monkeypatch, 4)
-    page.questions.shares = False
-    page.connection.button.click()
-    turn_until_idle(application, desk)
-    assert (page.questions.asked[0].longest, page.questions.asked[0].limit) == (6, 4)
-    assert not page.desk.is_connected
-    assert len(desk.workspace.document.plans) == 1
-    page.questions.shares = True
-    connect(application, page)
+    for no in ("Cancel", escape):
+        with clicked(no) as asked:
+            click_on(desk.window, page.connection.button)
+        turn_until_idle(application, desk)
+        assert "about 4 photos, and a sortie of this plan has 6" in asked[0]
+        assert not page.desk.is_connected
+        assert len(desk.workspace.document.plans) == 1
+    with clicked("Yes"):
+        connect(application, page)
     entry = desk.workspace.document.current
     assert entry.title == "First, shared out"
     assert [len(sortie.viewpoint_ids) <= 4 for sortie in entry.plan.sorties] == [True] * page.sortie.count()
@@ -398,15 +372,17 @@ def test_parameters_of_a_real_vehicle_are_set_only_where_allowed_and_after_a_que
     turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
     assert page.desk.parameters_to_set() == ()
     page.settings.sets_parameters.click()
-    page.questions.sets = False
-    press(page, Request.UPLOAD)
-    assert "MNT1_PITCH_MIN = " in page.questions.asked[-1]
-    assert "restarted" in page.questions.asked[-1]
-    assert page.desk.in_hand.view.phase is None
-    page.questions.sets = True
+    for no in ("Cancel", escape):
+        turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
+        with clicked(no) as asked:
+            press(page, Request.UPLOAD)
+        assert "MNT1_PITCH_MIN = " in asked[-1]
+        assert "restarted" in asked[-1]
+        assert page.desk.in_hand.view.phase is None
     # On a busy computer the link may be late for a moment.
     turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
-    press(page, Request.UPLOAD)
+    with clicked("Yes"):
+        press(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
 

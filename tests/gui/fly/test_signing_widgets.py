@@ -232,7 +232,7 @@ def test_a_passphrase_must_be_long_enough_and_typed_alike_twice(application):
 
     dialog = PassphraseDialog()
     ok = dialog.buttons.button(QDialogButtonBox.StandardButton.Ok)
-    assert dialog.first.echoMode() is QLineEdit.EchoMode.Password
+    assert dialog.first.echoMode() == QLineEdit.EchoMode.Password
     for first, second, may in (("short", "short", False), (PASSPHRASE, "other", False), (PASSPHRASE, PASSPHRASE, True)):
         dialog.first.setText(first)
         dialog.second.setText(second)
