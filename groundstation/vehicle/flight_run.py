@@ -10,10 +10,10 @@
     FLYING     -> ENDED       landed and disarmed
     any        -> ENDED       it cannot go on: what failed, and what to do, stands in the outcome
 
-`steps.py` and `upload_steps.py` hold what is done in each phase. Pilot's orders (pause, resume, return, land) go out
-beside it at any time. Losing the link ends nothing: it is shown, the aircraft goes on by itself, and when it is heard
-again what it has on board is read back once more. Reports of photos that the radio lost are asked for again, beside it
-too (`camera_reports.py`).
+`steps.py` and `board.py` hold what is done in each phase. Pilot's orders (pause, resume, return, land) go out beside it
+at any time. Losing the link ends nothing: it is shown, and the aircraft goes on by itself. Whatever may have changed
+what is on board makes it unknown until it was read again (`board.py`). Reports of photos that the radio lost are asked
+for again, beside it too (`camera_reports.py`).
 """
 
 from __future__ import annotations
@@ -21,8 +21,10 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Generator
+from dataclasses import replace
 from typing import Any, Protocol
 
+from groundstation.vehicle.board import READ_PAUSE_S, SILENT, BoardList, BoardReread, doubt, doubted, take_reads
 from groundstation.vehicle.camera_reports import CameraReports
 from groundstation.vehicle.commands import CommandCall, CommandOutcome
 from groundstation.vehicle.modes import set_mode_command
@@ -37,6 +39,8 @@ from missions.flight.record import FlightEvent
 from missions.mavlink.drive import GROUND_HEARTBEAT, HEARTBEAT_EVERY_S
 from missions.mavlink.link import GROUND_STATION
 from missions.mavlink.messages import Address, Message, Received
+from missions.mavlink.transfer.download import Download
+from missions.mavlink.transfer.verified import VerifiedUpload
 from planning.errors import GroundStationError
 
 WATCH_EVERY_S = 0.5
@@ -80,6 +84,7 @@ class FlightRun:
         self.phase = Phase.CONNECTING
         self.watch = Watch()
         self.on_board = OnBoard()
+        self.lists: tuple[BoardList, ...] = ()
         self.now_s = self._started_s = 0.0
         self.outcome: RunOutcome | None = None
         self.answers: tuple[CommandOutcome, ...] = ()
@@ -88,14 +93,15 @@ class FlightRun:
         self.camera_reports = CameraReports()
         self.may_start = options.starts_itself
         self.was_ordered_away = False
+        self.asked_s = -math.inf
         self._frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
         self._steps: Steps | None = None
         self._machine: Exchange | None = None
         self._orders: deque[PilotOrder] = deque()
         self._order_call: CommandCall | None = None
-        self._aside: Exchange | None = None
+        self._aside: BoardReread | None = None
         self._outbox: list[Message] = []
-        self._heartbeat_s = self._watch_s = -math.inf
+        self._heartbeat_s = self._watch_s = self._reread_s = -math.inf
         self._had_link = False
         self._checks: tuple[PreflightCheck, ...] = ()
 
@@ -123,6 +129,7 @@ class FlightRun:
         self.state = folded(before, received, self._frame)
         if self.state is not before and self.recorder is not None:
             self.recorder.take(received)
+        self._doubt(doubt(before, self.state, received, is_transferring=self._is_transferring))
         for machine in (self._machine, self._order_call, self._aside):
             if machine is not None and machine.outcome is None:
                 self._outbox += machine.receive(received)
@@ -184,16 +191,18 @@ class FlightRun:
         if self.recorder is not None:
             self.recorder.note(code, text)
 
-    def aside(self, machine: Exchange) -> None:
-        """Let a machine work beside the steps."""
-        self._aside = machine
-        self._outbox += machine.start(self.now_s)
+    def forget_progress(self) -> None:
+        """What the vehicle next says of its lists is what it says of those that were just read."""
+        mission = self.state.mission
+        if mission is not None:
+            self.state = replace(self.state, mission=replace(mission, value=replace(mission.value, lists=None)))
 
     # Inside
 
     def _advance(self) -> list[Message]:
         if self.outcome is None:
             self._watch_link()
+            self._watch_board()
             self._watch_flight()
             self._pass_orders_on()
             self._step()
@@ -240,11 +249,32 @@ class FlightRun:
                 self.note("link-found", "the vehicle is heard again")
             else:
                 self.note("link-lost", "no heartbeat; the aircraft goes on by itself")
-            if has_link and self.phase is Phase.FLYING:
-                from groundstation.vehicle.upload_steps import reread_mission
-
-                self.aside(reread_mission(self))
+        if has_link and not self._had_link:
+            self._doubt(SILENT)
         self._had_link = has_link
+
+    @property
+    def _is_transferring(self) -> bool:
+        return isinstance(self._machine or self._aside, VerifiedUpload | Download | BoardReread)
+
+    def _doubt(self, reason: str) -> None:
+        """Something may have changed what is on board."""
+        on_board = doubted(self.on_board, reason) if reason else self.on_board
+        if on_board is not self.on_board and on_board.doubt != self.on_board.doubt:
+            self.note("board-doubted", f"what is on board is not known any more: {reason}")
+        self.on_board = on_board
+
+    def _watch_board(self) -> None:
+        """In flight, read again beside the mission; before take-off the steps do."""
+        if self._aside is not None and self._aside.outcome is not None:
+            reads, self._aside = self._aside.outcome, None
+            take_reads(self, reads)
+        is_due = self.phase is Phase.FLYING and self.on_board.doubt and self.now_s >= self._reread_s + READ_PAUSE_S
+        if self._aside is None and is_due and self._had_link and self.state.autopilot is not None:
+            self._reread_s = self.now_s
+            self.on_board = replace(self.on_board, doubt="")
+            self._aside = BoardReread(self.lists, self.state.autopilot)
+            self._outbox += self._aside.start(self.now_s)
 
     def _watch_flight(self) -> None:
         autopilot = self.state.autopilot
@@ -253,7 +283,8 @@ class FlightRun:
         self._watch_s = self.now_s
         before = self.watch.codes()
         around = self.orders.surroundings[autopilot]
-        self.watch = watched(self.watch, self.state, around, self.now_s, WatchRules(self.options.needs_rtk))
+        rules = WatchRules(self.options.needs_rtk, has_other_mission=self.on_board.mission is False)
+        self.watch = watched(self.watch, self.state, around, self.now_s, rules)
         for warning in self.watch.warnings:
             if warning.code not in before:
                 self.note(f"warning-{warning.code}", warning.text)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
+from missions.mavlink.transfer.exchange import MissionType
 
 HOME_M = 3.0
 """How far from the planned home the aircraft may stand: it climbs where it is, and the plan's column has that room."""
@@ -46,10 +47,12 @@ class PreflightCheck:
 
 @dataclass(frozen=True, slots=True)
 class OnBoard:
-    """What was read back from the vehicle and compared: None while that is not done.
+    """What was read back from the vehicle and compared: None while that is not done, or not known any more.
 
     Parameters
     ----------
+    doubt
+        Why what was equal is not known any more (`board.py`); empty where nothing speaks against it.
     failsafes
         What the vehicle will do by itself, by its parameters (`failsafes.py`); empty while they were not read.
     """
@@ -57,7 +60,24 @@ class OnBoard:
     mission: bool | None = None
     fence: bool | None = None
     rally: bool | None = None
+    doubt: str = ""
     failsafes: tuple[PreflightCheck, ...] = ()
+
+    def of(self, mission_type: MissionType) -> bool | None:
+        """Whether a list is the one that was uploaded."""
+        return {MissionType.MISSION: self.mission, MissionType.FENCE: self.fence, MissionType.RALLY: self.rally}[
+            mission_type
+        ]
+
+    def known(self, mission_type: MissionType, is_equal: bool | None) -> OnBoard:
+        """With what is known now of a list."""
+        match mission_type:
+            case MissionType.MISSION:
+                return replace(self, mission=is_equal)
+            case MissionType.FENCE:
+                return replace(self, fence=is_equal)
+            case MissionType.RALLY:
+                return replace(self, rally=is_equal)
 
 
 def preflight_checks(
@@ -72,9 +92,9 @@ def preflight_checks(
         _battery(state, orders, now_s),
         *_sensors(state),
         _wind(state, orders),
-        _board("mission", on_board.mission),
-        *([_board("geofence", on_board.fence)] if orders.fences else []),
-        *([_rally(len(orders.rally), on_board.rally)] if orders.rally else []),
+        _board("mission", "mission", on_board.mission, on_board.doubt),
+        *([_board("geofence", "geofence", on_board.fence, on_board.doubt)] if orders.fences else []),
+        *([_board("rally", "list of rally points", on_board.rally, on_board.doubt)] if orders.rally else []),
         *on_board.failsafes,
     )
 
@@ -173,15 +193,11 @@ def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
     return PreflightCheck("wind", Verdict.OK, f"{wind_m_s:.1f} m/s", wind_m_s, limit_m_s, "m/s")
 
 
-def _board(what: str, is_equal: bool | None) -> PreflightCheck:
+def _board(code: str, what: str, is_equal: bool | None, doubt: str) -> PreflightCheck:
+    if is_equal is None and doubt:
+        return PreflightCheck(code, Verdict.WAIT, f"the {what} was uploaded, but {doubt}: it is read again")
     if is_equal is None:
-        return PreflightCheck(what, Verdict.WAIT, f"the {what} was not uploaded yet")
+        return PreflightCheck(code, Verdict.WAIT, f"the {what} was not uploaded yet")
     if not is_equal:
-        return PreflightCheck(what, Verdict.BAD, f"what the vehicle holds is not this {what}: upload it again")
-    return PreflightCheck(what, Verdict.OK, f"the {what} is on board, read back and equal")
-
-
-def _rally(n_points: int, is_equal: bool | None) -> PreflightCheck:
-    if is_equal is None:
-        return PreflightCheck("rally", Verdict.WAIT, f"the rally points ({n_points}) were not uploaded yet")
-    return PreflightCheck("rally", Verdict.OK, f"the rally points ({n_points}) are on board, read back and equal")
+        return PreflightCheck(code, Verdict.BAD, f"what the vehicle holds is not this {what}: upload it again")
+    return PreflightCheck(code, Verdict.OK, f"the {what} is on board, read back and equal")

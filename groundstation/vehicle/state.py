@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Generic, TypeVar
 
-from missions.flight.logs.photo_clock import PhotoClock
+from missions.flight.logs.photo_clock import NEARBY_S, PhotoClock
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
@@ -96,11 +96,16 @@ class EstimatorHealth:
 
 @dataclass(frozen=True, slots=True)
 class MissionProgress:
-    """Item that is being flown, the number of items on board (0: not told), and the item reached last (-1: none)."""
+    """Item that is being flown, and the item reached last (-1: none).
+
+    `lists` is what tells one set of lists on board from another: the number of mission items (65535: none, 0: not
+    told) and the vehicle's own numbers of its mission, fence and rally points (0: not told). None: not heard since they
+    were read.
+    """
 
     current: int = 0
-    total: int = 0
     reached: int = -1
+    lists: tuple[int, int, int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,3 +179,10 @@ class VehicleState:
     def is_armed(self) -> bool:
         """Whether its last heartbeat said so."""
         return self.armed is not None and self.armed.value
+
+
+def is_restarted(before: VehicleState, after: VehicleState) -> bool:
+    """Whether the vehicle's own time began anew between two states."""
+    if before.boot_time_s is None or after.boot_time_s is None:
+        return False
+    return after.boot_time_s < before.boot_time_s - NEARBY_S

@@ -10,6 +10,7 @@ from collections.abc import Callable, Generator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from groundstation.vehicle.board import READ_PAUSE_S, RESTARTED, UNREAD, read_again, upload, vehicle_of
 from groundstation.vehicle.commands import MAV_RESULT_TEMPORARILY_REJECTED, Answer, CommandCall, CommandOutcome
 from groundstation.vehicle.failsafes import NAMES, failsafe_checks
 from groundstation.vehicle.modes import MISSION_MODE, set_mode_command
@@ -19,7 +20,7 @@ from groundstation.vehicle.preflight import Verdict, is_ready
 from groundstation.vehicle.recorder import Recorder
 from groundstation.vehicle.setup import is_switched_off, message_requests, needs_reboot, wanted_parameters
 from groundstation.vehicle.state import Landed, VehicleState
-from groundstation.vehicle.upload_steps import upload, vehicle_of
+from groundstation.vehicle.watch import STALE_S
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import CommandLong
 from planning.errors import LinkRejected, LinkTimeout, MissionError
@@ -44,6 +45,9 @@ DISARM_S = 20.0
 REPORTS_S = 10.0
 """Wait after the landing for reports of photos that the radio lost."""
 
+ASK_EVERY_S = 10.0
+"""How often telemetry is asked for again while no position comes before take-off."""
+
 REBOOT_PAUSE_S, REBOOT_S = 3.0, 60.0
 MAV_RESULT_FAILED = 4
 
@@ -62,6 +66,7 @@ def sortie_steps(run: FlightRun) -> Steps:
     run.phase = Phase.READY
     while not run.may_start:
         yield None
+        yield from _keep_up(run)
         run.phase = Phase.READY if is_ready(run.checks()) else Phase.CHECKING
     run.phase = Phase.STARTING
     yield from _start(run)
@@ -112,18 +117,28 @@ def _prepare(run: FlightRun) -> Steps:
     if changed & needs_reboot(autopilot):
         yield from _reboot(run)
     run.camera_reports.ask_count()
+    yield from _read_failsafes(run)
+
+
+def _read_failsafes(run: FlightRun) -> Steps:
+    autopilot, address = vehicle_of(run)
     values: dict[str, float] = yield ParameterReads(NAMES[autopilot], autopilot, address)
     checks = failsafe_checks(autopilot, values, run.orders)
-    run.on_board = replace(run.on_board, failsafes=checks)
+    known = {check.text for check in run.on_board.failsafes}
+    rally = [check for check in run.on_board.failsafes if check.code == "rally"]
+    run.on_board = replace(run.on_board, failsafes=(*rally, *checks))
     for check in checks:
-        if check.verdict is Verdict.WARN:
+        if check.verdict is Verdict.WARN and check.text not in known:
             run.note("warning-failsafe", check.text)
 
 
-def _ask_for_telemetry(run: FlightRun) -> Steps:
+def _ask_for_telemetry(run: FlightRun, *, must_answer: bool = True) -> Steps:
     autopilot, address = vehicle_of(run)
+    run.asked_s = run.now_s
     for command in message_requests(autopilot, address):
         outcome: CommandOutcome = yield CommandCall("sending telemetry", command, run.own)
+        if outcome.answer is Answer.NO_ANSWER and not must_answer:
+            return
         if outcome.answer is Answer.NO_ANSWER:
             raise LinkTimeout(f"{run.link_name}: the vehicle is heard but does not answer; does the link go both ways?")
 
@@ -166,6 +181,28 @@ def _check(run: FlightRun) -> Steps:
             missing = [f"{check.code}: {check.text}" for check in checks if not is_ready((check,))]
             raise LinkTimeout(f"not ready for take-off after {run.options.ready_s:g} s: " + "; ".join(missing))
         yield None
+        yield from _keep_up(run)
+
+
+def _keep_up(run: FlightRun) -> Steps:
+    """Ask again for what does not come any more, and read again what is not known any more, where the vehicle is heard.
+
+    A vehicle that was restarted has forgotten what it was asked to send, and its parameters may be others.
+    """
+    motion, reason = run.state.motion, run.on_board.doubt
+    if not run.state.is_link_alive(run.now_s):
+        return
+    if (motion is None or motion.age_s(run.now_s) > STALE_S) and run.now_s > run.asked_s + ASK_EVERY_S:
+        yield from _ask_for_telemetry(run, must_answer=False)
+    if not reason:
+        return
+    if reason == UNREAD:
+        yield from _pause(run, READ_PAUSE_S)
+    if reason == RESTARTED:
+        run.state = VehicleState(address=run.state.address, autopilot=run.state.autopilot)
+        yield from _ask_for_telemetry(run, must_answer=False)
+        yield from _read_failsafes(run)
+    yield from read_again(run)
 
 
 # Flying
@@ -194,15 +231,24 @@ def _arm(run: FlightRun) -> Steps:
 
 
 def _start(run: FlightRun) -> Steps:
-    """Start the mission as each autopilot wants it; an order of the pilot meanwhile ends that."""
+    """Start the mission as each autopilot wants it; an order of the pilot meanwhile ends that.
+
+    What is on board is read once more before, and nothing may be said against it until the mission flies: somebody else
+    may have written to the vehicle since it was read.
+    """
     autopilot, address = vehicle_of(run)
+    yield from _read_failsafes(run)
+    yield from read_again(run)
+    _refuse_what_is_not_ours(run)
     if autopilot is Autopilot.ARDUPILOT:
         # AUTO cannot be armed in (without AUTO_OPTIONS), and begins to fly only when it is told to start.
         yield from _set_mode(run, "GUIDED")
         yield from _arm(run)
         if run.was_ordered_away:
             return
+        yield from _stop_where_doubted(run)
         yield from _set_mode(run, MISSION_MODE[autopilot])
+        yield from _stop_where_doubted(run)
         command = CommandLong(address.system, address.component, MAV_CMD_MISSION_START)
         outcome: CommandOutcome = yield CommandCall("starting the mission", command, run.own)
         if not outcome.is_accepted:
@@ -211,6 +257,7 @@ def _start(run: FlightRun) -> Steps:
         # Armed first, PX4 refuses the mode for as long as it looks at the mission again from its new home. In the mode,
         # it refuses to be armed before the mission can be flown.
         yield from _set_mode(run, MISSION_MODE[autopilot])
+        _refuse_what_is_not_ours(run)
         yield from _arm(run)
         # The heartbeat says so a little later, and may be lost.
         yield from _wait(run, lambda state: state.is_armed, MODE_S)
@@ -222,6 +269,33 @@ def _start(run: FlightRun) -> Steps:
         found = "unknown" if run.state.mode is None else run.state.mode.value
         raise LinkRejected(f"the vehicle is in mode {found} and not in {wanted}{_last_complaint(run)}")
     run.note("started", f"sortie {run.orders.number}")
+
+
+def _refuse_what_is_not_ours(run: FlightRun) -> None:
+    """Raise where what is on board is not what was uploaded, or not known."""
+    for ours in run.lists:
+        if run.on_board.of(ours.route.mission_type) is False:
+            raise LinkRejected(
+                f"the {ours.what} on the vehicle is not the one that was uploaded; it was not started: upload it again"
+            )
+    bad = [check.text for check in run.on_board.failsafes if check.verdict is Verdict.BAD]
+    if bad:
+        raise LinkRejected(f"{bad[0]}; it was not started")
+    if run.on_board.doubt:
+        raise LinkRejected(
+            f"what is on the vehicle is not known ({run.on_board.doubt}); it was not started: wait until it is read"
+        )
+
+
+def _stop_where_doubted(run: FlightRun) -> Steps:
+    """Disarm a vehicle that stands armed on the ground, where its mission may be another one by now."""
+    try:
+        _refuse_what_is_not_ours(run)
+    except LinkRejected:
+        _, address = vehicle_of(run)
+        command = CommandLong(address.system, address.component, MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
+        yield CommandCall("disarming", command, run.own)
+        raise
 
 
 def _fly(run: FlightRun) -> Steps:

@@ -23,8 +23,9 @@ from groundstation.vehicle.state import (
     Timed,
     VehicleState,
     VehicleText,
+    is_restarted,
 )
-from missions.flight.logs.photo_clock import NEARBY_S, PhotoClock
+from missions.flight.logs.photo_clock import PhotoClock
 from missions.flight.logs.raw import camera_angles_rad, is_yaw_from_north
 from missions.flight.record import TakenPhoto
 from missions.mavlink import messages
@@ -46,9 +47,6 @@ POSITION_KNOWN, CONSTANT_POSITION = 16, 128
 """Bits of EKF_STATUS_REPORT and ESTIMATOR_STATUS: absolute horizontal position good; it is only assumed not to move.
 
 PX4 sets the second with every vehicle that stands still, however well its place is known."""
-
-NO_MISSION = 65535
-"""MISSION_CURRENT's total where there is none."""
 
 VELOCITY_KNOWN, HEIGHT_KNOWN = 2, 32
 MAX_VARIANCE = 0.8
@@ -236,9 +234,8 @@ def _mission_current(
     state: VehicleState, message: messages.MissionCurrent, now_s: float, _: LocalFrame
 ) -> VehicleState:
     former = MissionProgress() if state.mission is None else state.mission.value
-    total = 0 if message.total == NO_MISSION else message.total or former.total
-    progress = MissionProgress(message.seq, total, former.reached)
-    return replace(state, mission=Timed(progress, now_s))
+    lists = (message.total, message.mission_id, message.fence_id, message.rally_points_id)
+    return replace(state, mission=Timed(MissionProgress(message.seq, former.reached, lists), now_s))
 
 
 def _reached(state: VehicleState, message: messages.MissionItemReached, now_s: float, _: LocalFrame) -> VehicleState:
@@ -320,10 +317,8 @@ def _with_photo(state: VehicleState, index: int, time_s: float, place: Vec3, sou
 
 def _with_boot_time(state: VehicleState, time_boot_ms: int, now_s: float) -> VehicleState:
     """State with the vehicle's own time; where that began again, UNIX times are to be compared with it anew."""
-    boot_s = time_boot_ms / 1000.0
-    is_new = state.boot_time_s is not None and boot_s < state.boot_time_s - NEARBY_S
-    clock = PhotoClock() if is_new else state.photo_clock
-    return replace(state, boot_time_s=boot_s, boot_time_heard_s=now_s, photo_clock=clock)
+    told = replace(state, boot_time_s=time_boot_ms / 1000.0, boot_time_heard_s=now_s)
+    return replace(told, photo_clock=PhotoClock()) if is_restarted(state, told) else told
 
 
 def _on_globe(lat_e7: int, lon_e7: int) -> bool:

@@ -101,15 +101,18 @@ class Watch:
 
 @dataclass(frozen=True, slots=True)
 class WatchRules:
-    """What the pilot may choose.
+    """What the pilot may choose, and what is known besides the vehicle's state.
 
     Parameters
     ----------
     needs_rtk
         Say so when the fix is less than RTK float.
+    has_other_mission
+        The mission on board was read in flight, and is not the one that was uploaded.
     """
 
     needs_rtk: bool = False
+    has_other_mission: bool = False
 
 
 def watched(
@@ -267,9 +270,17 @@ def _deviation(
     yield Watched("off-path", Severity.WARNING, text, off_m - OFF_PATH_M, OFF_PATH_SLACK_M, off_m, OFF_PATH_M, "m")
 
 
+def _board(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    if rules.has_other_mission:
+        text = "the vehicle has another mission now than the one that was uploaded: pause it, and look what it does"
+        yield Watched("other-mission", Severity.ERROR, text, 1.0, 0.0, 1.0, 0.0)
+
+
 Rule = Callable[[Watch, VehicleState, Surroundings, float, WatchRules], Iterator[Watched]]
 
-_RULES: tuple[Rule, ...] = (_link, _distance, _airspace, _gnss, _battery, _wind, _deviation, _photos)
+_RULES: tuple[Rule, ...] = (_link, _board, _distance, _airspace, _gnss, _battery, _wind, _deviation, _photos)
 
 
 def _passed(watch: Watch, state: VehicleState, around: Surroundings, now_s: float) -> Iterator[tuple[str, float]]:

@@ -328,13 +328,38 @@ class MissionClearAll(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class MissionWritePartialList(Message):
+    """MISSION_WRITE_PARTIAL_LIST (38): a part of the list will be written anew."""
+
+    target_system: int
+    target_component: int
+    start_index: int
+    end_index: int
+    mission_type: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class MissionChanged(Message):
+    """MISSION_CHANGED (52), deprecated: the vehicle says that a list was changed, and by whom."""
+
+    start_index: int
+    end_index: int
+    origin_sysid: int
+    origin_compid: int
+    mission_type: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class MissionCurrent(Message):
-    """MISSION_CURRENT (42)."""
+    """MISSION_CURRENT (42). `total` 65535: no mission, 0: not told; the numbers of the lists are 0 where not told."""
 
     seq: int
     total: int = 0
     mission_state: int = 0
     mission_mode: int = 0
+    mission_id: int = 0
+    fence_id: int = 0
+    rally_points_id: int = 0
 
 
 @dataclass(frozen=True, slots=True)

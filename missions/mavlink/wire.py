@@ -31,6 +31,63 @@ FILL = {"voltages": 0xFFFF}
 """What fills an array that is shorter than the message's: no such cell. Others are filled with 0."""
 
 
+def _with_fields(
+    name: str, number: int, crc_extra: int, layout: str, fields: tuple[tuple[str, str], ...]
+) -> type[dialect.MAVLink_message]:
+    """A message's class as pymavlink makes them, of single numbers in the order of the wire."""
+    names = [field_name for field_name, _ in fields]
+    unpacker = struct.Struct(layout)
+
+    def init(self: Any, *values: float) -> None:
+        dialect.MAVLink_message.__init__(self, number, name)
+        self._fieldnames = names
+        self._instance_field, self._instance_offset = None, -1
+        for field_name, value in zip(names, values, strict=True):
+            setattr(self, field_name, value)
+
+    def pack(self: Any, mav: Any, force_mavlink1: bool = False) -> Any:
+        content = unpacker.pack(*(getattr(self, field_name) for field_name in names))
+        return self._pack(mav, crc_extra, content, force_mavlink1=force_mavlink1)
+
+    members = {
+        "id": number,
+        "msgname": name,
+        "fieldnames": names,
+        "ordered_fieldnames": names,
+        "fieldtypes": [kind for _, kind in fields],
+        "fielddisplays_by_name": {},
+        "fieldenums_by_name": {},
+        "fieldunits_by_name": {},
+        "native_format": bytearray(layout, "ascii"),
+        "orders": list(range(len(names))),
+        "lengths": [1] * len(names),
+        "array_lengths": [0] * len(names),
+        "crc_extra": crc_extra,
+        "unpacker": unpacker,
+        "instance_field": None,
+        "instance_offset": -1,
+        "__init__": init,
+        "pack": pack,
+    }
+    return type(f"MAVLink_{name.lower()}_message", (dialect.MAVLink_message,), members)
+
+
+_LISTS = (("mission_id", "uint32_t"), ("fence_id", "uint32_t"), ("rally_points_id", "uint32_t"))
+_CURRENT = (("seq", "uint16_t"), ("total", "uint16_t"), ("mission_state", "uint8_t"), ("mission_mode", "uint8_t"))
+_CHANGED = (
+    *(("start_index", "int16_t"), ("end_index", "int16_t")),
+    *(("origin_sysid", "uint8_t"), ("origin_compid", "uint8_t"), ("mission_type", "uint8_t")),
+)
+# What pymavlink 2.4.50 leaves out: the numbers of the lists in MISSION_CURRENT, which PX4 sends, and MISSION_CHANGED.
+for _packet in (
+    _with_fields("MISSION_CURRENT", 42, 28, "<HHBBIII", (*_CURRENT, *_LISTS)),
+    _with_fields("MISSION_CHANGED", 52, 132, "<hhBBB", _CHANGED),
+):
+    dialect.mavlink_map[_packet.id] = _packet
+    setattr(dialect, f"MAVLINK_MSG_ID_{_packet.msgname}", _packet.id)
+    setattr(dialect, _packet.__name__, _packet)
+
+
 @dataclass(frozen=True, slots=True)
 class _Field:
     """One field of a message as pymavlink wants it; `zero` is what stands there if we do not name it."""

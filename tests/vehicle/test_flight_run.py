@@ -229,8 +229,8 @@ def test_losing_the_link_in_flight_is_shown_and_survived(orders):
     assert (Phase.FLYING, False, True) in shown
     assert {"link-lost", "link-found", "mission-reread"} <= set(codes(outcome))
     assert run.on_board.mission is True
-    (text,) = [event.text for event in outcome.record.events if event.code == "mission-reread"]
-    assert text == "the mission on board is the one that was uploaded"
+    texts = [event.text for event in outcome.record.events if event.code == "mission-reread"]
+    assert texts == 2 * ["the mission on board is the one that was uploaded"], "at Start, and when it was heard again"
 
 
 def test_a_mission_that_was_changed_behind_our_back_is_told(orders):

@@ -217,7 +217,7 @@ def test_both_estimators_say_what_they_lack():
 
 def test_without_a_mission_none_is_counted():
     some = heard(MissionCurrent(3, 230, 3, 1), state=connected())
-    assert heard(MissionCurrent(65535, 65535, 1, 2), state=some).mission.value.total == 0
+    assert heard(MissionCurrent(65535, 65535, 1, 2), state=some).mission.value.lists == (65535, 0, 0, 0)
 
 
 def test_a_photos_height_counts_from_home_and_not_from_the_ground_below():
@@ -230,9 +230,9 @@ def test_a_photos_height_counts_from_home_and_not_from_the_ground_below():
 
 
 def test_progress_keeps_the_item_that_was_reached():
-    state = heard(MissionCurrent(4, 30), MissionItemReached(4), MissionCurrent(7), state=connected())
+    state = heard(MissionCurrent(4, 30), MissionItemReached(4), MissionCurrent(7, 30), state=connected())
     progress = state.mission.value
-    assert (progress.current, progress.total, progress.reached) == (7, 30, 4)
+    assert (progress.current, progress.lists, progress.reached) == (7, (30, 0, 0, 0), 4)
 
 
 def test_long_texts_are_put_together():

@@ -57,6 +57,8 @@ class Toy:
         How much faster its time goes than ours, as in a simulation that is sped up.
     forgets_requests
         After a reboot it sends heartbeats only, until it is asked for more.
+    tells_total
+        MISSION_CURRENT says how many items it has.
     """
 
     home: tuple[int, int]
@@ -67,6 +69,7 @@ class Toy:
     drops_photo: int = 0
     clock_rate: float = 1.0
     forgets_requests: bool = False
+    tells_total: bool = True
     takes_off: bool = True
     disarms_itself: bool = True
     is_armed: bool = False
@@ -82,6 +85,7 @@ class Toy:
         self.items, self.awaited, self.incoming = [], None, []
         self.place = (*self.home, 0)
         self.current, self.since_s, self.is_flying, self.n_photos = 0, 0.0, False, 0
+        self.has_flown = False
         self.out: deque = deque()
         self.commands = []
         self.boot_s = 0.0
@@ -165,6 +169,7 @@ class Toy:
 
     def take_off(self):
         self.is_flying, self.since_s = self.takes_off, self.now_s
+        self.has_flown = self.has_flown or self.takes_off
         self.current = 1 if self.autopilot is Autopilot.ARDUPILOT else 0
 
     # What goes on
@@ -214,7 +219,7 @@ class Toy:
             self.say(Heartbeat(2, facts(self.autopilot).firmware_type, 128 if self.is_armed else 0, mode, 3))
             self.say(SysStatus(0, 0, 0, 0, 15000, 100, self.battery))
             self.say(GpsRawInt(0, self.fix_type, lat, lon, 0, 0, 0, 0, 0, 20, 0, 12, 15))
-            self.say(MissionCurrent(self.current, len(self.items)))
+            self.say(MissionCurrent(self.current, len(self.items) if self.tells_total else 0))
             while self.texts:
                 self.say(self.texts.pop())
 
