@@ -162,9 +162,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "the {0} was not uploaded yet"),
     QT_TRANSLATE_NOOP("Sentences", "what the vehicle holds is not this {0}: upload it again"),
     QT_TRANSLATE_NOOP("Sentences", "the {0} is on board, read back and equal"),
-    QT_TRANSLATE_NOOP("Sentences", "the mission on board could not be read again ({0})"),
-    QT_TRANSLATE_NOOP("Sentences", "the vehicle has another mission now: {0}"),
-    QT_TRANSLATE_NOOP("Sentences", "the mission on board is the one that was uploaded"),
     QT_TRANSLATE_NOOP(
         "Sentences",
         "no ArduPilot or PX4 was heard within {0} s; is the vehicle on, and the address right?",
@@ -350,12 +347,31 @@ SENTENCES = (
         "Sentences",
         "{0} is {1}: the autopilot commands no camera, or no gimbal; set it to {2} and restart the vehicle",
     ),
-    QT_TRANSLATE_NOOP("Sentences", "the rally points ({0}) were not uploaded yet"),
-    QT_TRANSLATE_NOOP("Sentences", "the rally points ({0}) are on board, read back and equal"),
     QT_TRANSLATE_NOOP(
         "Sentences",
         "the vehicle does not say whether it has rally points; look before it returns by itself",
     ),
     QT_TRANSLATE_NOOP("Sentences", "list of rally points"),
     QT_TRANSLATE_NOOP("Sentences", "the vehicle had {0} rally points of another flight; they are cleared"),
+    QT_TRANSLATE_NOOP("Sentences", "the vehicle was restarted"),
+    QT_TRANSLATE_NOOP("Sentences", "the vehicle was not heard for a while"),
+    QT_TRANSLATE_NOOP("Sentences", "the vehicle says that it holds something else now"),
+    QT_TRANSLATE_NOOP("Sentences", "another ground station has written to the vehicle"),
+    QT_TRANSLATE_NOOP("Sentences", "it could not be read"),
+    QT_TRANSLATE_NOOP("Sentences", "the {0} on board could not be read again ({1})"),
+    QT_TRANSLATE_NOOP("Sentences", "the vehicle has another {0} now: {1}"),
+    QT_TRANSLATE_NOOP("Sentences", "the {0} on board is the one that was uploaded"),
+    QT_TRANSLATE_NOOP("Sentences", "what is on board is not known any more: {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "the {0} was uploaded, but {1}: it is read again"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "the {0} on the vehicle is not the one that was uploaded; it was not started: upload it again"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "{0}; it was not started"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "what is on the vehicle is not known ({0}); it was not started: wait until it is read"
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the vehicle has another mission now than the one that was uploaded: pause it, and look what it does",
+    ),
 )
