@@ -8913,12 +8913,60 @@ Take it over?</source>
         <translation>{0} ist {1}: der Autopilot steuert keine Kamera oder keinen Gimbal an; auf {2} setzen und das Fluggerät neu starten</translation>
     </message>
     <message>
-        <source>the rally points ({0}) were not uploaded yet</source>
-        <translation>die Rally-Punkte ({0}) wurden noch nicht hochgeladen</translation>
+        <source>the vehicle was restarted</source>
+        <translation>das Fahrzeug wurde neu gestartet</translation>
     </message>
     <message>
-        <source>the rally points ({0}) are on board, read back and equal</source>
-        <translation>die Rally-Punkte ({0}) sind an Bord, zurückgelesen und gleich</translation>
+        <source>the vehicle was not heard for a while</source>
+        <translation>das Fahrzeug war eine Weile nicht zu hören</translation>
+    </message>
+    <message>
+        <source>the vehicle says that it holds something else now</source>
+        <translation>das Fahrzeug sagt, dass es jetzt etwas anderes an Bord hat</translation>
+    </message>
+    <message>
+        <source>another ground station has written to the vehicle</source>
+        <translation>eine andere Bodenstation hat auf das Fahrzeug geschrieben</translation>
+    </message>
+    <message>
+        <source>it could not be read</source>
+        <translation>es konnte nicht gelesen werden</translation>
+    </message>
+    <message>
+        <source>the {0} on board could not be read again ({1})</source>
+        <translation>{0}: an Bord, konnte nicht noch einmal gelesen werden ({1})</translation>
+    </message>
+    <message>
+        <source>the vehicle has another {0} now: {1}</source>
+        <translation>{0}: Das Fahrzeug hat jetzt etwas anderes an Bord: {1}</translation>
+    </message>
+    <message>
+        <source>the {0} on board is the one that was uploaded</source>
+        <translation>{0}: an Bord ist, was übertragen wurde</translation>
+    </message>
+    <message>
+        <source>what is on board is not known any more: {0}</source>
+        <translation>was an Bord ist, ist nicht mehr bekannt: {0}</translation>
+    </message>
+    <message>
+        <source>the {0} was uploaded, but {1}: it is read again</source>
+        <translation>{0}: übertragen, aber {1}: wird noch einmal gelesen</translation>
+    </message>
+    <message>
+        <source>the {0} on the vehicle is not the one that was uploaded; it was not started: upload it again</source>
+        <translation>{0}: Auf dem Fahrzeug ist nicht, was übertragen wurde; nicht gestartet: noch einmal übertragen</translation>
+    </message>
+    <message>
+        <source>{0}; it was not started</source>
+        <translation>{0}; nicht gestartet</translation>
+    </message>
+    <message>
+        <source>what is on the vehicle is not known ({0}); it was not started: wait until it is read</source>
+        <translation>was auf dem Fahrzeug ist, ist nicht bekannt ({0}); nicht gestartet: warten, bis es gelesen ist</translation>
+    </message>
+    <message>
+        <source>the vehicle has another mission now than the one that was uploaded: pause it, and look what it does</source>
+        <translation>das Fahrzeug hat jetzt eine andere Mission als die übertragene: anhalten und nachsehen, was es tut</translation>
     </message>
     <message>
         <source>the vehicle does not say whether it has rally points; look before it returns by itself</source>
@@ -8967,18 +9015,6 @@ Take it over?</source>
     <message>
         <source>the {0} is on board, read back and equal</source>
         <translation>an Bord, zurückgelesen und gleich: {0}</translation>
-    </message>
-    <message>
-        <source>the mission on board could not be read again ({0})</source>
-        <translation>die Mission an Bord ließ sich nicht noch einmal lesen ({0})</translation>
-    </message>
-    <message>
-        <source>the vehicle has another mission now: {0}</source>
-        <translation>das Fluggerät hat jetzt eine andere Mission: {0}</translation>
-    </message>
-    <message>
-        <source>the mission on board is the one that was uploaded</source>
-        <translation>die Mission an Bord ist die hochgeladene</translation>
     </message>
     <message>
         <source>no ArduPilot or PX4 was heard within {0} s; is the vehicle on, and the address right?</source>
