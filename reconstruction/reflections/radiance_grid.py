@@ -220,7 +220,7 @@ class _Marched:
     def __init__(self, fixed: Any, n: int) -> None:
         self.fixed, self.light, self.left = fixed, np.empty((n, 3), np.float32), np.empty(n, np.float32)
         n_chunks = 1 if n <= FEW_RAYS else MANY_CHUNKS
-        self.chunks = chunks(n, max(1, -(-n // n_chunks)))
+        self.chunks = chunks(n, max(1, -(-n // n_chunks))) or [(0, 0)]  # a picture may show no glass
         self.kept: dict[int, tuple[NDArray[np.float32], NDArray[np.int64]]] = {}
 
     def march(self, first: int, last: int, is_kept: bool) -> None:

@@ -213,8 +213,12 @@ def test_rays_that_are_no_numbers_have_light_that_is_none_and_harm_no_other_ray(
     assert grid.cells.grad.shape == grid.cells.shape
 
 
-def test_no_rays_have_no_light():
-    assert grid_of()(torch.zeros(0, 3), torch.zeros(0, 3)).shape == (0, 3)
+def test_no_rays_have_no_light_and_move_nothing():
+    grid, points = grid_of(), torch.zeros(0, 3, requires_grad=True)
+    light = grid(points, torch.zeros(0, 3))
+    assert light.shape == (0, 3)
+    light.sum().backward()
+    assert [bool(each.grad.any()) for each in (grid.cells, grid.far, points)] == [False] * 3
 
 
 @pytest.mark.parametrize("side", [0, 3, 12])
