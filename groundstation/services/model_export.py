@@ -218,7 +218,7 @@ def _ifc(folder: Path, out: Path) -> WrittenModel:
 def _web(export: _Export) -> list[str]:
     from groundstation.services.facility_records import open_records, records_path
     from reconstruction.exports.web import WebOptions, write_web
-    from reconstruction.exports.web_sky import sky_bytes
+    from reconstruction.exports.web_sky import sky_light
     from reconstruction.records.stored_files import stored_path
 
     def picture_of(name: str) -> bytes | None:
@@ -231,7 +231,7 @@ def _web(export: _Export) -> list[str]:
     options = WebOptions(
         degree=export.degree(2),
         is_baked=export.wanted.baked,
-        sky=sky_bytes(export.trained.model.sky),
+        sky=sky_light(export.trained.model.sky),
         picture_of=picture_of,
     )
     page = write_web(export.scene, export.out, export.rows, options, export.monitor)

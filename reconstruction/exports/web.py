@@ -28,7 +28,7 @@ from reconstruction.exports.web_gaussians import COLOUR_RANGE, MAX_GAUSSIANS, MA
 from reconstruction.exports.web_model import described_panes, first_view, panes_of
 from reconstruction.exports.web_pictures import small_jpeg
 from reconstruction.exports.web_records import Row, by_object, columns_of
-from reconstruction.exports.web_sky import Bytes, plain_sky_bytes
+from reconstruction.exports.web_sky import Halves, plain_sky_light
 from reconstruction.exports.whole_files import whole_file
 from reconstruction.objects.gs_scene import GsElement, GsScene
 
@@ -72,7 +72,7 @@ class WebOptions:
     degree: int = 2
     most: int | None = None
     is_baked: bool = True
-    sky: Bytes | None = None
+    sky: Halves | None = None
     picture_of: Callable[[str], bytes | None] = field(default=lambda name: None)
 
     def __post_init__(self) -> None:
@@ -80,8 +80,8 @@ class WebOptions:
             raise ValueError(f"degree: expected 0 to 3, got {self.degree}")
         if self.most is not None and self.most < 1:
             raise ValueError(f"most: expected 1 or more, got {self.most}")
-        if self.sky is not None and (self.sky.dtype != np.uint8 or self.sky.shape[1:] != (2 * len(self.sky), 3)):
-            raise ValueError(f"sky: expected bytes of shape (h, 2 h, 3), got {self.sky.dtype} {self.sky.shape}")
+        if self.sky is not None and (self.sky.dtype != np.float16 or self.sky.shape[1:] != (2 * len(self.sky), 3)):
+            raise ValueError(f"sky: expected float16 of shape (h, 2 h, 3), got {self.sky.dtype} {self.sky.shape}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +134,7 @@ def write_web(
     pictures = _pictures(found, options, monitor)
     gaussians = _gaussians(scene, elements, options, folder)
     chunks = packed(gaussians, panes_of(gaussians, elements), options.degree, options.most)
-    sky = plain_sky_bytes() if options.sky is None else options.sky
+    sky = plain_sky_light() if options.sky is None else options.sky
     described = {
         "title": options.title or scene.name,
         "scene": scene.global_id,
@@ -146,7 +146,7 @@ def write_web(
         "degree": options.degree,
         "rest_steps": [float(step) for step in chunks.rest_steps],
         "colour_range": COLOUR_RANGE,
-        "sky": {"rows": len(sky), "bytes": base64.b64encode(sky.tobytes()).decode()},
+        "sky": {"rows": len(sky), "halves": base64.b64encode(sky.astype("<f2").tobytes()).decode()},
         "view": first_view(scene, elements, gaussians),
         **described_panes(scene, elements),
         "columns": [asdict(column) for column in columns_of(elements, found)],

@@ -47,11 +47,12 @@ class Picture {
     return texture;
   }
 
-  skyTexture({ rows, bytes }) {
+  // Light, linear between its pixels, round without a seam and ending at the poles, as the model's own.
+  skyTexture({ rows, halves }) {
     const { gl } = this;
-    const texture = this.texture(gl.SRGB8, 2 * rows, rows);
+    const texture = this.texture(gl.RGB16F, 2 * rows, rows);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 2 * rows, rows, gl.RGB, gl.UNSIGNED_BYTE, bytesOf(bytes));
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 2 * rows, rows, gl.RGB, gl.HALF_FLOAT, new Uint16Array(bytesOf(halves).buffer));
     for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
     return texture;

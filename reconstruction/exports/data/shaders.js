@@ -75,7 +75,8 @@ void main() {
   found = vec4(mix(colour, tint.rgb * (0.65 + 0.5 * grey), tint.a), float(b.w >> 24) / 255.0);
 }`;
 
-// Ellipsoids projected to ellipses (Zwicker et al., 2001; Kerbl et al., 2023), with the low-pass they were learned with.
+// Discs as a ray meets them (Huang et al., 2024), blurred as `reconstruction.splatting.projection` does it; ellipsoids
+// projected to ellipses (Zwicker et al., 2001; Kerbl et al., 2023). Both with the low-pass they were learned with.
 const SPLAT_VERTEX = `${CAMERA}${LIGHT}
 precision highp usampler2D;
 uniform usampler2D uData;
@@ -87,12 +88,62 @@ layout(location = 0) in uint aIndex;
 flat out vec4 vColour;
 out vec2 vPlace;          // in standard deviations
 
+const float FLAT = 4e-6;  // metres: what is thinner is a disc
+
 vec3 axes[3];
 void setAxes(vec4 q) {
   float w = q.x, x = q.y, y = q.z, z = q.w;
   axes[0] = vec3(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y));
   axes[1] = vec3(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x));
   axes[2] = vec3(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y));
+}
+
+// How a place in standard deviations moves on the screen, and the relative change of the depth with it.
+mat2 onto = mat2(0.0);
+vec2 slopes = vec2(0.0);
+float share = 1.0; // of the opacity that the low-pass leaves
+
+void setDisc(vec3 p, vec3 u, vec3 v) {
+  vec2 q = vec2(u.z, v.z) / p.z;
+  vec2 ju = uFocal * (u.xy - p.xy * q.x) / p.z, jv = uFocal * (v.xy - p.xy * q.y) / p.z;
+  float area = ju.x * jv.y - jv.x * ju.y;
+  float square = area * area + uBlur * (dot(ju, ju) + dot(jv, jv) + uBlur);
+  float xx = ju.x * ju.x + jv.x * jv.x + uBlur;
+  float xy = ju.x * ju.y + jv.x * jv.y;
+  float yy = ju.y * ju.y + jv.y * jv.y + uBlur;
+  vec2 along = ju * q.x + jv * q.y;
+  vec2 likely = vec2(xy * along.y - yy * along.x, xy * along.x - xx * along.y) / square;
+  vec2 plane = vec2(ju.y * q.y - jv.y * q.x, jv.x * q.x - ju.x * q.y);
+  const float tiny = 1e-18;
+  float steepest = 5.6712818 / uFocal; // of a plane at 80 degrees
+  float limit = steepest * steepest, steep = dot(plane, plane);
+  float over = limit * area * area >= steep && abs(area) > tiny ? 1.0 / area : limit * area / max(steep, tiny);
+  vec2 tilt = (1.0 - over * area) * likely + over * plane;
+  float right = sqrt(xx), beside = xy / right, lower = sqrt(square) / right;
+  onto = mat2(right, beside, 0.0, lower);
+  slopes = -vec2(right * tilt.x + beside * tilt.y, lower * tilt.y);
+  share = abs(area) / sqrt(square);
+}
+
+void setEllipsoid(vec3 p, vec3 sizes) {
+  vec2 limit = 1.3 * 0.5 * uSize / uFocal;
+  vec2 tangent = clamp(p.xy / p.z, -limit, limit);
+  mat2 spread = mat2(0.0);
+  for (int i = 0; i < 3; i++) {
+    vec3 c = sizes[i] * (axes[i] * uCam);
+    vec2 t = uFocal / p.z * (c.xy - tangent * c.z);
+    spread += outerProduct(t, t);
+  }
+  float sharp = determinant(spread);
+  spread += mat2(uBlur, 0.0, 0.0, uBlur);
+  share = sqrt(clamp(sharp / determinant(spread), 0.0, 1.0));
+  float middle = 0.5 * (spread[0][0] + spread[1][1]);
+  float half_ = 0.5 * (spread[0][0] - spread[1][1]);
+  float far = sqrt(half_ * half_ + spread[0][1] * spread[0][1]);
+  float angle = 0.5 * atan(spread[0][1], far < 1e-6 ? 1.0 : half_);
+  vec2 long_ = vec2(cos(angle), sin(angle));
+  vec2 lengths = sqrt(vec2(middle + far, max(middle - far, 0.5 * uBlur)));
+  onto = mat2(lengths.x * long_, lengths.y * vec2(-long_.y, long_.x));
 }
 
 void main() {
@@ -112,32 +163,21 @@ void main() {
   vec4 q = vec4(unpackHalf2x16(a.w), unpackHalf2x16(b.x));
   setAxes(q / max(length(q), 1e-6));
   vec3 sizes = vec3(unpackHalf2x16(b.y), unpackHalf2x16(b.z & 0xffffu).x);
-  vec2 limit = 1.3 * 0.5 * uSize / uFocal;
-  float largest = 3.4 * (uFocal / p.z * max(sizes.x, max(sizes.y, sizes.z)) * (1.0 + length(limit)) + 1.0);
-  if (any(greaterThan(abs(uFocal * p.xy / p.z), 0.5 * uSize + largest))) return;
-  vec2 tangent = clamp(p.xy / p.z, -limit, limit);
-  mat2 spread = mat2(0.0);
-  for (int i = 0; i < 3; i++) {
-    vec3 c = sizes[i] * (axes[i] * uCam);
-    vec2 t = uFocal / p.z * (c.xy - tangent * c.z);
-    spread += outerProduct(t, t);
+  if (sizes.z < FLAT) {
+    setDisc(p, sizes.x * (axes[0] * uCam), sizes.y * (axes[1] * uCam));
+  } else {
+    float largest = 3.4 * (uFocal / p.z * max(sizes.x, max(sizes.y, sizes.z)) * (1.0 + length(0.65 * uSize / uFocal)) + 1.0);
+    if (any(greaterThan(abs(uFocal * p.xy / p.z), 0.5 * uSize + largest))) return;
+    setEllipsoid(p, sizes);
   }
-  float sharp = determinant(spread);
-  spread += mat2(uBlur, 0.0, 0.0, uBlur);
-  float share = uAntialiased ? sqrt(clamp(sharp / determinant(spread), 0.0, 1.0)) : 1.0;
-  opacity = min(opacity, max(opacity * share, 2.0 / 255.0)); // surfaces of small ones do not vanish from afar
-  float middle = 0.5 * (spread[0][0] + spread[1][1]);
-  float half_ = 0.5 * (spread[0][0] - spread[1][1]);
-  float far = sqrt(half_ * half_ + spread[0][1] * spread[0][1]);
-  float angle = 0.5 * atan(spread[0][1], far < 1e-6 ? 1.0 : half_);
-  vec2 long_ = vec2(cos(angle), sin(angle));
-  vec2 lengths = sqrt(vec2(middle + far, max(middle - far, 0.5 * uBlur)));
+  if (uAntialiased) opacity = min(opacity, max(opacity * share, 2.0 / 255.0)); // small ones do not vanish from afar
   float reach = sqrt(2.0 * log(255.0 * opacity));
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-  vPlace = corner * reach;
-  vec2 off = vPlace.x * lengths.x * long_ + vPlace.y * lengths.y * vec2(-long_.y, long_.x);
-  vec2 at = uFocal * p.xy / p.z + off;
-  gl_Position = vec4(2.0 * at.x / uSize.x, -2.0 * at.y / uSize.y, 0.0, 1.0);
+  vPlace = (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0) * reach;
+  // In one plane, so that what lies between the corners is where a ray meets it.
+  float depth = 1.0 + dot(slopes, vPlace);
+  vec2 at = uFocal * p.xy / p.z * depth + onto * vPlace;
+  const float near = 0.1;
+  gl_Position = vec4(2.0 * at.x / uSize.x, -2.0 * at.y / uSize.y, depth - 2.0 * near / p.z, depth);
 
   vColour = vec4(light(texelFetch(uColours, cell, 0).rgb), opacity);
 }`;
@@ -244,17 +284,25 @@ void main() {
 const SHOW_VERTEX = `#version 300 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
 
-const SHOW_FRAGMENT = `${UI_FRAGMENT_HEAD}
+// Where a picture of all directions shows one, as `reconstruction.splatting.sky` reads it: rows from the zenith to the
+// nadir, columns clockwise from south, so that north is in the middle. A unit direction: east, north, up.
+const SKY_PLACE = `
+vec2 skyPlace(vec3 d) {
+  float north = abs(d.x) + abs(d.y) > 1e-6 ? d.y : 1.0;
+  return vec2(0.5 + atan(d.x, north) / 6.2831853, 0.5 - asin(clamp(d.z, -1.0, 1.0)) / 3.1415927);
+}
+`;
+
+const SHOW_FRAGMENT = `${UI_FRAGMENT_HEAD}${SKY_PLACE}
 uniform sampler2D uLight;
-uniform sampler2D uSky; // rows from the zenith to the nadir, columns clockwise from north
+uniform highp sampler2D uSky; // linear light
 uniform vec2 uSize;
 uniform float uFocal;
 uniform mat3 uCam;
 void main() {
   vec4 found = texelFetch(uLight, ivec2(gl_FragCoord.xy), 0);
   vec3 d = normalize(uCam * vec3((gl_FragCoord.xy - 0.5 * uSize) * vec2(1.0, -1.0) / uFocal, 1.0));
-  float turns = abs(d.x) + abs(d.y) > 1e-6 ? atan(d.x, d.y) / 6.2831853 : 0.0;
-  vec3 behind = textureLod(uSky, vec2(turns, 0.5 - asin(clamp(d.z, -1.0, 1.0)) / 3.1415927), 0.0).rgb;
+  vec3 behind = textureLod(uSky, skyPlace(d), 0.0).rgb;
   vec3 c = clamp(found.rgb + (1.0 - found.a) * behind, 0.0, 1.0);
   colour = vec4(mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c)), 1.0);
 }`;

@@ -6,15 +6,17 @@ import json
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
 import pytest
+import torch
 
 from planning.errors import InputError, OperationCancelled
 from reconstruction.exports import web
 from reconstruction.exports.web import PAGE, SIGN, WebOptions, write_web
-from reconstruction.exports.web_sky import plain_sky_bytes, sky_bytes
+from reconstruction.exports.web_sky import plain_sky_light, sky_light
 from reconstruction.splatting.sky import Sky
 from tests.reconstruction.objects.made_scene import made_scene
 
@@ -218,20 +220,62 @@ def test_one_facade_or_the_background_alone_is_a_page_too(tmp_path):
     assert write_web(panes, tmp_path / "panes").n_gaussians == 0
 
 
-@pytest.mark.parametrize("wrong", [{"degree": 4}, {"most": 0}, {"sky": np.zeros((4, 4, 3), np.uint8)}])
+@pytest.mark.parametrize("wrong", [{"degree": 4}, {"most": 0}, {"sky": np.zeros((4, 4, 3), np.float16)}, {"sky": np.zeros((4, 8, 3), np.uint8)}])
 def test_wrong_options_are_refused(wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         WebOptions(**wrong)
 
 
 def test_skies_are_pictures_of_all_directions():
-    sky = Sky(8, 0.25)
-    assert sky_bytes(sky).shape == (8, 16, 3)
-    # Of linear 0.25 the sRGB curve makes 0.537.
-    assert (np.abs(sky_bytes(sky).astype(int) - 137) <= 1).all()
-    plain = plain_sky_bytes()
+    light = sky_light(Sky(8, 2.5))
+    assert (light.shape, light.dtype) == ((8, 16, 3), np.float16)
+    assert np.abs(light - 2.5).max() < 0.002
+    plain = plain_sky_light()
     assert plain.shape == (64, 128, 3)
     assert plain[0, 0, 2] > plain[-1, 0, 2]
+
+
+def place_on_the_page(directions):
+    """Where the page's own lookup finds directions, shape (n, 2): its GLSL, read as Python."""
+    source = (web.SOURCES / "shaders.js").read_text("utf-8").split("vec2 skyPlace(vec3 d) {")[1].split("}")[0]
+    source = re.sub(r"(?<== )([^;?]+) \? ([^:]+) : ([^;]+)", r"np.where(\1, \2, \3)", source.replace("return", "place ="))
+    lines = [line.strip().removeprefix("float ") for line in source.split(";")]
+    names = {"np": np, "atan": np.arctan2, "asin": np.arcsin, "clamp": np.clip, "abs": np.abs}
+    names |= {"vec2": lambda x, y: np.stack([x, y], axis=1), "d": SimpleNamespace(**dict(zip("xyz", directions.T, strict=True)))}
+    exec("\n".join(lines), names)  # noqa: S102 - our own shader
+    return names["place"]
+
+
+def sampled(texels, places):
+    """As WebGL reads a texture: linear between pixels, repeated across, held at the upper and the lower edge."""
+    height, width = texels.shape[:2]
+    x, y = (places * (width, height) - 0.5).T
+    columns, rows, light = np.floor(x).astype(int), np.floor(y).astype(int), 0.0
+    for i, share in ((0, 1.0 - x + columns), (1, x - columns)):
+        for j, other in ((0, 1.0 - y + rows), (1, y - rows)):
+            of_texels = texels[np.clip(rows + j, 0, height - 1), (columns + i) % width]
+            light = light + (share * other)[:, None] * of_texels
+    return light
+
+
+def test_the_page_finds_the_sky_where_the_model_has_it():
+    generator = torch.Generator().manual_seed(0)
+    sky = Sky(16)
+    with torch.no_grad():
+        for level in sky.levels:
+            level.copy_(1.5 * torch.randn(level.shape, generator=generator))
+    around = np.random.default_rng(1).normal(size=(4000, 3))
+    # Straight up and down, the four sides, and both sides of the seam, which is south.
+    around = np.concatenate([around, np.eye(3), -np.eye(3), [(1e-4, -1.0, 0.3), (-1e-4, -1.0, 0.3)]])
+    directions = around / np.linalg.norm(around, axis=1, keepdims=True)
+    with torch.no_grad():
+        expected = sky(torch.from_numpy(directions).float()).numpy()
+    assert expected.std() > 0.2
+    found = sampled(sky_light(sky).astype(float), place_on_the_page(directions))
+    assert np.abs(found - expected).max() < 0.004
+    texture = (web.SOURCES / "picture.js").read_text("utf-8").split("skyTexture({")[1].split("\n  }")[0]
+    assert "TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE" in texture
+    assert "WRAP_S" not in texture
 
 
 def test_the_page_says_all_in_both_languages():

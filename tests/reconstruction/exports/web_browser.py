@@ -18,7 +18,7 @@ import pytest
 
 from reconstruction.exports.web import WebOptions, write_web
 
-GREY = np.full((4, 8, 3), 128, np.uint8)
+GREY = np.full((4, 8, 3), 0.2158605, np.float16)  # sRGB 128
 
 CHROMIUM = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
