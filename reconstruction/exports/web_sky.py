@@ -1,4 +1,4 @@
-"""What lies behind everything on a web page: the model's sky, or a plain one. Linear light, 1 as bright as a photo shows.
+"""What lies behind everything on a web page: the model's sky, or a plain one. Linear light: 1 is as bright as white.
 
 A picture of all directions as `reconstruction.splatting.sky.Sky` has it: rows from the zenith to the nadir, twice as
 many columns clockwise from south, so that north is in the middle.

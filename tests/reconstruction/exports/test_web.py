@@ -220,7 +220,10 @@ def test_one_facade_or_the_background_alone_is_a_page_too(tmp_path):
     assert write_web(panes, tmp_path / "panes").n_gaussians == 0
 
 
-@pytest.mark.parametrize("wrong", [{"degree": 4}, {"most": 0}, {"sky": np.zeros((4, 4, 3), np.float16)}, {"sky": np.zeros((4, 8, 3), np.uint8)}])
+@pytest.mark.parametrize(
+    "wrong",
+    [{"degree": 4}, {"most": 0}, {"sky": np.zeros((4, 4, 3), np.float16)}, {"sky": np.zeros((4, 8, 3), np.uint8)}],
+)
 def test_wrong_options_are_refused(wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         WebOptions(**wrong)
@@ -238,11 +241,16 @@ def test_skies_are_pictures_of_all_directions():
 def place_on_the_page(directions):
     """Where the page's own lookup finds directions, shape (n, 2): its GLSL, read as Python."""
     source = (web.SOURCES / "shaders.js").read_text("utf-8").split("vec2 skyPlace(vec3 d) {")[1].split("}")[0]
-    source = re.sub(r"(?<== )([^;?]+) \? ([^:]+) : ([^;]+)", r"np.where(\1, \2, \3)", source.replace("return", "place ="))
+    source = re.sub(
+        r"(?<== )([^;?]+) \? ([^:]+) : ([^;]+)", r"np.where(\1, \2, \3)", source.replace("return", "place =")
+    )
     lines = [line.strip().removeprefix("float ") for line in source.split(";")]
     names = {"np": np, "atan": np.arctan2, "asin": np.arcsin, "clamp": np.clip, "abs": np.abs}
-    names |= {"vec2": lambda x, y: np.stack([x, y], axis=1), "d": SimpleNamespace(**dict(zip("xyz", directions.T, strict=True)))}
-    exec("\n".join(lines), names)  # noqa: S102 - our own shader
+    names |= {
+        "vec2": lambda x, y: np.stack([x, y], axis=1),
+        "d": SimpleNamespace(**dict(zip("xyz", directions.T, strict=True))),
+    }
+    exec("\n".join(lines), names)
     return names["place"]
 
 
