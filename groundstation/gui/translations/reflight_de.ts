@@ -8914,19 +8914,19 @@ Take it over?</source>
     </message>
     <message>
         <source>the vehicle was restarted</source>
-        <translation>das Fahrzeug wurde neu gestartet</translation>
+        <translation>das Fluggerät wurde neu gestartet</translation>
     </message>
     <message>
         <source>the vehicle was not heard for a while</source>
-        <translation>das Fahrzeug war eine Weile nicht zu hören</translation>
+        <translation>das Fluggerät war eine Weile nicht zu hören</translation>
     </message>
     <message>
         <source>the vehicle says that it holds something else now</source>
-        <translation>das Fahrzeug sagt, dass es jetzt etwas anderes an Bord hat</translation>
+        <translation>das Fluggerät sagt, dass es jetzt etwas anderes an Bord hat</translation>
     </message>
     <message>
         <source>another ground station has written to the vehicle</source>
-        <translation>eine andere Bodenstation hat auf das Fahrzeug geschrieben</translation>
+        <translation>eine andere Bodenstation hat auf das Fluggerät geschrieben</translation>
     </message>
     <message>
         <source>it could not be read</source>
@@ -8938,11 +8938,11 @@ Take it over?</source>
     </message>
     <message>
         <source>the vehicle has another {0} now: {1}</source>
-        <translation>{0}: Das Fahrzeug hat jetzt etwas anderes an Bord: {1}</translation>
+        <translation>{0}: Das Fluggerät hat jetzt etwas anderes an Bord: {1}</translation>
     </message>
     <message>
         <source>the {0} on board is the one that was uploaded</source>
-        <translation>{0}: an Bord ist, was übertragen wurde</translation>
+        <translation>{0}: an Bord ist, was hochgeladen wurde</translation>
     </message>
     <message>
         <source>what is on board is not known any more: {0}</source>
@@ -8950,11 +8950,11 @@ Take it over?</source>
     </message>
     <message>
         <source>the {0} was uploaded, but {1}: it is read again</source>
-        <translation>{0}: übertragen, aber {1}: wird noch einmal gelesen</translation>
+        <translation>{0}: hochgeladen, aber {1}: wird noch einmal gelesen</translation>
     </message>
     <message>
         <source>the {0} on the vehicle is not the one that was uploaded; it was not started: upload it again</source>
-        <translation>{0}: Auf dem Fahrzeug ist nicht, was übertragen wurde; nicht gestartet: noch einmal übertragen</translation>
+        <translation>{0}: Auf dem Fluggerät ist nicht, was hochgeladen wurde; nicht gestartet: noch einmal hochladen</translation>
     </message>
     <message>
         <source>{0}; it was not started</source>
@@ -8962,11 +8962,11 @@ Take it over?</source>
     </message>
     <message>
         <source>what is on the vehicle is not known ({0}); it was not started: wait until it is read</source>
-        <translation>was auf dem Fahrzeug ist, ist nicht bekannt ({0}); nicht gestartet: warten, bis es gelesen ist</translation>
+        <translation>was auf dem Fluggerät ist, ist nicht bekannt ({0}); nicht gestartet: warten, bis es gelesen ist</translation>
     </message>
     <message>
         <source>the vehicle has another mission now than the one that was uploaded: pause it, and look what it does</source>
-        <translation>das Fahrzeug hat jetzt eine andere Mission als die übertragene: anhalten und nachsehen, was es tut</translation>
+        <translation>das Fluggerät hat jetzt eine andere Mission als die hochgeladene: anhalten und nachsehen, was es tut</translation>
     </message>
     <message>
         <source>the vehicle does not say whether it has rally points; look before it returns by itself</source>
