@@ -23,7 +23,7 @@ from planning.photo_files.places import Locality, PhotoHeights
 from planning.progress import QUIET, Monitor
 from planning.site import Facade, Origin, Panel, SiteModel
 from planning.site_file import write_site
-from planning.site_import.importer import read_source, site_of_facades
+from planning.site_import.importer import check_ground, read_source, site_of_facades
 from planning.site_import.options import ImportOptions
 from planning.site_import.output import write_imported_site
 from planning.site_import.source import SourceModel
@@ -213,6 +213,7 @@ def _place(
     path: Path, site_model: SiteModel | None, source: SourceModel | None, options: ImportOptions
 ) -> tuple[Locality, TriangleMesh]:
     if source is not None:
+        check_ground(path, source)
         ground_m = source.placement.ground_z_m
         name = options.name or source.name or path.stem
         return CoarsePlace(name, source.placement.origin, (0.0, 0.0, ground_m)), source.building

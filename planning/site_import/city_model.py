@@ -14,9 +14,10 @@ from planning.geodesy.crs import crs_conversion
 from planning.geometry.solids import Solids
 from planning.mesh import from_corners, join
 from planning.progress import Monitor
+from planning.site_import.ground import DECK_M, END_QUANTILES, EVEN_M, StatedGround, stand, stated_ground
 from planning.site_import.options import ImportOptions
 from planning.site_import.placement import Placement, place
-from planning.site_import.polygons import triangulate
+from planning.site_import.polygons import area_vector, triangulate
 from planning.site_import.source import HOW_TO_GET_PANELS, BuildingChoice, SourceModel, SourceWindow
 from planning.site_import.window_faces import pane_of_polygons
 
@@ -29,6 +30,9 @@ NEIGHBOUR_REACH_M = 20.0
 
 JOINED_GAP_M = 10.0
 """Buildings with windows that stand no further apart are one site; the distance kept from them is no smaller."""
+
+MIN_RING_POINTS = 3
+"""A ring of fewer encloses nothing."""
 
 MAX_NAMED = 8
 """Buildings listed in a message."""
@@ -50,8 +54,12 @@ class CityBuilding:
         Faces by identifier of the window.
     faces
         All other faces of the building that exist in the world (no interior, no closure surfaces).
+    ground
+        The faces among them that stand on the ground, as the file says.
     n_unread_windows
         Windows whose geometry is of a kind that is not read.
+    left_out
+        Identifiers of what was broken, or of what holds it.
     """
 
     id: str
@@ -59,7 +67,9 @@ class CityBuilding:
     part_ids: tuple[str, ...] = ()
     windows: dict[str, list[Rings]] = field(default_factory=dict)
     faces: list[Rings] = field(default_factory=list)
+    ground: list[Rings] = field(default_factory=list)
     n_unread_windows: int = 0
+    left_out: list[str] = field(default_factory=list)
 
     def polygons(self) -> list[Rings]:
         """All faces, windows last."""
@@ -100,7 +110,9 @@ def merged(buildings: Sequence[CityBuilding]) -> CityBuilding:
         buildings[0],
         windows=windows,
         faces=[rings for building in buildings for rings in building.faces],
+        ground=[rings for building in buildings for rings in building.ground],
         n_unread_windows=sum(building.n_unread_windows for building in buildings),
+        left_out=[name for building in buildings for name in building.left_out],
     )
 
 
@@ -125,31 +137,79 @@ def city_source(
     if options.panels_required and not options.panel_grids and not any(building.windows for building in solid):
         raise InputError(f"{path}: no building in this file has windows; {HOW_TO_GET_PANELS}")
     chosen, choice = _choose(path, solid, crs, options)
-    placement = _placement(crs, merged(chosen).points(), options)
-    local = merged(chosen).at(placement)
+    wanted = merged(chosen)
+    corners = wanted.triangles()
+    if not len(corners):
+        raise InputError(f"{path}: building '{wanted.id}' has no surface with an area")
+    stands = stand(
+        corners.reshape(-1, 3),
+        np.arange(3 * len(corners)).reshape(-1, 3),
+        stated_ground(options) or _ground_surface(wanted),
+        lambda points, z: _placement(crs, points, z, options),
+    )
+    placement = stands.placement
+    local = wanted.at(placement)
     moved = [building.at(placement) for building in solid]
     others = [building for building, original in zip(moved, solid, strict=True) if original not in chosen]
-    near = _near(local, others, options.airspace_margin_m + NEIGHBOUR_REACH_M)
+    building = from_corners(stands.vertices_enu_m.reshape(-1, 3, 3)[stands.is_kept])
+    near = _near(building.vertices_enu_m, others, options.airspace_margin_m + NEIGHBOUR_REACH_M)
     meshes = []
-    for done, building in enumerate([local, *near]):
-        monitor.report("surfaces", done, len(near) + 1)
-        meshes.append(from_corners(building.triangles()))
-    notes = [*placement.georeference.notes, *choice]
+    for done, other in enumerate(near):
+        monitor.report("surfaces", done, len(near))
+        meshes.append(from_corners(other.triangles()))
+    notes = [*placement.georeference.notes, *choice, *stands.notes]
     if others:
         notes.append(
             f"other buildings in the file: {len(near)} within reach of the airspace, kept as obstacles; "
             f"{len(others) - len(near)} further away, left out"
         )
+    notes += left_out_notes(wanted.left_out)
     if local.n_unread_windows:
         notes.append(f"windows given as a shared prototype (implicit geometry), not read: {local.n_unread_windows}")
     return SourceModel(
         name=local.name,
         windows=tuple(_windows(local)),
-        building=meshes[0],
-        neighbours=join(meshes[1:]),
+        building=building,
+        neighbours=join(meshes),
         placement=placement,
         notes=tuple(notes),
         choices=tuple(_choice(building) for building in moved),
+        terrain=stands.terrain,
+        question=stands.question,
+    )
+
+
+def left_out_notes(names: Sequence[str]) -> tuple[str, ...]:
+    """What was left out of a building because it is broken, by identifier, as a note; none where nothing was."""
+    if not names:
+        return ()
+    different = list(dict.fromkeys(name or "without an identifier" for name in names))
+    more = ", ..." if len(different) > MAX_NAMED else ""
+    return (
+        f"left out, because they are broken (such as outlines of fewer than three points) or not read: {len(names)} "
+        f"({', '.join(different[:MAX_NAMED])}{more})",
+    )
+
+
+def _ground_surface(building: CityBuilding) -> StatedGround | None:
+    """The ground by the surfaces that the file says stand on it; None without any, or where they differ by a storey."""
+    rings = [surface[0] for surface in building.ground]
+    if not rings:
+        return None
+    heights = np.array([np.median(ring[:, 2]) for ring in rings])
+    areas = np.array([np.linalg.norm(area_vector(ring)) for ring in rings])
+    order = np.argsort(heights)
+    share = np.cumsum(areas[order]) / max(float(areas.sum()), 1e-12)
+    low, high = (float(heights[order][np.searchsorted(share, part)]) for part in END_QUANTILES)
+    if high - low > DECK_M[1]:
+        return None
+    if high - low <= EVEN_M:
+        middle = float(heights[order][np.searchsorted(share, 0.5)])
+        return StatedGround(middle, f"ground: z = {middle:.2f} of the file, its GroundSurface (--ground names another)")
+    return StatedGround(
+        high,
+        f"ground: the file's GroundSurface lies between z = {low:.2f} and {high:.2f}; the highest is taken, so that "
+        "heights above ground are safe on every side (--ground names another)",
     )
 
 
@@ -166,11 +226,11 @@ def _windows(building: CityBuilding) -> Iterator[SourceWindow]:
             yield SourceWindow(window_id, pane.outline, pane.thickness_m)
 
 
-def _placement(crs: str | None, points: Array, options: ImportOptions) -> Placement:
+def _placement(crs: str | None, points: Array, ground_z: float, options: ImportOptions) -> Placement:
     found = None
     if crs is not None and options.crs is None and options.origin is None:
         found = crs_conversion(crs, points, options.axis_order, options.height_reference)
-    return place(found, points, None, options)
+    return place(found, points, ground_z, options)
 
 
 def _choose(
@@ -194,9 +254,10 @@ def _choose(
     if not with_windows:
         largest = max(buildings, key=lambda building: len(building.faces))
         return [largest], (f"no building in the file has windows; '{largest.id}' has the most surfaces",)
-    placement = _placement(crs, with_windows[0].points(), options)
+    points = with_windows[0].points()
+    placement = _placement(crs, points, float(points[:, 2].min()), options)
     local = [building.at(placement) for building in with_windows]
-    beside = _near(local[0], local[1:], JOINED_GAP_M)
+    beside = _near(local[0].points(), local[1:], JOINED_GAP_M)
     chosen = [with_windows[0], *(b for b, moved in zip(with_windows[1:], local[1:], strict=True) if moved in beside)]
     left = [building for building in with_windows if building not in chosen]
     note = f"the site is {_listed(chosen)}"
@@ -207,7 +268,7 @@ def _choose(
 
 def _nearest(buildings: list[CityBuilding], grid: Array, crs: str | None, options: ImportOptions) -> CityBuilding:
     """Building whose surfaces are nearest to the middle of a panel grid, given by three corners, file coordinates."""
-    placement = _placement(crs, grid, options)
+    placement = _placement(crs, grid, float(grid[:, 2].min()), options)
     corners = placement.enu(grid)
     middle = 0.5 * (corners[1] + corners[2])[None]
     local = [building.at(placement) for building in buildings]
@@ -237,7 +298,6 @@ def _box_gap(points: Array, others: Array) -> float:
     return float(np.linalg.norm(np.maximum(apart, 0.0)))
 
 
-def _near(chosen: CityBuilding, others: Sequence[CityBuilding], reach_m: float) -> list[CityBuilding]:
-    """Buildings whose bounding box lies within reach of the chosen one's, seen from above."""
-    own = chosen.points()[:, :2]
-    return [building for building in others if _box_gap(own, building.points()[:, :2]) <= reach_m]
+def _near(points: Array, others: Sequence[CityBuilding], reach_m: float) -> list[CityBuilding]:
+    """Buildings whose bounding box lies within reach of that of points, shape (n, 3), seen from above."""
+    return [building for building in others if _box_gap(points[:, :2], building.points()[:, :2]) <= reach_m]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, ParseError
 
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from planning.json_file import MAX_FILE_BYTES
 from planning.progress import Monitor
-from planning.site_import.city_model import CityBuilding, Rings, city_source
+from planning.site_import.city_model import MIN_RING_POINTS, CityBuilding, Rings, city_source
 from planning.site_import.options import ImportOptions
 from planning.site_import.source import SourceModel
 
@@ -40,11 +40,20 @@ GML_ID = "id"
 
 @dataclass(slots=True)
 class _Reading:
-    """Polygons of one building, by level of detail, while its elements are walked."""
+    """Polygons of a building or of one of its parts, by level of detail, while its elements are walked."""
 
     faces: dict[int, list[Rings]] = field(default_factory=dict)
+    ground: dict[int, list[Rings]] = field(default_factory=dict)
     windows: dict[int, dict[str, list[Rings]]] = field(default_factory=dict)
+    parts: list[_Reading] = field(default_factory=list)
     n_implicit: int = 0
+    left_out: list[str] = field(default_factory=list)
+
+    def every(self) -> Iterator[_Reading]:
+        """The building's own, and those of all parts."""
+        yield self
+        for part in self.parts:
+            yield from part.every()
 
 
 def read_citygml(path: Path, options: ImportOptions, monitor: Monitor) -> SourceModel:
@@ -109,17 +118,25 @@ def _building(path: Path, element: Element, number: str) -> CityBuilding:
     """A building with all its parts, walls and windows each in their finest level of detail."""
     reading = _Reading()
     try:
-        _walk(path, element, reading, lod=0, window_id=None)
+        _walk(element, reading, _Place())
     except RecursionError as error:
         raise InputError(f"{path}: nested too deeply for a CityGML file") from error
-    return CityBuilding(
+    building = CityBuilding(
         id=_id(element) or number,
         name=_name(element) or _id(element),
         part_ids=tuple(_id(part) for part in element.iter() if _local(part) == "BuildingPart" and _id(part)),
-        windows=reading.windows[max(reading.windows, key=_fineness)] if reading.windows else {},
-        faces=reading.faces[max(reading.faces, key=_fineness)] if reading.faces else [],
-        n_unread_windows=reading.n_implicit,
     )
+    for number_of_part, part in enumerate(reading.every()):
+        for window_id, faces in part.windows[max(part.windows, key=_fineness)].items() if part.windows else ():
+            is_new = window_id not in building.windows
+            building.windows[window_id if is_new else f"{number_of_part}/{window_id}"] = faces
+        if part.faces:
+            finest = max(part.faces, key=_fineness)
+            building.faces += part.faces[finest]
+            building.ground += part.ground.get(finest, [])
+        building.n_unread_windows += part.n_implicit
+        building.left_out += part.left_out
+    return building
 
 
 def _fineness(lod: int) -> float:
@@ -131,32 +148,61 @@ def _name(element: Element) -> str:
     return next((child.text.strip() for child in element if _local(child) == "name" and child.text), "")
 
 
-def _walk(path: Path, element: Element, reading: _Reading, lod: int, window_id: str | None) -> None:
-    """Collect the polygons below an element."""
+class _Place(NamedTuple):
+    """Where in a building a walk has come to: level of detail, window, whether it stands on the ground, nearest id."""
+
+    lod: int = 0
+    window_id: str | None = None
+    is_ground: bool = False
+    id: str = ""
+
+
+def _walk(element: Element, reading: _Reading, place: _Place) -> None:
+    """Collect the polygons below an element; those that are no outlines are left out."""
+    place = place._replace(id=_id(element) or place.id)
     for child in element:
         name = _local(child)
         if name in SKIPPED:
             continue
         if name in POLYGONS:
-            rings = tuple(_ring(path, ring) for ring in child.iter() if _local(ring) == "LinearRing")
-            if not rings:
-                continue
-            if window_id is None:
-                reading.faces.setdefault(lod, []).append(rings)
-            else:
-                reading.windows.setdefault(lod, {}).setdefault(window_id, []).append(rings)
+            _add_polygon(child, reading, place)
+        elif name == "BuildingPart":
+            reading.parts.append(_Reading())
+            _walk(child, reading.parts[-1], place)
         elif name.startswith("lod") and name[3:4].isdigit():
-            if "Implicit" in name and window_id is not None:
+            if "Implicit" in name and place.window_id is not None:
                 reading.n_implicit += 1
-            _walk(path, child, reading, int(name[3]), window_id)
+            _walk(child, reading, place._replace(lod=int(name[3])))
         elif name in WINDOWS:
-            _walk(path, child, reading, lod, _id(child) or f"window-{sum(map(len, reading.windows.values()))}")
+            window_id = _id(child) or f"window-{sum(map(len, reading.windows.values()))}"
+            _walk(child, reading, place._replace(window_id=window_id))
         else:
-            _walk(path, child, reading, lod, window_id)
+            _walk(child, reading, place._replace(is_ground=place.is_ground or name == "GroundSurface"))
 
 
-def _ring(path: Path, ring: Element) -> Array:
-    """Points of a ring without the repeated last one, shape (k, 3)."""
+def _add_polygon(element: Element, reading: _Reading, place: _Place) -> None:
+    rings = []
+    for ring in (ring for ring in element.iter() if _local(ring) == "LinearRing"):
+        points = _ring(ring)
+        if points is not None:
+            rings.append(points)
+            continue
+        reading.left_out.append(_id(ring) or _id(element) or place.id)
+        if not rings:  # the outer one: without it there is no face
+            return
+    if not rings:
+        return
+    polygon = tuple(rings)
+    if place.window_id is not None:
+        reading.windows.setdefault(place.lod, {}).setdefault(place.window_id, []).append(polygon)
+        return
+    reading.faces.setdefault(place.lod, []).append(polygon)
+    if place.is_ground:
+        reading.ground.setdefault(place.lod, []).append(polygon)
+
+
+def _ring(ring: Element) -> Array | None:
+    """Points of a ring without the repeated last one, shape (k, 3); None where it is no outline in space."""
     numbers: list[str] = []
     for element in ring.iter():
         text = element.text or ""
@@ -166,12 +212,11 @@ def _ring(path: Path, ring: Element) -> Array:
             numbers += text.replace(",", " ").split()
     try:
         values = np.array(numbers, np.float64)
-    except ValueError as error:
-        raise InputError(f"{path}: ring '{_id(ring)}' holds something that is not a number ({error})") from error
-    if len(values) % 3 or len(values) < 9 or not np.isfinite(values).all():
-        raise InputError(
-            f"{path}: ring '{_id(ring)}' has {len(values)} numbers; expected three finite ones for each of its points, "
-            "of which there are at least three"
-        )
+    except ValueError:
+        return None
+    if len(values) % 3 or not np.isfinite(values).all():
+        return None
     points = values.reshape(-1, 3)
-    return points[:-1] if (points[0] == points[-1]).all() and len(points) > 3 else points
+    if len(points) > 1 and (points[0] == points[-1]).all():
+        points = points[:-1]
+    return points if len(points) >= MIN_RING_POINTS else None

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from planning.mesh import empty_mesh, from_corners
 from planning.progress import Monitor
+from planning.site_import.ground import StatedGround, stand, stated_ground
 from planning.site_import.ifc_content import IfcContent
 from planning.site_import.ifc_georeference import ifc_georeference
 from planning.site_import.ifc_worker import read_in_worker
@@ -56,14 +57,27 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
     ground_z = content.site_z_m
     if ground_z is not None and not points[:, 2].min() < ground_z < points[:, 2].max():
         ground_z = None
-    placement = place(georeference, points, ground_z, rest, content.north_rad)
+    stated = stated_ground(options)
+    if stated is None and ground_z is not None:
+        stated = StatedGround(
+            ground_z, f"ground: z = {ground_z:.2f} m of the model, the zero of IfcSite (--ground names another)"
+        )
+    stands = stand(
+        points,
+        np.arange(len(points)).reshape(-1, 3),
+        stated,
+        lambda near, z: place(georeference, near, z, rest, content.north_rad),
+    )
+    placement = stands.placement
     panes = zip(content.pane_ids, content.outlines, content.thicknesses_m, strict=True)
     return SourceModel(
         name=content.name,
         windows=tuple(SourceWindow(guid, placement.enu(np.array(ring)), thickness) for guid, ring, thickness in panes),
-        building=from_corners(placement.enu(points).reshape(-1, 3, 3)),
+        building=from_corners(stands.vertices_enu_m.reshape(-1, 3, 3)[stands.is_kept]),
         neighbours=empty_mesh(),
         placement=placement,
         repeats_panes=True,
-        notes=(*placement.georeference.notes, *content.notes),
+        notes=(*placement.georeference.notes, *content.notes, *stands.notes),
+        terrain=stands.terrain,
+        question=stands.question,
     )

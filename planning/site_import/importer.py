@@ -14,7 +14,7 @@ from planning.mesh import MESH_SUFFIXES, closed_parts
 from planning.progress import QUIET, Monitor
 from planning.site import Facade, Obstacle, Panel, Site, SiteModel
 from planning.site_import.facades import facade_name, group_facades
-from planning.site_import.options import ImportOptions
+from planning.site_import.options import UNITS_M, ImportOptions
 from planning.site_import.panel_grid import grid_panels
 from planning.site_import.panes import panes_outdoors
 from planning.site_import.polygons import quad_areas
@@ -30,6 +30,14 @@ SUFFIXES = (*IFC_SUFFIXES, *CITYGML_SUFFIXES, *CITYJSON_SUFFIXES, *MESH_SUFFIXES
 
 MAX_BUILDING_M = 5_000.0
 """The longest buildings (airports, factories) have under 2 km."""
+
+WIDE_M = 2_000.0
+HIGH_M = 600.0
+LEAST_BUILDING_M = 3.0
+"""What is larger or smaller is told: few buildings are, and many files whose unit is not what was read."""
+
+LEAST_SIDE_M = 5.0
+"""Longest side of a building for which a unit is proposed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,9 +66,11 @@ def assemble(path: Path, source: SourceModel, options: ImportOptions, monitor: M
     Raises
     ------
     InputError
-        Panels are required and there are none, there are stray points, or a wish cannot be met.
+        Panels are required and there are none, the building is far too large, the ground is not clear, or a wish
+        cannot be met.
     """
-    _check_extent(path, source)
+    _check_extent(path, source, options)
+    check_ground(path, source)
     panes = panes_outdoors(source, monitor)
     grids = [grid_panels(grid, source, options.grid_tolerance_m) for grid in options.panel_grids]
     corners = np.concatenate([panes.corners, *(grid.corners for grid in grids)])
@@ -93,6 +103,7 @@ def site_of_facades(
     path
         Of the source, for its name.
     """
+    notes = (*_size_notes(path, source, options), *notes)
     by_facade = [np.array([panel.corners_enu_m for panel in facade.panels], float) for facade in facades]
     points = [corners.reshape(-1, 3) for corners in (source.building.corners_enu_m, *by_facade)]
     around = surroundings(
@@ -101,6 +112,7 @@ def site_of_facades(
         source.neighbours.corners_enu_m,
         source.placement.ground_z_m,
         options,
+        source.terrain,
     )
     has_neighbours = len(source.neighbours.triangles) > 0
     site = Site(
@@ -146,13 +158,66 @@ def read_source(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
     return read_mesh_source(path, options, monitor)
 
 
-def _check_extent(path: Path, source: SourceModel) -> None:
-    extent_m = float(np.ptp(source.building.corners_enu_m, axis=(0, 1)).max(initial=0.0))
-    if extent_m > MAX_BUILDING_M:
+def check_ground(path: Path, source: SourceModel) -> None:
+    """Ask where the file leaves open which height is the ground.
+
+    Raises
+    ------
+    InputError
+        It does; the message names the answers.
+    """
+    if source.question:
+        raise InputError(f"{path}: {source.question}")
+
+
+def _check_extent(path: Path, source: SourceModel, options: ImportOptions) -> None:
+    size_m = _size_m(source)
+    if max(size_m) > MAX_BUILDING_M:
         raise InputError(
-            f"{path}: the building would be {extent_m / 1000.0:.0f} km wide, at most {MAX_BUILDING_M / 1000.0:g} km "
-            "are expected; the file holds stray points, or its unit is not what it says (--units for meshes)"
+            f"{path}: the building would be {_sides(size_m)} m, at most {MAX_BUILDING_M / 1000.0:g} km are expected; "
+            f"{_advice_on_units(path, size_m, options)}"
         )
+
+
+def _size_notes(path: Path, source: SourceModel, options: ImportOptions) -> tuple[str, ...]:
+    """A warning where the size is none of a building's."""
+    size_m = _size_m(source)
+    if max(size_m) == 0.0:
+        return ()
+    is_small, is_large = max(size_m) < LEAST_BUILDING_M, max(size_m[:2]) > WIDE_M or size_m[2] > HIGH_M
+    if not (is_small or is_large):
+        return ()
+    return (
+        f"the model is {_sides(size_m)} m, implausibly {'small' if is_small else 'large'} for a building: "
+        f"{_advice_on_units(path, size_m, options)}",
+    )
+
+
+def _size_m(source: SourceModel) -> tuple[float, float, float]:
+    points = source.building.corners_enu_m.reshape(-1, 3)
+    if len(points) == 0:
+        return 0.0, 0.0, 0.0
+    east, north, up = np.ptp(points, axis=0).tolist()
+    return east, north, up
+
+
+def _sides(size_m: tuple[float, float, float]) -> str:
+    return " x ".join(f"{side:.3g}" if side < 100.0 else f"{side:.0f}" for side in size_m)
+
+
+def _advice_on_units(path: Path, size_m: tuple[float, float, float], options: ImportOptions) -> str:
+    """Units in which the building would have a plausible size, as far as the user has the choice."""
+    if path.suffix.lower() not in MESH_SUFFIXES or options.crs is not None:
+        return "the unit or the scale that the file states is wrong; put it right in the program that wrote it"
+    fitting = []
+    for unit, length_m in UNITS_M.items():
+        factor = length_m / UNITS_M[options.unit]
+        east, north, up = (side * factor for side in size_m)
+        if unit not in (options.unit, "us-ft") and LEAST_SIDE_M <= max(east, north, up) <= WIDE_M and up <= HIGH_M:
+            fitting.append(f"--units {unit} makes it {_sides((east, north, up))} m (factor {factor:g})")
+    if fitting:
+        return f"if its unit is not what was read, {' and '.join(fitting)}"
+    return "no unit makes it plausible, so it is no model of true size; scale it in the program that wrote it"
 
 
 def _facade(name: str, corners: Array, source_ids: list[str | None]) -> Facade:

@@ -10,6 +10,7 @@ import numpy as np
 from planning.errors import InputError
 from planning.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.progress import Monitor
+from planning.site_import.ground import stand, stated_ground
 from planning.site_import.options import UNITS_M, ImportOptions
 from planning.site_import.placement import place
 from planning.site_import.source import SourceModel
@@ -56,7 +57,14 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
             f"the file stores coordinates this far from zero in steps of {step_m:.2g} m (single precision), so the "
             "building's shape is that rough; export it again with a local offset"
         )
-    placement = place(None, vertices[used], None, options)
-    building = TriangleMesh(placement.enu(vertices), triangles)
-    all_notes = (*placement.georeference.notes, *notes)
-    return SourceModel("", (), building, empty_mesh(), placement, notes=all_notes)
+    stands = stand(vertices, triangles, stated_ground(options), lambda points, z: place(None, points, z, options))
+    return SourceModel(
+        "",
+        (),
+        TriangleMesh(stands.vertices_enu_m, triangles[stands.is_kept]),
+        empty_mesh(),
+        stands.placement,
+        notes=(*stands.placement.georeference.notes, *notes, *stands.notes),
+        terrain=stands.terrain,
+        question=stands.question,
+    )

@@ -112,7 +112,7 @@ class Placement:
 def place(
     found: Georeference | None,
     points: Array,
-    ground_z: float | None,
+    ground_z: float,
     options: ImportOptions,
     north_rad: float = 0.0,
 ) -> Placement:
@@ -128,7 +128,7 @@ def place(
     points
         Of the building, file coordinates, shape (n, 3).
     ground_z
-        Third file coordinate of the ground, where the file tells; else the lowest point stands on it.
+        Third file coordinate of the ground.
     north_rad
         True north in the file's plane, where the file tells; used with a named origin.
 
@@ -138,8 +138,7 @@ def place(
         Neither the file nor the user says where this is, or the place is impossible.
     """
     low, high = points.min(axis=0), points.max(axis=0)
-    ground = next(z for z in (options.ground_z, ground_z, float(low[2])) if z is not None)
-    middle = (float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0, ground)
+    middle = (float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0, ground_z)
     if options.origin is not None and options.crs is not None:
         raise InputError("--origin and --crs both say where the file is; give one of them")
     if options.origin is not None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from planning.frames import Vec3
 from planning.mesh import TriangleMesh
+from planning.site_import.ground import Terrain
 from planning.site_import.placement import Placement
 
 Array = NDArray[np.float64]
@@ -85,6 +86,10 @@ class SourceModel:
         What the user should know about the reading.
     choices
         All buildings in the file, in its order; empty for formats that hold one.
+    terrain
+        Open ground in the file, which home stands on.
+    question
+        What has to be asked about the ground before this can become a site; empty where it is clear.
     """
 
     name: str
@@ -95,3 +100,5 @@ class SourceModel:
     repeats_panes: bool = False
     notes: tuple[str, ...] = ()
     choices: tuple[BuildingChoice, ...] = ()
+    terrain: Terrain | None = None
+    question: str = ""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from planning.frames import Vec3
 from planning.site import Airspace, check_point
+from planning.site_import.ground import Terrain
 from planning.site_import.options import ImportOptions
 
 Array = NDArray[np.float64]
@@ -25,6 +26,9 @@ HOME_CLEARANCE_M = 15.0
 
 LEAST_CLEARANCE_M = 3.0
 """Nearer to a wall nothing can take off."""
+
+STANDING_OUT_M = 1.5
+"""Height above the open ground from which something is in the way of a take-off."""
 
 HOME_STEP_M = 2.0
 N_BEARINGS = 36
@@ -45,7 +49,12 @@ class Surroundings(NamedTuple):
 
 
 def surroundings(
-    panels: Array, building: Array, neighbours: Array, ground_z_m: float, options: ImportOptions
+    panels: Array,
+    building: Array,
+    neighbours: Array,
+    ground_z_m: float,
+    options: ImportOptions,
+    terrain: Terrain | None = None,
 ) -> Surroundings:
     """Airspace around the building, and a home in front of its first facade, or beside it where there is none yet.
 
@@ -57,6 +66,8 @@ def surroundings(
         Points of the building and of all panels, shape (n, 3).
     neighbours
         Triangles of what else stands near by, shape (t, 3, 3).
+    terrain
+        Open ground that is part of the building's mesh: home may stand on it.
 
     Raises
     ------
@@ -85,7 +96,10 @@ def surroundings(
         except ValueError as error:
             raise InputError(str(error)) from error
         return Surroundings(airspace, options.home_enu_m, tuple(notes))
-    home, clearance_m = _home(panels, building, neighbours, airspace)
+    home, clearance_m = _home(panels, _standing_out(building, terrain), neighbours, airspace)
+    here_m = None if terrain is None else terrain.around(home[0], home[1])
+    if here_m is not None:
+        home = (home[0], home[1], _rounded(here_m))
     notes.append(
         f"home: {home[0]:g}, {home[1]:g}, {home[2]:g} m, on the ground "
         f"{'in front of the largest facade' if len(panels) else 'beside the building'}, "
@@ -97,6 +111,15 @@ def surroundings(
             "with --home, or widen --airspace-margin"
         )
     return Surroundings(airspace, home, tuple(notes))
+
+
+def _standing_out(points: Array, terrain: Terrain | None) -> Array:
+    """Points above the open ground, shape (n, 3) to (m, 3): what an aircraft has to keep clear of at take-off."""
+    if terrain is None:
+        return points
+    ground_m = terrain.at(points)
+    stands_out = points[np.isnan(ground_m) | (points[:, 2] > ground_m + STANDING_OUT_M)]
+    return stands_out if len(stands_out) else points
 
 
 def _rounded(value: float) -> float:

@@ -331,16 +331,48 @@ def test_entities_are_refused(tmp_path: Path, doctype: str) -> None:
     [
         ("</c:CityModel>", "", "not valid XML"),
         ("c:CityModel", "c:Citizens", r"expected a CityGML file \(root element CityModel\), found 'Citizens'"),
-        ("678052.000", "abc", "not a number"),
-        ("678052.000", "", "has 14 numbers"),
-        ("678052.000", "nan", "three finite ones"),
     ],
 )
 def test_broken_files_are_refused_with_the_reason(tmp_path: Path, old: str, new: str, said: str) -> None:
     text = PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH)))
-    count = -1 if "City" in old else 1
     with pytest.raises(InputError, match=said):
-        imported(text.replace(old, new, count), tmp_path)
+        imported(text.replace(old, new), tmp_path)
+
+
+@pytest.mark.parametrize("new", ["abc", "", "nan"])
+def test_an_outline_that_is_broken_is_left_out_and_told(tmp_path: Path, new: str) -> None:
+    whole = imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH))), tmp_path)
+    text = PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH))).replace("678052.000", new, 1)
+    site = imported(text, tmp_path)
+    assert site.model.site.n_panels == 1
+    assert len(site.model.building.triangles) == len(whole.model.building.triangles) - 2
+    assert any("left out, because they are broken" in note and "not read: 1 (" in note for note in site.notes)
+
+
+@pytest.mark.parametrize("version", ["1.0", "2.0", "3.0"])
+def test_an_outline_of_two_points_does_not_keep_a_file_out(tmp_path: Path, version: str) -> None:
+    dialect = Dialect(version)
+    sliver = dialect.polygon(SOUTH[:2]).replace("<gml:LinearRing>", "<gml:LinearRing gml:id='sliver'>")
+    surface = dialect.surface("WallSurface", 3, sliver)
+    site = imported(dialect.model(dialect.house(dialect.window("w", SOUTH), extra=surface)), tmp_path)
+    assert site.model.site.n_panels == 1
+    assert any("not read: 1 (sliver)" in note for note in site.notes)
+
+
+def test_a_broken_hole_leaves_its_face(tmp_path: Path) -> None:
+    face = rectangle((20.0, 0.0, 0.0), (30.0, 0.0, 6.0))
+    wall = PLAIN.surface("WallSurface", 3, PLAIN.polygon(face, SOUTH[:2]))
+    plain = imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH))), tmp_path)
+    site = imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH), extra=wall)), tmp_path)
+    assert len(site.model.building.triangles) == len(plain.model.building.triangles) + 2
+
+
+def test_parts_keep_the_level_of_detail_that_each_has(tmp_path: Path) -> None:
+    wall = PLAIN.surface("WallSurface", 2, PLAIN.polygon(rectangle((20.0, 0.0, 0.0), (30.0, 0.0, 6.0))))
+    coarse = f"<b:consistsOfBuildingPart><b:BuildingPart>{wall}</b:BuildingPart></b:consistsOfBuildingPart>"
+    plain = imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH))), tmp_path)
+    site = imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH), extra=coarse)), tmp_path)
+    assert len(site.model.building.triangles) == len(plain.model.building.triangles) + 2
 
 
 def test_deeply_nested_files_are_refused(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ def placement(case):
     frame, points = CASES[case]
     if isinstance(frame, str):
         frame = crs_conversion(frame, points, "xy")
-    return place(frame, points, None, ImportOptions())
+    return place(frame, points, float(points[:, 2].min()), ImportOptions())
 
 
 @pytest.mark.parametrize("case", sorted(CASES))
