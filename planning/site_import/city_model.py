@@ -229,7 +229,12 @@ def _windows(building: CityBuilding) -> Iterator[SourceWindow]:
 def _placement(crs: str | None, points: Array, ground_z: float, options: ImportOptions) -> Placement:
     found = None
     if crs is not None and options.crs is None and options.origin is None:
-        found = crs_conversion(crs, points, options.axis_order, options.height_reference)
+        try:
+            found = crs_conversion(crs, points, options.axis_order, options.height_reference)
+        except InputError as error:
+            raise InputError(
+                f"{error}; where the coordinates are local ones, give --origin LAT,LON,HEIGHT (of their zero point)"
+            ) from error
     return place(found, points, ground_z, options)
 
 

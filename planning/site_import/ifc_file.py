@@ -60,7 +60,7 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
     stated = stated_ground(options)
     if stated is None and ground_z is not None:
         stated = StatedGround(
-            ground_z, f"ground: z = {ground_z:.2f} m of the model, the zero of IfcSite (--ground names another)"
+            ground_z, f"ground: z = {ground_z:.2f} of the model, the zero of IfcSite (--ground names another)"
         )
     stands = stand(
         points,

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 import trimesh
+from PySide6.QtTest import QTest
 
 from groundstation.services.document import Document
 from groundstation.services.jobs import JobRunner
 from groundstation.services.session import Session
-from planning.mesh import box_mesh
+from planning.mesh import box_mesh, join
 from planning.site import Origin
 from tests.gui.driving import turn_until
 
@@ -108,7 +109,7 @@ def test_mesh_becomes_a_site_field_by_field(opened, tower_mm):
     sea.box().setValue(410.0)
     assert "Preview again" in dialog.error()
     hands.again()
-    assert "42 km wide" in dialog.error()
+    assert "36000 x 20000 x 42000 m" in dialog.error()
     assert "“Unit of lengths”" in dialog.error()
     hands.choose(form._unit, "mm")
     hands.again()
@@ -221,3 +222,26 @@ def test_dialog_that_is_closed_while_it_reads_takes_nothing_over(application, sh
     assert dialog.shown() is None
     hands.workspace.close()
     hands.runner.shutdown()
+
+
+def test_a_ground_that_is_not_clear_is_asked_for_in_the_form(opened, tmp_path):
+    halves = [box_mesh(np.array([x, -6.0, z]), np.array([x + 10.0, 6.0, 15.0])) for x, z in ((-10.0, -3.0), (0.0, 0.0))]
+    mesh = join(halves)
+    path = tmp_path / "cellar.obj"
+    trimesh.Trimesh(mesh.vertices_enu_m, mesh.triangles, process=False).export(path)
+    hands = opened(path)
+    form = hands.dialog.form
+    form.origin_box().setValue(Origin(47.0, 8.0, 400.0))
+    form._origin_edited(None)
+    hands.again()
+    assert "two heights of the file may be the ground: z = -3.00" in hands.dialog.error()
+    assert "“Height of the ground in the file”" in hands.dialog.error()
+    assert "--ground" not in hands.dialog.error()
+    assert hands.dialog.shown() is not None, "the building is shown, so that one can see what is asked"
+    assert not hands.dialog.can_import()
+    QTest.keyClicks(form._ground, "-3\n")
+    hands.again()
+    assert hands.dialog.can_import()
+    hands.dialog._accept.click()
+    (model,) = hands.taken
+    assert model.building.vertices_enu_m[:, 2].min() == pytest.approx(model.site.airspace.ground_z_m)

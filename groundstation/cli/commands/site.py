@@ -69,7 +69,11 @@ def add_place_and_content(command: argparse.ArgumentParser) -> None:
         help="heights are above sea level, the ellipsoid, or what the system says (auto; for --origin the ellipsoid)",
     )
     place(
-        "--ground", type=number, metavar="Z", help="the ground's third coordinate in the file (default: lowest point)"
+        "--ground",
+        type=number,
+        metavar="Z",
+        help="the ground's third coordinate in the file, in metres where it has no system (default: found around the "
+        "building; you are asked where two heights may be it)",
     )
     content = command.add_argument_group("what is in the file").add_argument
     content("--building", metavar="ID", help="the building wanted, in a file with many")

@@ -59,12 +59,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "the XML defines entities, which a CityGML file has no need of; refused"),
     QT_TRANSLATE_NOOP("Sentences", "not valid XML ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "nested too deeply for a CityGML file"),
-    QT_TRANSLATE_NOOP("Sentences", "ring '{0}' holds something that is not a number ({1})"),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "ring '{0}' has {1} numbers; expected three finite ones for each of its points, of which there are at least "
-        "three",
-    ),
     QT_TRANSLATE_NOOP("Sentences", 'expected a CityJSON file (with "type": "CityJSON")'),
     QT_TRANSLATE_NOOP("Sentences", "expected CityJSON version {0}, got '{1}'"),
     QT_TRANSLATE_NOOP("Sentences", "this CityJSON file is broken ({0}: {1})"),
@@ -118,10 +112,73 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "expected a file ending in {0}, got '{1}'"),
     QT_TRANSLATE_NOOP("Sentences", "there is no such file"),
+    QT_TRANSLATE_NOOP("Sentences", "the building would be {0:m} x {1:m} x {2} m, at most {3} km are expected; {4}"),
+    QT_TRANSLATE_NOOP("Sentences", "the model is {0:m} x {1:m} x {2} m, implausibly small for a building: {3}"),
+    QT_TRANSLATE_NOOP("Sentences", "the model is {0:m} x {1:m} x {2} m, implausibly large for a building: {3}"),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "the building would be {0} km wide, at most {1} km are expected; the file holds stray points, or its unit is "
-        "not what it says (--units for meshes)",
+        "the unit or the scale that the file states is wrong; put it right in the program that wrote it",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "if its unit is not what was read, {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "--units {0} makes it {1:m} x {2:m} x {3} m (factor {4})"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "no unit makes it plausible, so it is no model of true size; scale it in the program that wrote it",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "left out, because they are broken (such as outlines of fewer than three points) or not read: {0} ({1})",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "without an identifier"),
+    QT_TRANSLATE_NOOP("Sentences", "building '{0}' has no surface with an area"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0}; where the coordinates are local ones, give --origin LAT,LON,HEIGHT (of their zero point)",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "left out as strays, below the ground or far from everything else: {0} triangles, from {1} to {2} in "
+        "the file's heights",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "ground: z = {0} of the file, where the outer walls end, as there is no ground around the building in"
+        " the file (--ground names another)",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "ground: z = {0} of the file, by the open ground along {1} % of the building's outline, which lies "
+        "between {2} and {3} (--ground names another)",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "ground: along the building's outline it lies between z = {0} and {1} of the file; the highest is "
+        "taken, so that heights above ground are safe on every side (--ground names another)",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "ground: z = {0} of the file, its GroundSurface (--ground names another)"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "ground: the file's GroundSurface lies between z = {0} and {1}; the highest is taken, so that heights"
+        " above ground are safe on every side (--ground names another)",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "ground: z = {0} of the model, the zero of IfcSite (--ground names another)"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the file shows neither open ground around the building nor walls that reach down to it; its lowest "
+        "surface is at z = {0}. Name the height of the ground in the file with --ground Z",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "two heights of the file may be the ground: {0}. Say which with --ground {1} or --ground {2}",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "z = {0}, where the building's foot is, and z = {1}, a deck all around its upper part",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "z = {0}, where its lowest outer walls end, and z = {1}, where others do (a cellar, a slope, a torn "
+        "edge, or storeys that hang over)",
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",

@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QLocale, Signal
+from PySide6.QtGui import QDoubleValidator
 from PySide6.QtWidgets import QComboBox, QFormLayout, QWidget
 
 from groundstation.gui.inputs import LengthBox
@@ -64,6 +65,9 @@ class ImportForm(QWidget):
                 ("ellipsoid", self.tr("Above the ellipsoid")),
             )
         )
+        self._ground = NameBox()
+        self._ground.setPlaceholderText(self.tr("found around the building"))
+        self._ground.setValidator(_numbers(self._ground))
         self._margin = LengthBox(*MARGIN_M, 5.0, units)
         self._lay_out(is_mesh)
         self._connect()
@@ -83,13 +87,14 @@ class ImportForm(QWidget):
         self._form.addRow(self.tr("Code of the system"), self._crs)
         self._form.addRow(self.tr("Order of coordinates"), self._axis_order)
         self._form.addRow(self.tr("Heights are"), self._heights)
+        self._form.addRow(self.tr("Height of the ground in the file"), self._ground)
         self._form.addRow(self.tr("Airspace around the building"), self._margin)
         self._form.addRow(self.tr("Name of the site"), self._name)
 
     def _connect(self) -> None:
         for box in (self._building, self._unit, self._up, self._place, self._axis_order, self._heights):
             box.activated.connect(self._edited)
-        for box in (self._name, self._crs, self._margin):
+        for box in (self._name, self._crs, self._ground, self._margin):
             box.valueChanged.connect(self._edited)
         self._origin.valueChanged.connect(self._origin_edited)
 
@@ -105,6 +110,7 @@ class ImportForm(QWidget):
             "gap_m": self.tr("Gap"),
             "grid_tolerance_m": self.tr("Off the wall by up to"),
             "height_reference": self.tr("Heights are"),
+            "ground_z": self.tr("Height of the ground in the file"),
             "home_enu_m": self.tr("Home, in the Site tab"),
             "name": self.tr("Name of the site"),
             "n_columns": self.tr("Columns"),
@@ -128,6 +134,7 @@ class ImportForm(QWidget):
             up=self._up.currentData() or None,
             unit=self._unit.currentData(),
             building=self._building.currentData() or None,
+            ground_z=_number(self._ground.value()),
             airspace_margin_m=self._margin.value(),
         )
 
@@ -136,6 +143,7 @@ class ImportForm(QWidget):
         self._rest = options
         self._name.setValue(options.name or "")
         self._crs.setValue(options.crs or "")
+        self._ground.setValue("" if options.ground_z is None else f"{options.ground_z:g}")
         self._margin.setValue(options.airspace_margin_m)
         self._has_origin = options.origin is not None
         if options.origin is not None:
@@ -183,6 +191,17 @@ class ImportForm(QWidget):
         # City models come in coordinates of a map; other files have such only where the user names the system.
         self._form.setRowVisible(self._axis_order, place == SYSTEM or (place == FILE_SAYS and self._has_map))
         self._form.setRowVisible(self._heights, place != ZERO_POINT)
+
+
+def _numbers(parent: QWidget) -> QDoubleValidator:
+    """Lets numbers through, with a decimal point as in all texts of the window."""
+    validator = QDoubleValidator(parent)
+    validator.setLocale(QLocale.c())
+    return validator
+
+
+def _number(text: str) -> float | None:
+    return float(text) if text.strip() else None
 
 
 def _combo(entries: Iterable[tuple[str, str]]) -> QComboBox:
