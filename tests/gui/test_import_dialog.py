@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from groundstation.services.document import Document
@@ -239,7 +240,8 @@ def test_a_ground_that_is_not_clear_is_asked_for_in_the_form(opened, tmp_path):
     assert "--ground" not in hands.dialog.error()
     assert hands.dialog.shown() is not None, "the building is shown, so that one can see what is asked"
     assert not hands.dialog.can_import()
-    QTest.keyClicks(form._ground, "-3\n")
+    QTest.keyClicks(form._ground, "-3")
+    QTest.keyClick(form._ground, Qt.Key.Key_Return)
     hands.again()
     assert hands.dialog.can_import()
     hands.dialog._accept.click()

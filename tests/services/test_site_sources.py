@@ -84,7 +84,7 @@ def test_building_that_is_no_site_yet_can_be_shown_unless_its_unit_is_wrong(towe
     mesh.apply_scale(1000.0)
     mesh.export(tower_obj)
     too_large = preview_import(tower_obj, ImportOptions(origin=HERE))
-    assert "42 km wide" in too_large.problem
+    assert "36000 x 20000 x 42000 m" in too_large.problem
     assert shown_site(too_large) is None
 
 
