@@ -1995,6 +1995,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Über Ellipsoid</translation>
     </message>
     <message>
+        <source>found around the building</source>
+        <translation>rings um das Gebäude ermittelt</translation>
+    </message>
+    <message>
         <source>Building</source>
         <translation>Gebäude</translation>
     </message>
@@ -2021,6 +2025,10 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Heights are</source>
         <translation>Höhen sind</translation>
+    </message>
+    <message>
+        <source>Height of the ground in the file</source>
+        <translation>Höhe des Bodens in der Datei</translation>
     </message>
     <message>
         <source>Airspace around the building</source>
@@ -7893,12 +7901,92 @@ Take it over?</source>
         <translation>zu tief verschachtelt für eine CityGML-Datei</translation>
     </message>
     <message>
-        <source>ring &apos;{0}&apos; holds something that is not a number ({1})</source>
-        <translation>Ring &apos;{0}&apos; enthält etwas, das keine Zahl ist ({1})</translation>
+        <source>the building would be {0:m} x {1:m} x {2} m, at most {3} km are expected; {4}</source>
+        <translation>das Gebäude wäre {0:m} x {1:m} x {2} m groß, erwartet werden höchstens {3} km; {4}</translation>
     </message>
     <message>
-        <source>ring &apos;{0}&apos; has {1} numbers; expected three finite ones for each of its points, of which there are at least three</source>
-        <translation>Ring &apos;{0}&apos; hat {1} Zahlen; erwartet wurden drei endliche für jeden seiner Punkte, von denen es mindestens drei gibt</translation>
+        <source>the model is {0:m} x {1:m} x {2} m, implausibly small for a building: {3}</source>
+        <translation>das Modell ist {0:m} x {1:m} x {2} m groß, für ein Gebäude unglaubwürdig klein: {3}</translation>
+    </message>
+    <message>
+        <source>the model is {0:m} x {1:m} x {2} m, implausibly large for a building: {3}</source>
+        <translation>das Modell ist {0:m} x {1:m} x {2} m groß, für ein Gebäude unglaubwürdig groß: {3}</translation>
+    </message>
+    <message>
+        <source>the unit or the scale that the file states is wrong; put it right in the program that wrote it</source>
+        <translation>die Einheit oder der Maßstab, den die Datei angibt, ist falsch; in dem Programm berichtigen, das sie geschrieben hat</translation>
+    </message>
+    <message>
+        <source>if its unit is not what was read, {0}</source>
+        <translation>falls die Einheit nicht die gelesene ist: {0}</translation>
+    </message>
+    <message>
+        <source>--units {0} makes it {1:m} x {2:m} x {3} m (factor {4})</source>
+        <translation>mit --units {0} wären es {1:m} x {2:m} x {3} m (Faktor {4})</translation>
+    </message>
+    <message>
+        <source>no unit makes it plausible, so it is no model of true size; scale it in the program that wrote it</source>
+        <translation>keine Einheit macht es glaubwürdig, es ist also kein Modell in wahrer Größe; in dem Programm skalieren, das es geschrieben hat</translation>
+    </message>
+    <message>
+        <source>left out, because they are broken (such as outlines of fewer than three points) or not read: {0} ({1})</source>
+        <translation>weggelassen, weil beschädigt (etwa Umrisse aus weniger als drei Punkten) oder nicht lesbar: {0} ({1})</translation>
+    </message>
+    <message>
+        <source>without an identifier</source>
+        <translation>ohne Kennung</translation>
+    </message>
+    <message>
+        <source>building &apos;{0}&apos; has no surface with an area</source>
+        <translation>das Gebäude &apos;{0}&apos; hat keine Fläche mit Ausdehnung</translation>
+    </message>
+    <message>
+        <source>{0}; where the coordinates are local ones, give --origin LAT,LON,HEIGHT (of their zero point)</source>
+        <translation>{0}; falls die Koordinaten örtliche sind, --origin LAT,LON,HEIGHT (ihres Nullpunkts) angeben</translation>
+    </message>
+    <message>
+        <source>left out as strays, below the ground or far from everything else: {0} triangles, from {1} to {2} in the file&apos;s heights</source>
+        <translation>als verirrt weggelassen, unter dem Boden oder fern von allem anderen: {0} Dreiecke, von {1} bis {2} in den Höhen der Datei</translation>
+    </message>
+    <message>
+        <source>ground: z = {0} of the file, where the outer walls end, as there is no ground around the building in the file (--ground names another)</source>
+        <translation>Boden: z = {0} der Datei, wo die Außenwände enden, denn die Datei enthält keinen Boden um das Gebäude (--ground nennt einen anderen)</translation>
+    </message>
+    <message>
+        <source>ground: z = {0} of the file, by the open ground along {1} % of the building&apos;s outline, which lies between {2} and {3} (--ground names another)</source>
+        <translation>Boden: z = {0} der Datei, nach dem freien Boden entlang {1} % des Gebäudeumrisses, der zwischen {2} und {3} liegt (--ground nennt einen anderen)</translation>
+    </message>
+    <message>
+        <source>ground: along the building&apos;s outline it lies between z = {0} and {1} of the file; the highest is taken, so that heights above ground are safe on every side (--ground names another)</source>
+        <translation>Boden: entlang des Gebäudeumrisses liegt er zwischen z = {0} und {1} der Datei; der höchste gilt, damit Höhen über Boden auf jeder Seite sicher sind (--ground nennt einen anderen)</translation>
+    </message>
+    <message>
+        <source>ground: z = {0} of the file, its GroundSurface (--ground names another)</source>
+        <translation>Boden: z = {0} der Datei, ihre GroundSurface (--ground nennt einen anderen)</translation>
+    </message>
+    <message>
+        <source>ground: the file&apos;s GroundSurface lies between z = {0} and {1}; the highest is taken, so that heights above ground are safe on every side (--ground names another)</source>
+        <translation>Boden: die GroundSurface der Datei liegt zwischen z = {0} und {1}; die höchste gilt, damit Höhen über Boden auf jeder Seite sicher sind (--ground nennt einen anderen)</translation>
+    </message>
+    <message>
+        <source>ground: z = {0} of the model, the zero of IfcSite (--ground names another)</source>
+        <translation>Boden: z = {0} des Modells, die Null von IfcSite (--ground nennt einen anderen)</translation>
+    </message>
+    <message>
+        <source>the file shows neither open ground around the building nor walls that reach down to it; its lowest surface is at z = {0}. Name the height of the ground in the file with --ground Z</source>
+        <translation>die Datei zeigt weder freien Boden um das Gebäude noch Wände, die bis zu ihm reichen; ihre tiefste Fläche liegt bei z = {0}. Die Höhe des Bodens in der Datei mit --ground Z angeben</translation>
+    </message>
+    <message>
+        <source>two heights of the file may be the ground: {0}. Say which with --ground {1} or --ground {2}</source>
+        <translation>zwei Höhen der Datei können der Boden sein: {0}. Mit --ground {1} oder --ground {2} sagen, welche</translation>
+    </message>
+    <message>
+        <source>z = {0}, where the building&apos;s foot is, and z = {1}, a deck all around its upper part</source>
+        <translation>z = {0}, der Fuß des Gebäudes, und z = {1}, eine Plattform rings um seinen oberen Teil</translation>
+    </message>
+    <message>
+        <source>z = {0}, where its lowest outer walls end, and z = {1}, where others do (a cellar, a slope, a torn edge, or storeys that hang over)</source>
+        <translation>z = {0}, wo seine tiefsten Außenwände enden, und z = {1}, wo andere enden (ein Keller, ein Hang, ein ausgefranster Rand oder auskragende Geschosse)</translation>
     </message>
     <message>
         <source>expected a CityJSON file (with &quot;type&quot;: &quot;CityJSON&quot;)</source>
@@ -8007,10 +8095,6 @@ Take it over?</source>
     <message>
         <source>there is no such file</source>
         <translation>es gibt keine solche Datei</translation>
-    </message>
-    <message>
-        <source>the building would be {0} km wide, at most {1} km are expected; the file holds stray points, or its unit is not what it says (--units for meshes)</source>
-        <translation>das Gebäude wäre {0} km breit, erwartet werden höchstens {1} km; die Datei enthält verirrte Punkte, oder ihre Einheit ist nicht, was sie sagt (--units bei Netzen)</translation>
     </message>
     <message>
         <source>facades, by plane or smoothly curved surface: {0}, the one with most glass first (A: {1} panels, {2} m2)</source>
