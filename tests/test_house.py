@@ -1,6 +1,7 @@
 """The house rules: import directions, nothing heavy before it is needed, the agreed layout."""
 
 import ast
+import re
 import subprocess
 import sys
 import time
@@ -150,3 +151,18 @@ def test_dialogs_of_qt_are_asked_in_one_place():
         for line in calls_of(path.read_text(), asking)
     ]
     assert found == [], "ask by the functions of groundstation.gui.questions: they give a bool or a path"
+
+
+def test_no_test_answers_in_place_of_a_dialog():
+    """Dialogs are clicked (`tests.gui.driving.clicked`); a test that answers for one says nothing about it."""
+    words = re.compile(
+        r"""setattr\(\s*[\w.]*(QMessageBox|QFileDialog|QInputDialog|QDialog|Dialog|questions)\b"""
+        r"""|\.(questions|asks|_questions)(\.\w+)? = """
+        r"""|class \w+\((\w*Questions|QMessageBox|QFileDialog)\)"""
+    )
+    found = [
+        f"{path.relative_to(ROOT)}: {match.group(0)}"
+        for path in sorted((ROOT / "tests").rglob("*.py"))
+        for match in words.finditer(path.read_text())
+    ]
+    assert found == []

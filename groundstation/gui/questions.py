@@ -6,14 +6,18 @@ dialogs with a text that is empty where none was chosen: whoever asks gets a boo
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from enum import Enum, auto
 from pathlib import Path
 
-from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QFileDialog, QInputDialog, QMessageBox, QWidget
+from PySide6.QtCore import QCoreApplication, QObject
+from PySide6.QtWidgets import QDialog, QFileDialog, QInputDialog, QMessageBox, QWidget
 
 _Button = QMessageBox.StandardButton
+
+_ENDING = re.compile(r"\.[A-Za-z][A-Za-z0-9]{0,9}")
+"""What counts as the ending of a file's name."""
 
 
 class Answer(Enum):
@@ -53,10 +57,25 @@ def choose_files(parent: QWidget, title: str, kinds: str, folder: Path) -> tuple
     return tuple(Path(name) for name in names)
 
 
-def choose_new_file(parent: QWidget, title: str, proposed: Path | str, kinds: str) -> Path | None:
-    """Where a file is to be written; for one that is there already, the dialog has asked."""
-    name, _ = QFileDialog.getSaveFileName(parent, title, str(proposed), kinds)
-    return Path(name) if name else None
+def choose_new_file(parent: QWidget, title: str, proposed: Path, kinds: str, ending: str) -> Path | None:
+    """Where a file is to be written; for one that is there already, the user was asked.
+
+    A name gets the `ending` (".city.json") where it has none, before it is looked whether such a file is there.
+    """
+    dialog = QFileDialog(parent, title, str(proposed.parent) if proposed.is_absolute() else "", kinds)
+    dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+    dialog.setFileMode(QFileDialog.FileMode.AnyFile)
+    dialog.setDefaultSuffix(ending.removeprefix("."))
+    dialog.selectFile(proposed.name)
+    is_chosen = dialog.exec() == QDialog.DialogCode.Accepted
+    chosen = Path(dialog.selectedFiles()[0]) if is_chosen else None
+    dialog.deleteLater()
+    if chosen is None or _ENDING.fullmatch(chosen.suffix):
+        return chosen
+    # Qt takes "No. 12" for a name with an ending.
+    whole = chosen.with_name(chosen.name + ending)
+    asks = QCoreApplication.translate("Questions", "{0} is there already. Replace it?").format(whole.name)
+    return whole if not whole.exists() or agrees(parent, title, asks, warns=True) else None
 
 
 def ask_text(parent: QWidget, title: str, label: str, text: str) -> str | None:

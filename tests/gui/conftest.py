@@ -17,9 +17,27 @@ def application():
     if shutil.which("Xvfb") is None:
         pytest.skip("Xvfb is not installed (make setup installs it as root)")
     start_virtual_screen()
+    from PySide6.QtCore import Qt
     from PySide6.QtWidgets import QApplication
 
+    # Files are chosen in Qt's own dialogs, which can be clicked: those of a desktop are other programs.
+    QApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
     return QApplication(["reflight-tests"])
+
+
+@pytest.fixture(autouse=True)
+def _no_dialog_waits(request):
+    """A dialog that a test brings up and does not click would stand for ever: it is sent away, and the test fails."""
+    if "application" not in request.fixturenames:
+        yield
+        return
+    request.getfixturevalue("application")
+    from tests.gui.driving import Guard
+
+    guard = Guard()
+    yield
+    guard.end()
+    assert guard.found == [], "dialogs that nobody clicked"
 
 
 @pytest.fixture(scope="package", autouse=True)

@@ -12,30 +12,36 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import ClassVar
 
+import shiboken6
 from PySide6.QtCore import QPoint, Qt, QTimer
+from PySide6.QtGui import QAction
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
     QDialog,
+    QDialogButtonBox,
     QFileDialog,
+    QInputDialog,
     QLabel,
     QLineEdit,
     QMessageBox,
+    QScrollArea,
     QWidget,
 )
-
-from groundstation.gui.questions import Answer, Questions
 
 SETTLE_S, CALM_S = 0.35, 0.05
 """Time without a job after which none follows: where a timer still runs (effects are looked at 0.3 s after the last
 change), and where none does."""
 
-LOOK_MS, STAND_MS = 15, 30
-"""How often the hand looks for a dialog, and how long a dialog stands before it is touched."""
+LOOK_MS, READ_MS, TRIES = 15, 150, 40
+"""How often the hand looks for a dialog, and how long and how often it gives one of files to read its folder."""
 
 DIALOG_S = 20.0
 """Longest wait for a dialog; nothing but a job stands before one."""
+
+GUARD_MS, GUARD_S = 500, 5.0
+"""How often somebody looks for dialogs that nobody clicks, and how long one may stand."""
 
 Step = Callable[[QDialog], None]
 
@@ -64,15 +70,8 @@ def choose(*paths: Path | str) -> Step:
 
     def step(dialog: QDialog) -> None:
         assert isinstance(dialog, QFileDialog), f"expected a file dialog, got “{dialog.windowTitle()}”"
-        line = next(box for box in dialog.findChildren(QLineEdit) if box.objectName() == "fileNameEdit")
         text = str(paths[0]) if len(paths) == 1 else " ".join(f'"{path}"' for path in paths)
-        type_into(line, text)
-        accept = next(
-            button
-            for button in dialog.findChildren(QAbstractButton)
-            if _plain(button.text()) in ("Open", "Save", "Choose") and button.isVisible()
-        )
-        click_on(dialog, accept)
+        _type_when_ready(dialog, text)
 
     return step
 
@@ -86,7 +85,12 @@ def type_into(line: QLineEdit, text: str) -> None:
 
 
 def click_on(window: QWidget, widget: QWidget, at: QPoint | None = None) -> None:
-    """Click a widget of a window where a user can: it is enabled, inside the screen, and nothing lies over it."""
+    """Click a widget where a user can, scrolling to it: it is enabled, on the screen, and nothing lies over it."""
+    above = widget.parentWidget()
+    while above is not None:
+        if isinstance(above, QScrollArea):
+            above.ensureWidgetVisible(widget)
+        above = above.parentWidget()
     place = widget.rect().center() if at is None else at
     assert widget.isVisible(), f"“{_name(widget)}” is not shown"
     assert widget.isEnabled(), f"“{_name(widget)}” cannot be pressed"
@@ -96,6 +100,19 @@ def click_on(window: QWidget, widget: QWidget, at: QPoint | None = None) -> None
     screen = widget.screen().availableGeometry()
     assert screen.contains(widget.mapToGlobal(place)), f"“{_name(widget)}” is off the screen"
     QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=place)
+
+
+def press_in(window: QWidget, text: str) -> None:
+    """Click the button of a window that shows a text."""
+    click_on(window, _buttons_with(window, text)[0])
+
+
+def trigger(window: QWidget, text: str) -> None:
+    """Choose an entry of a menu."""
+    actions = [action for action in window.findChildren(QAction) if _plain(action.text()) == text]
+    assert actions, f"no entry “{text}”"
+    assert actions[0].isEnabled(), f"“{text}” cannot be chosen"
+    actions[0].trigger()
 
 
 def words_of(dialog: QDialog) -> str:
@@ -115,7 +132,7 @@ class Hand:
         self.words: list[str] = []
         self.problem: str | None = None
         self._steps, self._is_endless, self._ended = list(steps), is_endless, False
-        self._seen: list[QDialog] = []
+        self._seen: set[int] = set()
 
     @property
     def is_done(self) -> bool:
@@ -125,7 +142,8 @@ class Hand:
     def start(self) -> None:
         """Look from now on for dialogs that come up."""
         stands = QApplication.activeModalWidget()
-        self._seen = [stands] if isinstance(stands, QDialog) else []
+        if isinstance(stands, QDialog):
+            self._see(stands)
         self.active.append(self)
         QTimer.singleShot(LOOK_MS, self._look)
 
@@ -143,14 +161,16 @@ class Hand:
         if not isinstance(dialog, QDialog) or not dialog.isVisible() or self.active[-1] is not self:
             QTimer.singleShot(LOOK_MS, self._look)
             return
-        QTimer.singleShot(LOOK_MS + STAND_MS, self._look)
-        self._seen = [seen for seen in self._seen if _stands(seen)]
-        if self.problem is not None or dialog in self._seen:
+        QTimer.singleShot(LOOK_MS, self._look)
+        if _address(dialog) in self._seen:
+            return
+        if self.problem is not None:
+            dialog.reject()
             return
         if not self._steps:
             self._fail(dialog, f"a dialog that nobody awaited: {words_of(dialog)}")
             return
-        self._seen.append(dialog)
+        self._see(dialog)
         self.words.append(words_of(dialog))
         step = self._steps[0] if self._is_endless else self._steps.pop(0)
         try:
@@ -158,9 +178,40 @@ class Hand:
         except Exception as error:
             self._fail(dialog, f"{type(error).__name__}: {error}; in the dialog {self.words[-1]}")
 
+    def _see(self, dialog: QDialog) -> None:
+        """Remember a dialog as long as it stands; another one may come to lie where it was."""
+        address = _address(dialog)
+        self._seen.add(address)
+        dialog.finished.connect(lambda _result: self._seen.discard(address))
+
     def _fail(self, dialog: QDialog, problem: str) -> None:
         self.problem = problem
-        if _stands(dialog):
+        if _address(dialog) in self._seen or not self._steps:
+            dialog.reject()
+
+
+class Guard:
+    """Sends away dialogs that wait for a click in a test that clicks none: it would stand for ever."""
+
+    def __init__(self) -> None:
+        self.found: list[str] = []
+        self._since: tuple[int, float] | None = None
+        self._timer = QTimer(interval=GUARD_MS)
+        self._timer.timeout.connect(self._look)
+        self._timer.start()
+
+    def end(self) -> None:
+        """Look no longer."""
+        self._timer.stop()
+
+    def _look(self) -> None:
+        dialog = QApplication.activeModalWidget()
+        if Hand.active or not isinstance(dialog, (QMessageBox, QFileDialog, QInputDialog)):
+            self._since = None
+        elif self._since is None or self._since[0] != _address(dialog):
+            self._since = _address(dialog), time.perf_counter()
+        elif time.perf_counter() - self._since[1] > GUARD_S:
+            self.found.append(words_of(dialog))
             dialog.reject()
 
 
@@ -208,21 +259,56 @@ def close_desk(desk) -> None:
     desk.close()
 
 
+def _type_when_ready(dialog: QFileDialog, text: str) -> None:
+    """Type into a file dialog and accept; while it reads its folder it forgets what was typed, or takes no click."""
+    line = next(box for box in dialog.findChildren(QLineEdit) if box.objectName() == "fileNameEdit")
+    box, role = dialog.findChild(QDialogButtonBox), QDialogButtonBox.ButtonRole.AcceptRole
+    accept = next(button for button in box.buttons() if box.buttonRole(button) == role)
+    again = QTimer(dialog, interval=READ_MS)
+    stopped: list[int] = []
+    dialog.finished.connect(stopped.append)
+    dialog.finished.connect(again.stop)
+    tries = iter(range(TRIES))
+
+    def click() -> None:
+        if next(tries, None) is None:
+            again.stop()
+            dialog.reject()
+        elif _is_in_front(dialog):
+            if line.text() != text:
+                type_into(line, text)
+            elif accept.isEnabled():
+                n_asked = len(Hand.active[-1].words)
+                click_on(dialog, accept)
+                if len(Hand.active[-1].words) > n_asked and not stopped:
+                    # It asked whether to replace a file, and was told no.
+                    escape(dialog)
+
+    again.timeout.connect(click)
+    again.start()
+
+
+def _is_in_front(dialog: QDialog) -> bool:
+    front = QApplication.activeModalWidget()
+    return isinstance(front, QDialog) and _address(front) == _address(dialog)
+
+
 def _button_of(dialog: QDialog, wanted: str | QMessageBox.StandardButton) -> QAbstractButton:
     if not isinstance(wanted, str):
         assert isinstance(dialog, QMessageBox)
         return dialog.button(wanted)
-    buttons = [button for button in dialog.findChildren(QAbstractButton) if button.isVisible()]
-    found = [button for button in buttons if _plain(button.text()) == wanted]
-    assert found, f"no button “{wanted}”, but {[_plain(button.text()) for button in buttons]}"
-    return found[0]
+    return _buttons_with(dialog, wanted)[0]
 
 
-def _stands(dialog: QDialog) -> bool:
-    try:
-        return dialog.isVisible()
-    except RuntimeError:  # it is deleted
-        return False
+def _buttons_with(window: QWidget, text: str) -> list[QAbstractButton]:
+    buttons = [button for button in window.findChildren(QAbstractButton) if button.isVisible()]
+    found = [button for button in buttons if _plain(button.text()) == text]
+    assert found, f"no button “{text}”, but {sorted({_plain(button.text()) for button in buttons})}"
+    return found
+
+
+def _address(dialog: QDialog) -> int:
+    return shiboken6.getCppPointer(dialog)[0]
 
 
 def _plain(text: str) -> str:
@@ -232,35 +318,6 @@ def _plain(text: str) -> str:
 def _name(widget: QWidget) -> str:
     text = widget.text() if isinstance(widget, QAbstractButton) else widget.accessibleName()
     return _plain(text) or type(widget).__name__
-
-
-class Answers(Questions):
-    """A user whose answers are known before; questions that were asked are kept."""
-
-    def __init__(self, save: Answer = Answer.NO, recover: Answer = Answer.CANCEL, folder: Path | None = None) -> None:
-        super().__init__()
-        self.save, self.take_over, self.chosen = save, recover, folder
-        self.asked: list[str] = []
-
-    def save_first(self, parent):
-        self.asked.append("save")
-        return self.save
-
-    def recover(self, parent, when, changes, is_of_saved_state):
-        self.asked.append(f"recover {when}: {', '.join(changes)}")
-        return self.take_over
-
-    def folder(self, parent, title):
-        self.asked.append(title)
-        return self.chosen
-
-    def new_folder(self, parent, title):
-        self.asked.append(title)
-        return self.chosen
-
-    def file(self, parent, title, kinds):
-        self.asked.append(title)
-        return self.chosen
 
 
 def turn_until(application, condition: Callable[[], bool], timeout_s: float = 60.0) -> float:

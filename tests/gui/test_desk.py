@@ -7,7 +7,6 @@ from contextlib import contextmanager
 
 import pytest
 
-from groundstation.gui.questions import Answer
 from groundstation.services.document import PlanEntry
 from groundstation.services.jobs import JobState
 from groundstation.services.project import open_project
@@ -15,34 +14,27 @@ from planning.errors import InputError
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import roof
-from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.gui.driving import choose, clicked, close_desk, escape, shut, trigger, turn_until, turn_until_idle
 from tests.planning.revision.cases import QUICK
 from tests.services.project_cases import small_disk
 
 
 @pytest.fixture
-def answers():
-    return Answers()
-
-
-@pytest.fixture
-def make_desk(application, worker, answers, tmp_path, monkeypatch):
+def make_desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     from groundstation.gui.desk import Desk
 
     desks = []
 
     def make():
-        desk = Desk(application, answers, worker)
+        desk = Desk(application, worker=worker)
         desk.show()
         turn_until(application, lambda: desk.window.stage.scene() is not None)
         desks.append(desk)
         return desk
 
     def end(desk):
-        answers.save = Answer.NO
-        desk.window.close()
-        desk.close()
+        close_desk(desk)
         desks.remove(desk)
 
     make.end = end
@@ -61,37 +53,43 @@ def with_site(application, desk):
     turn_until_idle(application, desk)
 
 
-def test_a_project_is_saved_and_opened_again(application, make_desk, answers, entry, tmp_path):
+def test_a_project_is_saved_and_opened_again(application, make_desk, entry, tmp_path):
     desk = make_desk()
     assert "Begin with a site" in desk.window.tab("site").left.start.findChild(type(desk.window.messages._text)).text()
     with_site(application, desk)
     desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
     assert desk.window.isWindowModified()
-    answers.chosen = tmp_path / "my roof"
-    desk.save()
+    with clicked(choose(tmp_path / "my roof")):
+        desk.save()
     turn_until_idle(application, desk)
     assert not desk.window.isWindowModified()
     assert desk.window.windowTitle() == "my roof[*] - Reflight"
     assert "Saved in" in desk.window.messages.texts()
     desk.workspace.session.undo()
     assert desk.window.isWindowModified()
-    answers.save = Answer.NO
-    desk.open_folder(tmp_path / "my roof")
+    with clicked(choose(tmp_path / "my roof"), "Discard"):
+        trigger(desk.window, "Open project ...")
     turn_until_idle(application, desk)
     assert [found.title for found in desk.workspace.document.plans] == ["First"]
     assert desk.workspace.document.current.plan == entry.plan
     assert desk.settings().recent_projects == (str(tmp_path / "my roof"),)
 
 
-def test_leaving_unsaved_work_asks_first(application, make_desk, answers, tmp_path):
+def test_leaving_unsaved_work_asks_first(application, make_desk, tmp_path):
     desk = make_desk()
     with_site(application, desk)
-    answers.save = Answer.CANCEL
-    desk.new_project()
-    assert desk.workspace.document.site is not None
-    assert not desk.window.close()
-    answers.save, answers.chosen = Answer.YES, tmp_path / "kept"
-    desk.new_project()
+    for no in ("Cancel", escape, shut):
+        with clicked(no) as asked:
+            trigger(desk.window, "New project")
+        assert "This project has changes that are not saved" in asked[0]
+        assert desk.workspace.document.site is not None
+        with clicked(no):
+            assert not desk.window.close()
+    with clicked("Save", escape):
+        trigger(desk.window, "New project")
+    assert desk.workspace.document.site is not None, "no folder was named: nothing is saved, nothing is lost"
+    with clicked("Save", choose(tmp_path / "kept")):
+        trigger(desk.window, "New project")
     turn_until_idle(application, desk)
     assert desk.workspace.document.site is None
     assert open_project(tmp_path / "kept").document.site.site.name == "roof"
@@ -103,7 +101,8 @@ def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_d
     bad = tmp_path / "bad"
     bad.mkdir()
     (bad / "project.json").write_text('{"format": "reflight-project/2", "plans": [')
-    desk.open_folder(bad)
+    with clicked("Discard"):
+        desk.open_folder(bad)
     turn_until_idle(application, desk)
     assert "project.json" in desk.window.messages.texts()
     assert "Error" in desk.window.messages.texts()
@@ -152,7 +151,7 @@ def not_writable(folder):
         yield
 
 
-def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_desk, answers, entry, tmp_path):
+def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_desk, entry, tmp_path):
     desk = make_desk()
     with_site(application, desk)
     folder = tmp_path / "project"
@@ -166,14 +165,14 @@ def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_desk
         assert desk.workspace.document.site.site.name == "roof"
         desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
         desk.autosave_now()
-        answers.chosen = tmp_path / "copy"
-        desk.save()
+        with clicked(choose(tmp_path / "copy")):
+            desk.save()
         turn_until_idle(application, desk)
         assert not desk.window.isWindowModified()
     assert len(open_project(tmp_path / "copy").document.plans) == 1
 
 
-def test_unsaved_work_is_offered_after_a_crash(application, make_desk, answers, entry, tmp_path):
+def test_unsaved_work_is_offered_after_a_crash(application, make_desk, entry, tmp_path):
     desk = make_desk()
     with_site(application, desk)
     folder = tmp_path / "project"
@@ -184,10 +183,10 @@ def test_unsaved_work_is_offered_after_a_crash(application, make_desk, answers, 
     turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
     # What a crash leaves: the folder as it is now, and no process that has it open.
     shutil.copytree(folder, tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
-    answers.take_over = Answer.YES
-    desk.open_folder(tmp_path / "crashed")
+    with clicked("Discard", "Yes") as asked:
+        desk.open_folder(tmp_path / "crashed")
     turn_until_idle(application, desk)
-    assert any("plan 'First' is new" in asked for asked in answers.asked)
+    assert "plan 'First' is new" in asked[-1]
     assert [found.title for found in desk.workspace.document.plans] == ["First"]
     assert desk.window.isWindowModified(), "it is still not saved"
     desk.save()
@@ -196,7 +195,7 @@ def test_unsaved_work_is_offered_after_a_crash(application, make_desk, answers, 
     assert len(open_project(tmp_path / "crashed").document.plans) == 1
 
 
-def test_work_without_a_project_survives_a_crash_too(application, make_desk, answers, tmp_path):
+def test_work_without_a_project_survives_a_crash_too(application, make_desk, tmp_path):
     first = make_desk()
     with_site(application, first)
     first.autosave_now()
@@ -205,8 +204,8 @@ def test_work_without_a_project_survives_a_crash_too(application, make_desk, ans
     shutil.copytree(place, place.with_name("crashed"), ignore=shutil.ignore_patterns(".lock*"))
     make_desk.end(first)
     assert not place.exists(), "an orderly end leaves nothing behind"
-    answers.take_over = Answer.YES
-    second = make_desk()
+    with clicked("Yes"):
+        second = make_desk()
     turn_until_idle(application, second)
     assert second.workspace.document.site.site.name == "roof"
 
@@ -224,7 +223,7 @@ def test_a_second_window_on_one_project_is_told(application, make_desk, tmp_path
     assert second.workspace.document.site is not None
 
 
-def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, make_desk, answers, tmp_path):
+def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, make_desk, tmp_path):
     desk = make_desk()
     with_site(application, desk)
     desk.save_in(tmp_path / "project")
@@ -262,7 +261,7 @@ def test_the_layout_is_remembered(application, make_desk):
     assert second.window._around.sizes()[0] == pytest.approx(width, abs=3)
 
 
-def test_work_that_was_thrown_away_is_not_offered_again(application, make_desk, answers, entry, tmp_path):
+def test_work_that_was_thrown_away_is_not_offered_again(application, make_desk, entry, tmp_path):
     desk = make_desk()
     with_site(application, desk)
     folder = tmp_path / "project"
@@ -271,9 +270,9 @@ def test_work_that_was_thrown_away_is_not_offered_again(application, make_desk, 
     desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
     desk.autosave_now()
     turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
-    answers.save, answers.take_over = Answer.NO, Answer.YES
-    desk.open_folder(folder)
+    with clicked("Discard") as asked:
+        desk.open_folder(folder)
     turn_until_idle(application, desk)
-    assert answers.asked[-1] == "save"
+    assert asked[-1].startswith("Unsaved changes")
     assert desk.workspace.document.plans == ()
     assert not desk.window.isWindowModified()

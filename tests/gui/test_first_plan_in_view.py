@@ -6,7 +6,7 @@ import pytest
 
 from groundstation.services.document import Document, PlanEntry
 from planning.scenes import SCENES
-from tests.gui.driving import Answers, turn_until
+from tests.gui.driving import close_desk, turn_until
 from tests.planning.insight.cases import plan, scene
 
 
@@ -15,13 +15,12 @@ def desk(application, worker, tmp_path, monkeypatch):
     from groundstation.gui.desk import Desk
 
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    desk = Desk(application, Answers(), worker)
+    desk = Desk(application, worker=worker)
     desk.show()
     desk.window.setGeometry(0, 0, 1280, 720)
     turn_until(application, lambda: desk.window.stage.scene() is not None)
     yield desk
-    desk.window.close()
-    desk.close()
+    close_desk(desk)
 
 
 def entry(name):

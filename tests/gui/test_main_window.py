@@ -10,7 +10,7 @@ from groundstation.services.document import Item, ItemKind
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
 from planning.request import GreedyParameters, PlanRequest
-from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.gui.driving import close_desk, turn_until, turn_until_idle
 
 QUICK = PlanRequest(
     n_views=8, greedy=GreedyParameters(n_candidates=400, improve=False, certify=False), time_budget_s=4.0
@@ -23,13 +23,12 @@ def desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     from groundstation.gui.desk import Desk
 
-    desk = Desk(application, Answers(), worker)
+    desk = Desk(application, worker=worker)
     desk.show()
     desk.window.setGeometry(0, 0, 1280, 720)
     turn_until(application, lambda: desk.window.stage.scene() is not None)
     yield desk
-    desk.window.close()
-    desk.close()
+    close_desk(desk)
 
 
 def opened(application, desk, scene):

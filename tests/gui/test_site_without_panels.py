@@ -15,7 +15,7 @@ from planning.findings import Severity
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import roof
-from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.gui.driving import choose, clicked, close_desk, turn_until, turn_until_idle
 from tests.planning.revision.cases import QUICK
 from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
 
@@ -38,8 +38,8 @@ class Window:
     def __init__(self, application, worker):
         from groundstation.gui.desk import Desk
 
-        self.application, self.answers = application, Answers()
-        self.desk = Desk(application, self.answers, worker)
+        self.application = application
+        self.desk = Desk(application, worker=worker)
         self.desk.show()
         self.window, self.workspace = self.desk.window, self.desk.workspace
         self.window.setGeometry(0, 0, 1280, 720)
@@ -71,8 +71,7 @@ class Window:
         return [message.text for message in self.messages if message.severity is Severity.ERROR]
 
     def close(self):
-        self.window.close()
-        self.desk.close()
+        close_desk(self.desk)
         gc.collect()
 
 
@@ -111,8 +110,8 @@ def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, 
     opened.idle()
     assert open_project(tmp_path / "project").document.site.site == opened.site
     photos = opened.show("photos")
-    photos.questions = Answers(folder=folder / "photos")
-    QTest.mouseClick(photos.choose, Qt.MouseButton.LeftButton)
+    with clicked(choose(folder / "photos")):
+        QTest.mouseClick(photos.choose, Qt.MouseButton.LeftButton)
     opened.idle()
     assert "2 photos, 2 of them usable. The site has no panels yet" in photos.coverage.text()
     QTest.mouseClick(photos.find, Qt.MouseButton.LeftButton)

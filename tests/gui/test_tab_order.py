@@ -6,7 +6,7 @@ import pytest
 
 from groundstation.services.document import Document
 from planning.scenes import SCENES
-from tests.gui.driving import Answers, turn_until
+from tests.gui.driving import close_desk, turn_until
 
 
 @pytest.fixture
@@ -85,15 +85,14 @@ def window(application, worker, tmp_path, monkeypatch):
     from groundstation.gui.desk import Desk
 
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    desk = Desk(application, Answers(), worker)
+    desk = Desk(application, worker=worker)
     desk.show()
     window = desk.window
     window.setGeometry(0, 0, 1280, 720)
     desk.workspace.session.open(Document(SCENES["single-panel"]()), None)
     turn_until(application, lambda: window.stage.scene() is not None)
     yield window
-    window.close()
-    desk.close()
+    close_desk(desk)
 
 
 @pytest.mark.parametrize("tab", ["site", "plan", "mission"])

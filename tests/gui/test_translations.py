@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QMenu
 
 from groundstation.gui.languages import FOLDER
 from groundstation.services.settings import Language
-from tests.gui.driving import Answers, turn_until
+from tests.gui.driving import close_desk, turn_until
 
 GUI = FOLDER.parent
 ROOT = GUI.parent.parent
@@ -135,7 +135,7 @@ def desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
     from groundstation.gui.desk import Desk
 
-    desk = Desk(application, Answers(), worker)
+    desk = Desk(application, worker=worker)
     desk.show()
     turn_until(application, lambda: desk.window.stage.scene() is not None)
 
@@ -146,8 +146,7 @@ def desk(application, worker, tmp_path, monkeypatch):
     speak(Language.GERMAN)
     yield desk
     speak(Language.ENGLISH)
-    desk.window.close()
-    desk.close()
+    close_desk(desk)
 
 
 def test_the_window_speaks_german_once_it_is_chosen(desk):

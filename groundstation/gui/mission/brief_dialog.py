@@ -148,9 +148,9 @@ class BriefDialog(QDialog):
 
     def _choose_pdf(self) -> None:
         proposed, kinds = self._folder / f"{self._name}.pdf", self.tr("PDF (*.pdf)")
-        path = choose_new_file(self, self.tr("Save the flight brief"), proposed, kinds)
+        path = choose_new_file(self, self.tr("Save the flight brief"), proposed, kinds, ".pdf")
         if path is not None:
-            self.save_pdf(path if path.suffix else path.with_suffix(".pdf"))
+            self.save_pdf(path)
 
     def _choose_printer(self) -> None:
         from PySide6.QtPrintSupport import QPrintDialog, QPrinter

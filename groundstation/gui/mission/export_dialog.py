@@ -166,10 +166,9 @@ class ExportDialog(QDialog):
         suffix = SUFFIXES[file_format][0]
         proposed = self._folder / f"{self._plan.site}{suffix}"
         kinds = self.tr("Mission files (*{0})").format(suffix)
-        path = choose_new_file(self, self.tr("Write mission files"), proposed, kinds)
+        path = choose_new_file(self, self.tr("Write mission files"), proposed, kinds, suffix)
         if path is None or self._prepared is None:
             return
-        path = path if path.suffix else path.with_suffix(suffix)
         if self._may_replace(path):
             self.write(path)
 

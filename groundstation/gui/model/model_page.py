@@ -115,7 +115,7 @@ class ModelPage(QObject):
 
     def _save_picture(self) -> None:
         title, kinds = self.tr("Save the picture"), self.tr("Pictures (*.png)")
-        path = choose_new_file(self._stage.window(), title, self._proposed(".png"), kinds)
+        path = choose_new_file(self._stage.window(), title, self._proposed(".png"), kinds, ".png")
         if path is not None:
             self.save_picture(path)
 
@@ -143,18 +143,19 @@ class ModelPage(QObject):
         title, ending = self.tr("Export the model"), ENDINGS.get(kind)
         if ending is None:
             return self.questions.new_folder(self._stage.window(), title)
-        found = choose_new_file(self._stage.window(), title, f"{name}{ending}", f"*{ending}")
+        found = choose_new_file(self._stage.window(), title, Path(f"{name}{ending}"), f"*{ending}", ending)
         return None if found is None else with_ending(found, kind)
 
     def _make_report(self) -> None:
         title, kinds = self.tr("Save the report"), self.tr("Documents (*.pdf)")
-        path = choose_new_file(self._stage.window(), title, self._proposed(".pdf"), kinds)
+        path = choose_new_file(self._stage.window(), title, self._proposed(".pdf"), kinds, ".pdf")
         if path is not None:
             self.make_report(path)
 
-    def _proposed(self, ending: str) -> str:
+    def _proposed(self, ending: str) -> Path:
         """A name for a file about the model that is open."""
-        return "" if self.desk.card is None else f"{self.desk.card.name}{ending}"
+        name = self.tr("model") if self.desk.card is None else self.desk.card.name
+        return Path(f"{name}{ending}")
 
     def make_report(self, path: Path) -> None:
         """Write a report of the panels that are marked in the list, or of the one that is chosen."""

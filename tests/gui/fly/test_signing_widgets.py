@@ -12,7 +12,7 @@ from missions.mavlink.key_store import KeyStore
 from missions.mavlink.link import open_link
 from missions.mavlink.messages import Address, Heartbeat, SetupSigning
 from missions.mavlink.signing import Signer, key_from_passphrase
-from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.gui.driving import clicked, close_desk, escape, press, shut, turn_until, turn_until_idle, type_into
 from tests.services.live_cases import planned
 
 PASSPHRASE = "correct horse battery staple"
@@ -53,33 +53,11 @@ class Autopilot:
                 self.link.sign_with(None if self.key is None else Signer(self.key))
 
 
-class Pilot:
-    """Answers what is asked about the key."""
-
-    def __init__(self):
-        self.passphrases, self.agrees, self.asked = [PASSPHRASE], True, []
-
-    def passphrase(self, parent):
-        return self.passphrases.pop(0)
-
-    def give(self, parent, url):
-        self.asked.append(("give", url))
-        return self.agrees
-
-    def withdraw(self, parent, url):
-        self.asked.append(("withdraw", url))
-        return self.agrees
-
-    def forget(self, parent):
-        self.asked.append(("forget", ""))
-        return self.agrees
-
-
 @pytest.fixture
 def desk(application, worker):
     from groundstation.gui.desk import Desk
 
-    desk = Desk(application, Answers(), worker)
+    desk = Desk(application, worker=worker)
     desk.show()
     turn_until(application, lambda: desk.window.stage.scene() is not None)
     model, plan = planned()
@@ -87,15 +65,12 @@ def desk(application, worker):
     desk.window.show_tab("fly")
     turn_until_idle(application, desk)
     yield desk
-    desk.window.close()
-    desk.close()
+    close_desk(desk)
 
 
 @pytest.fixture
 def page(desk):
-    page = desk.window.tab("fly")
-    page.desk.signing.questions = Pilot()
-    return page
+    return desk.window.tab("fly")
 
 
 def choose(application, desk, page, url):
@@ -105,9 +80,23 @@ def choose(application, desk, page, url):
     turn_until_idle(application, desk)
 
 
-def act(application, desk, page, action):
-    page.connection.signing.action(action).trigger()
+def act(application, desk, page, action, *steps):
+    """Choose an action of the key's menu, and work the dialog that it brings up."""
+    with clicked(*steps) as asked:
+        page.connection.signing.action(action).trigger()
     turn_until_idle(application, desk)
+    return asked[-1]
+
+
+def typed(first, second=None, button="OK"):
+    """A step: type a passphrase twice, and press a button."""
+
+    def step(dialog):
+        type_into(dialog.first, first)
+        type_into(dialog.second, first if second is None else second)
+        press(button)(dialog)
+
+    return step
 
 
 def test_signed_is_remembered_for_each_address_and_offered_for_none_in_the_simulation(application, desk, page):
@@ -138,18 +127,20 @@ def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application,
         choose(application, desk, page, vehicle.url)
         assert box.text() == "This computer keeps no key yet."
         assert not box.action(KeyAction.GIVE).isEnabled()
-        act(application, desk, page, KeyAction.SET)
+        act(application, desk, page, KeyAction.SET, typed(PASSPHRASE))
         assert box.text() == "This computer keeps a key."
-        act(application, desk, page, KeyAction.GIVE)
+        asked = act(application, desk, page, KeyAction.GIVE, "Yes")
+        assert f"The key goes to the vehicle at {vehicle.url}" in asked
         assert vehicle.key == key
         assert page.desk.choice.is_signed
         assert box.value()
-        act(application, desk, page, KeyAction.WITHDRAW)
+        asked = act(application, desk, page, KeyAction.WITHDRAW, "Yes")
+        assert f"The vehicle at {vehicle.url} forgets the key" in asked
         turn_until(application, lambda: vehicle.key is None)
         assert not page.desk.choice.is_signed
-        act(application, desk, page, KeyAction.FORGET)
+        asked = act(application, desk, page, KeyAction.FORGET, "Yes")
+        assert "Forget the key on this computer?" in asked
     assert not box.action(KeyAction.FORGET).isEnabled()
-    assert page.desk.signing.questions.asked == [("give", vehicle.url), ("withdraw", vehicle.url), ("forget", "")]
     told = desk.window.messages.texts()
     assert "has the key, and signs with it" in told
     assert key.hex() not in told
@@ -159,12 +150,12 @@ def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application,
 def test_nothing_is_done_when_the_pilot_thinks_better_of_it(application, desk, page):
     from groundstation.gui.fly.signing_box import KeyAction
 
-    pilot = page.desk.signing.questions
     signing.set_passphrase(PASSPHRASE)
     choose(application, desk, page, "tcp:127.0.0.1:1")
-    pilot.agrees, pilot.passphrases = False, [None]
-    for action in KeyAction:
-        act(application, desk, page, action)
+    for no in ("Cancel", escape, shut):
+        for action in KeyAction:
+            act(application, desk, page, action, no)
+    act(application, desk, page, KeyAction.SET, typed("another long passphrase", button="Cancel"))
     assert signing.link_signer().key == key_from_passphrase(PASSPHRASE)
     assert "cannot be opened" not in desk.window.messages.texts()
 
@@ -174,7 +165,7 @@ def test_a_vehicle_that_cannot_be_given_the_key_is_told_of(application, desk, pa
 
     signing.set_passphrase(PASSPHRASE)
     choose(application, desk, page, "tcp:127.0.0.1:1")
-    act(application, desk, page, KeyAction.GIVE)
+    act(application, desk, page, KeyAction.GIVE, "Yes")
     assert "tcp:127.0.0.1:1 cannot be opened" in desk.window.messages.texts()
     assert not page.desk.choice.is_signed
 

@@ -14,7 +14,7 @@ from missions.model import FileFormat
 from planning.findings import Severity
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from tests.gui.driving import turn_until
+from tests.gui.driving import choose, clicked, turn_until
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import QUICK
@@ -139,14 +139,15 @@ def test_a_list_that_is_shown_later_knows_the_selection_and_the_panels(page, wor
     assert [mark.isVisible() for mark in page.lists.profile._marks] == [True, True]
 
 
-def test_files_are_taken_in_the_order_of_their_sorties(page, monkeypatch, tmp_path):
-    from PySide6.QtWidgets import QFileDialog
-
-    names = [str(tmp_path / name) for name in ("roof-2.plan", "roof-3.plan", "roof.plan")]
-    monkeypatch.setattr(QFileDialog, "getOpenFileNames", lambda *_arguments: (names, ""))
+def test_files_are_taken_in_the_order_of_their_sorties(page, workspace, planned, monkeypatch, tmp_path):
+    workspace.session.open(opened(planned), None)
+    names = [tmp_path / name for name in ("roof-2.plan", "roof-3.plan", "roof.plan")]
+    for path in names:
+        path.touch()
     heard = []
     monkeypatch.setattr(page.desk, "import_files", heard.extend)
-    page._choose_import()
+    with clicked(choose(*names)):
+        page._import.trigger()
     assert [path.name for path in heard] == ["roof.plan", "roof-2.plan", "roof-3.plan"]
 
 

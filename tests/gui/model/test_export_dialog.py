@@ -1,13 +1,11 @@
 """Exporting from the Model tab: what is asked for, and what is written in a process beside the window's."""
 
 import pytest
-from PySide6.QtWidgets import QDialog, QFileDialog
 
-from groundstation.gui.model import model_page
 from groundstation.gui.model.export_dialog import ExportDialog, format_words
 from groundstation.services.model_export import ENDINGS, ModelExport, ModelFormat, with_ending
 from reconstruction.exports.spz_reading import read_spz
-from tests.gui.driving import turn_until
+from tests.gui.driving import choose, clicked, escape, press, shut, turn_until
 from tests.services.test_shown_models import made_model
 
 
@@ -59,21 +57,36 @@ def test_files_get_the_ending_of_their_format_unless_they_have_one(tmp_path):
     assert all(ending.startswith(".") for ending in ENDINGS.values())
 
 
-def test_a_model_is_written_and_the_user_is_told(application, page, trained, tmp_path, monkeypatch):
+def test_a_model_is_written_and_the_user_is_told(application, page, trained, tmp_path):
     assert not page.side.export.isEnabled()
     opened_with(application, page, trained)
     assert page.side.export.isEnabled()
 
-    def accept(dialog):
+    def as_spz(dialog):
         dialog.format.setCurrentIndex(dialog.format.findData(ModelFormat.SPZ))
-        return QDialog.DialogCode.Accepted
+        press("Choose a place ...")(dialog)
 
-    monkeypatch.setattr(model_page.ExportDialog, "exec", accept)
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_given: (str(tmp_path / "tower"), ""))
-    page.side.export.click()
+    for no in ("Cancel", escape, shut):
+        with clicked(no):
+            page.side.export.click()
+        with clicked(as_spz, no):
+            page.side.export.click()
+    assert page.messages == []
+    with clicked(as_spz, choose(tmp_path / "tower")):
+        page.side.export.click()
     turn_until(application, lambda: bool(page.messages), 60.0)
     assert "The model is written" in page.messages[-1].text
     assert 0 < len(read_spz(tmp_path / "tower.spz")) <= page.desk.card.n_gaussians
+
+
+def test_a_web_page_is_written_into_a_folder_that_is_named(application, page, trained, tmp_path):
+    opened_with(application, page, trained)
+    with clicked("Choose a place ...", escape):
+        page.side.export.click()
+    with clicked("Choose a place ...", choose(tmp_path / "tower page")):
+        page.side.export.click()
+    turn_until(application, lambda: bool(page.messages), 60.0)
+    assert (tmp_path / "tower page" / "index.html").is_file()
 
 
 def test_what_cannot_be_written_is_told_and_the_window_goes_on(application, page, trained, tmp_path):

@@ -8,6 +8,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
 from groundstation.gui.model.record_dialog import RecordDialog
+from groundstation.gui.model.record_side import KIND_TITLES
 from groundstation.gui.reconstruct.model_view import Mark
 from groundstation.services.panel_colours import Computed
 from groundstation.services.reconstruct_messages import Look, Lost, Organise, Probe, Probed, SceneMade, Section, Seen
@@ -15,7 +16,7 @@ from groundstation.services.units import UnitSystem
 from reconstruction.objects.store import write_scene
 from reconstruction.records.book import FILE
 from reconstruction.records.entries import Attribute, Defect, Document, Inspection, Maintenance
-from tests.gui.driving import turn_until
+from tests.gui.driving import choose, clicked, escape, press, shut, turn_until, type_into
 from tests.reconstruction.objects.made_scene import made_scene
 
 
@@ -251,7 +252,12 @@ def test_panels_have_their_colours_beside_too_where_they_have_other_numbers(appl
 
 def test_the_picture_is_saved_with_its_marks(opened, tmp_path):
     answer(opened, looks(opened)[0])
-    opened.save_picture(tmp_path / "seen")
+    for no in ("Cancel", escape, shut):
+        with clicked(no):
+            opened.pane.save.click()
+    assert list(tmp_path.glob("*.png")) == []
+    with clicked(choose(tmp_path / "seen")):
+        opened.pane.save.click()
     assert (tmp_path / "seen.png").read_bytes().startswith(b"\x89PNG")
     opened.save_picture(tmp_path / "nowhere" / "seen.png")
     assert "cannot be written" in opened.messages[-1].text
@@ -263,7 +269,12 @@ def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application
     opened.desk.put(Defect(panels[0].global_id, "crack", 2, "2026-05-04", 0.5, 0.5, note=note))
     opened.side.list.setCurrentIndex(opened.side.rows.index(0))
     opened.side.list.selectAll()
-    opened.make_report(tmp_path / "panels")
+    for no in ("Cancel", escape, shut):
+        with clicked(no):
+            opened.records.report.click()
+    assert not opened.report.is_busy
+    with clicked(choose(tmp_path / "panels")):
+        opened.records.report.click()
     for _ in range(4):
         answer(opened, looks(opened)[-1])
     assert not opened.report.is_busy
@@ -343,6 +354,32 @@ def test_forms_make_records_and_change_them(opened):
     assert named.found == Attribute(global_id, "thickness", 8.5, "number", "mm")
 
 
+def test_records_are_added_and_changed_in_a_form_and_not_when_it_is_left(opened):
+    global_id = opened.desk.card.panels[0].global_id
+    opened.desk.select(global_id)
+    add = opened.records.kinds.actions()[list(KIND_TITLES).index(Defect)]
+
+    def fill(kind, button):
+        def step(dialog):
+            type_into(dialog.boxes["kind"], kind)
+            press(button)(dialog)
+
+        return step
+
+    for step in (fill("crack", "Cancel"), escape, shut):
+        with clicked(step):
+            add.trigger()
+    assert opened.desk.entries_of(Defect, global_id) == ()
+    with clicked(fill("crack", "OK")):
+        add.trigger()
+    assert [found.kind for found in opened.desk.entries_of(Defect, global_id)] == ["crack"]
+    group = opened.records.tree.topLevelItem(list(KIND_TITLES).index(Defect))
+    opened.records.tree.setCurrentItem(group.child(0))
+    with clicked(fill("chip", "OK")):
+        opened.records.change.click()
+    assert [found.kind for found in opened.desk.entries_of(Defect, global_id)] == ["chip"]
+
+
 def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_path):
     global_id = opened.desk.card.panels[0].global_id
     (tmp_path / "crack.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(40))
@@ -350,7 +387,12 @@ def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_pat
     opened.desk.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "crack.png")
     dialog = RecordDialog(Document, global_id, None, str, opened.left)
     dialog.boxes["title"].setText("Data sheet")
-    dialog.take_file(tmp_path / "sheet.pdf")
+    for no in ("Cancel", escape, shut):
+        with clicked(no):
+            dialog.choose.click()
+        assert dialog.file is None
+    with clicked(choose(tmp_path / "sheet.pdf")):
+        dialog.choose.click()
     dialog.accept()
     opened.desk.put(dialog.found, dialog.file)
     assert opened.desk.entries_of(Defect, global_id)[0].picture.endswith(".png")

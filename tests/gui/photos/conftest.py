@@ -4,7 +4,7 @@ import gc
 
 import pytest
 
-from tests.gui.driving import Answers, turn_until
+from tests.gui.driving import close_desk, turn_until
 from tests.gui.photos.photos_tab import PhotosTab
 from tests.services.photo_cases import write_photos
 
@@ -24,13 +24,12 @@ def desk(application, worker, tmp_path_factory):
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
         from groundstation.gui.desk import Desk
 
-        desk = Desk(application, Answers(), worker)
+        desk = Desk(application, worker=worker)
         desk.show()
         desk.window.setGeometry(0, 0, 1280, 720)
         turn_until(application, lambda: desk.window.stage.scene() is not None)
         yield desk
-        desk.window.close()
-        desk.close()
+        close_desk(desk)
         gc.collect()
 
 

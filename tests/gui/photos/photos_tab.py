@@ -7,7 +7,7 @@ from PySide6.QtTest import QTest
 
 from groundstation.services.document import Document
 from groundstation.services.history import History
-from tests.gui.driving import Answers, turn_until, turn_until_idle
+from tests.gui.driving import choose, clicked, turn_until, turn_until_idle
 from tests.services.photo_cases import draft_of, site_model, with_paths
 
 
@@ -21,8 +21,9 @@ class PhotosTab:
         self.tab = desk.window.tab("photos")
         self.messages = []
         desk.workspace.messageShown.connect(self.messages.append)
-        self.tab.questions = Answers(folder=folder)
-        self.tab.choose.click()
+        turn_until(application, self.tab.choose.isEnabled)
+        with clicked(choose(folder)):
+            self.tab.choose.click()
         self.idle()
 
     @property

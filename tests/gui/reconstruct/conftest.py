@@ -4,7 +4,7 @@ import gc
 
 import pytest
 
-from tests.gui.driving import Answers, turn_until
+from tests.gui.driving import close_desk, turn_until
 from tests.reconstruction.modelling.made_data_set import write_data_set
 
 
@@ -21,11 +21,10 @@ def desk(application, worker, tmp_path_factory):
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
         from groundstation.gui.desk import Desk
 
-        desk = Desk(application, Answers(), worker)
+        desk = Desk(application, worker=worker)
         desk.window.setGeometry(0, 0, 1280, 720)
         yield desk
-        desk.window.close()
-        desk.close()
+        close_desk(desk)
         gc.collect()
 
 

@@ -30,7 +30,7 @@ from groundstation.services.reconstruct_messages import (
 from planning.effects import Decision
 from planning.errors import InputError
 from planning.findings import Severity
-from tests.gui.driving import turn_until
+from tests.gui.driving import choose, clicked, escape, shut, turn_until
 
 TRAINING = Subject("training")
 STEP = Stepped("training", 12, 30.0, 0.1, 970, {"colour": 0.2, "high frequency": 0.5})
@@ -376,18 +376,36 @@ def test_finished_models_of_the_data_set_are_compared(application, chosen, tmp_p
     assert "holds no finished model" in chosen.pane.view.note()
 
 
+def test_folders_are_chosen_and_nothing_happens_without_one(application, page, data, tmp_path):
+    for no in ("Cancel", escape, shut):
+        for button in (page.side.choose, page.side.choose_out):
+            with clicked(no):
+                button.click()
+    assert page.desk.card is None
+    assert page.messages == []
+    with clicked(choose(data)):
+        page.side.choose.click()
+    turn_until(application, lambda: page.desk.card is not None and not page._workspace.jobs())
+    with clicked(choose(tmp_path / "my model")):
+        page.side.choose_out.click()
+    turn_until(application, lambda: not page._workspace.jobs())
+    assert page.desk.out == tmp_path / "my model"
+
+
 def test_closing_asks_while_a_model_is_trained_and_lets_the_process_go(chosen):
     from PySide6.QtGui import QCloseEvent
 
-    answers = iter([False, True])
-    chosen.asks.break_off = lambda _parent: next(answers)
     begin(chosen)
+    for no in ("Cancel", escape, shut):
+        event = QCloseEvent()
+        with clicked(no) as asked:
+            chosen._window_closing(event)
+        assert "Closing the window breaks the training off" in asked[0]
+        assert not event.isAccepted()
+        assert "closed" not in chosen.told.messages
     event = QCloseEvent()
-    chosen._window_closing(event)
-    assert not event.isAccepted()
-    assert "closed" not in chosen.told.messages
-    event = QCloseEvent()
-    chosen._window_closing(event)
+    with clicked("Yes"):
+        chosen._window_closing(event)
     assert event.isAccepted()
     assert chosen.told.messages[-1] == "closed"
 

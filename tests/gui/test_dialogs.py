@@ -1,0 +1,275 @@
+"""The dialogs of the window, clicked: what accepting them does, and that nothing happens without."""
+
+import gc
+
+import pytest
+import trimesh
+from PySide6.QtWidgets import QPushButton
+
+from groundstation.services.document import Document, PlanEntry
+from missions.formats import read_missions
+from planning.plan import FlightRules
+from planning.plan_file import write_plan
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from tests.gui.driving import (
+    choose,
+    click_on,
+    clicked,
+    close_desk,
+    escape,
+    press,
+    press_in,
+    shut,
+    trigger,
+    turn_until,
+    turn_until_idle,
+    type_into,
+)
+from tests.planning.plan_cases import kiosk
+from tests.planning.revision.cases import QUICK
+
+NO = ("Cancel", escape, shut)
+
+
+@pytest.fixture(scope="module")
+def planned():
+    model = kiosk()
+    return model, plan_flight(model, PlanRequest(n_views=10, greedy=QUICK)).plan
+
+
+@pytest.fixture(scope="module")
+def shown(application, worker, tmp_path_factory):
+    """One window for all of these tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
+        from groundstation.gui.desk import Desk
+
+        desk = Desk(application, worker=worker)
+        desk.show()
+        desk.window.setGeometry(0, 0, 1400, 900)
+        turn_until(application, lambda: desk.window.stage.scene() is not None)
+        yield desk
+        close_desk(desk)
+        gc.collect()
+
+
+@pytest.fixture
+def desk(application, shown, planned):
+    """The window with a site and a plan that are saved nowhere and not changed."""
+    model, plan = planned
+    shown.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    turn_until_idle(application, shown)
+    return shown
+
+
+def in_tab(name, text):
+    def open_it(application, desk):
+        desk.window.show_tab(name)
+        turn_until_idle(application, desk)
+        press_in(desk.window, text)
+
+    return open_it
+
+
+def from_menu(text, tab="site"):
+    def open_it(application, desk):
+        desk.window.show_tab(tab)
+        turn_until_idle(application, desk)
+        trigger(desk.window, text)
+
+    return open_it
+
+
+def aircraft_file(application, desk):
+    from PySide6.QtCore import Qt
+    from PySide6.QtTest import QTest
+
+    desk.window.show_tab("plan")
+    turn_until_idle(application, desk)
+    box = desk.window.tab("plan").form.aircraft
+    box.setFocus()
+    QTest.keyClick(box, Qt.Key.Key_End)
+
+
+def obstacle_mesh(application, desk):
+    in_tab("site", "Obstacle mesh...")(application, desk)
+
+
+def rename(application, desk):
+    desk.window.show_tab("plan")
+    turn_until_idle(application, desk)
+    lists = desk.window.tab("plan").lists
+    lists.setCurrentWidget(lists.plans)
+    lists.plans.select(("plan-1",))
+    press_in(desk.window, "Rename ...")
+
+
+def open_plan(application, desk):
+    desk.window.show_tab("plan")
+    turn_until_idle(application, desk)
+    lists = desk.window.tab("plan").lists
+    lists.setCurrentWidget(lists.plans)
+    press_in(desk.window, "Open plan ...")
+
+
+def open_map(application, desk):
+    from groundstation.gui.stage import StagePage
+
+    desk.window.stage.show_page(StagePage.MAP)
+    turn_until_idle(application, desk)
+    press_in(desk.window.stage, "Map file")
+
+
+ASKING = {
+    "open a project": from_menu("Open project ..."),
+    "save as": from_menu("Save as ..."),
+    "map tiles": from_menu("Map tiles ..."),
+    "open a map": open_map,
+    "open a site": in_tab("site", "Open..."),
+    "import a building": in_tab("site", "Import..."),
+    "obstacle mesh": obstacle_mesh,
+    "aircraft from a file": aircraft_file,
+    "open a plan": open_plan,
+    "rename a plan": rename,
+    "import missions": from_menu("Import mission files ...", "mission"),
+    "compare with missions": from_menu("Compare with file ...", "mission"),
+    "photos": in_tab("photos", "Choose folder ..."),
+    "model": in_tab("model", "Open a model ..."),
+}
+
+
+@pytest.mark.parametrize("name", ASKING)
+def test_nothing_happens_when_the_user_thinks_better_of_it(application, desk, name):
+    before, told = desk.workspace.document, desk.window.messages.texts()
+    for no in NO:
+        with clicked(no):
+            ASKING[name](application, desk)
+        turn_until_idle(application, desk)
+    assert desk.workspace.document is before
+    assert desk.window.messages.texts() == told
+
+
+def test_a_plan_gets_the_name_that_is_typed(application, desk):
+    def name_it(text, button):
+        def step(dialog):
+            from PySide6.QtWidgets import QLineEdit
+
+            type_into(dialog.findChild(QLineEdit), text)
+            press(button)(dialog)
+
+        return step
+
+    with clicked(name_it("Second", "Cancel")):
+        rename(application, desk)
+    assert desk.workspace.document.current.title == "First"
+    with clicked(name_it("South side", "OK")):
+        rename(application, desk)
+    assert desk.workspace.document.current.title == "South side"
+
+
+def test_a_plan_an_aircraft_and_a_mesh_are_opened_from_files(application, desk, planned, tmp_path):
+    write_plan(tmp_path / "other.json", planned[1])
+    with clicked(choose(tmp_path / "other.json")):
+        open_plan(application, desk)
+    turn_until_idle(application, desk)
+    assert len(desk.workspace.document.plans) == 2
+    path = tmp_path / "pole.ply"
+    trimesh.creation.box((1.0, 1.0, 3.0)).export(path)
+    n_before = len(desk.workspace.document.site.site.obstacles)
+    with clicked(choose(path)):
+        obstacle_mesh(application, desk)
+    turn_until_idle(application, desk)
+    assert len(desk.workspace.document.site.site.obstacles) == n_before + 1
+    (tmp_path / "bad.toml").write_text("= no aircraft")
+    before = desk.window.tab("plan").form.aircraft.value()
+    with clicked(choose(tmp_path / "bad.toml")):
+        aircraft_file(application, desk)
+    assert "bad.toml" in desk.window.tab("plan").form._wrong.text()
+    assert desk.window.tab("plan").form.aircraft.value() == before
+
+
+def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(application, desk, tmp_path):
+    from groundstation.gui.mission.export_dialog import ExportDialog
+
+    desk.window.show_tab("mission")
+    turn_until_idle(application, desk)
+    trigger(desk.window, "Export mission files ...")
+    dialog = desk.window.findChild(ExportDialog)
+    turn_until(application, lambda: dialog.prepared() is not None)
+    with clicked(escape):
+        press_in(dialog, "Write ...")
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "kiosk.kmz").write_bytes(b"before")
+    # The dialog of files asks itself, for the name with its ending too.
+    for name in ("kiosk.kmz", "kiosk"):
+        with clicked(choose(tmp_path / name), "No") as asked:
+            press_in(dialog, "Write ...")
+        assert "kiosk.kmz already exists" in asked[1]
+        assert (tmp_path / "kiosk.kmz").read_bytes() == b"before"
+    with clicked(choose(tmp_path / "kiosk"), "Yes"):
+        press_in(dialog, "Write ...")
+    turn_until(application, lambda: (tmp_path / "kiosk.kmz").read_bytes() != b"before")
+    turn_until_idle(application, desk)
+    assert read_missions(tmp_path / "kiosk.kmz")[0].n_photos == 10
+    assert not dialog.isVisible()
+
+
+def test_files_of_further_sorties_are_replaced_after_a_yes_only(application, desk, tmp_path):
+    from groundstation.gui.mission.export_dialog import ExportDialog
+
+    model = kiosk()
+    request = PlanRequest(n_views=10, greedy=QUICK, rules=FlightRules(settle_s=250.0))
+    plan = plan_flight(model, request).plan
+    assert len(plan.sorties) == 2
+    desk.workspace.session.open(Document(model, (PlanEntry("plan-1", "Slow", plan),), "plan-1"), None)
+    desk.window.show_tab("mission")
+    turn_until_idle(application, desk)
+    trigger(desk.window, "Export mission files ...")
+    dialog = desk.window.findChildren(ExportDialog)[-1]
+    turn_until(application, lambda: dialog.prepared() is not None)
+    second = tmp_path / "kiosk-2.kmz"
+    second.write_bytes(b"before")
+    for no in NO:
+        with clicked(choose(tmp_path / "kiosk.kmz"), no) as asked:
+            press_in(dialog, "Write ...")
+        turn_until_idle(application, desk)
+        assert "These files are replaced: kiosk-2.kmz" in asked[1]
+        assert [path.name for path in tmp_path.iterdir()] == ["kiosk-2.kmz"]
+    with clicked(choose(tmp_path / "kiosk.kmz"), "Yes"):
+        press_in(dialog, "Write ...")
+    turn_until_idle(application, desk)
+    assert second.read_bytes() != b"before"
+    assert (tmp_path / "kiosk.kmz").is_file()
+
+
+def test_the_brief_is_saved_where_it_is_told_and_printed_after_a_yes(application, desk, tmp_path):
+    from groundstation.gui.mission.brief_dialog import BriefDialog
+
+    desk.window.show_tab("mission")
+    turn_until_idle(application, desk)
+    trigger(desk.window, "Flight brief ...")
+    dialog = desk.window.findChild(BriefDialog)
+    turn_until(application, dialog.is_ready)
+    for no in NO:
+        with clicked(no):
+            press_in(dialog, "Save as PDF ...")
+        with clicked(no):
+            press_in(dialog, "Print ...")
+    assert list(tmp_path.iterdir()) == []
+    with clicked(choose(tmp_path / "flight No. 12")):
+        press_in(dialog, "Save as PDF ...")
+    assert (tmp_path / "flight No. 12.pdf").read_bytes().startswith(b"%PDF")
+    with clicked(choose(tmp_path / "flight No. 12"), "Cancel") as asked:
+        press_in(dialog, "Save as PDF ...")
+    assert "flight No. 12.pdf is there already" in asked[1]
+    click_on(dialog, next(box for box in dialog.findChildren(QPushButton) if box.text() == "Close"))
+    assert not dialog.isVisible()
+
+
+def test_the_boxes_of_the_help_menu_go_by_every_way(application, desk):
+    for text in ("Shortcuts", "About Reflight"):
+        for step in ("OK", escape, shut):
+            with clicked(step) as shown:
+                trigger(desk.window, text)
+            assert text in shown[0]
