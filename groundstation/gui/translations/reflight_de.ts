@@ -2944,6 +2944,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Dokumente (*.pdf)</translation>
     </message>
     <message>
+        <source>model</source>
+        <translation>Modell</translation>
+    </message>
+    <message>
         <source>The report is written: {0}</source>
         <translation>Der Bericht ist geschrieben: {0}</translation>
     </message>
@@ -4356,6 +4360,10 @@ Blickrichtung: {3}</translation>
 </context>
 <context>
     <name>Questions</name>
+    <message>
+        <source>{0} is there already. Replace it?</source>
+        <translation>{0} gibt es schon. Ersetzen?</translation>
+    </message>
     <message>
         <source>Unsaved changes</source>
         <translation>Ungesicherte Änderungen</translation>
