@@ -173,8 +173,9 @@ def check_ground(path: Path, source: SourceModel) -> None:
 def _check_extent(path: Path, source: SourceModel, options: ImportOptions) -> None:
     size_m = _size_m(source)
     if max(size_m) > MAX_BUILDING_M:
+        east, north, up = _sides(size_m)
         raise InputError(
-            f"{path}: the building would be {_sides(size_m)} m, at most {MAX_BUILDING_M / 1000.0:g} km are expected; "
+            f"{path}: the building would be {east} x {north} x {up} m, at most {MAX_BUILDING_M / 1000.0:g} km are expected; "
             f"{_advice_on_units(path, size_m, options)}"
         )
 
@@ -187,8 +188,9 @@ def _size_notes(path: Path, source: SourceModel, options: ImportOptions) -> tupl
     is_small, is_large = max(size_m) < LEAST_BUILDING_M, max(size_m[:2]) > WIDE_M or size_m[2] > HIGH_M
     if not (is_small or is_large):
         return ()
+    east, north, up = _sides(size_m)
     return (
-        f"the model is {_sides(size_m)} m, implausibly {'small' if is_small else 'large'} for a building: "
+        f"the model is {east} x {north} x {up} m, implausibly {'small' if is_small else 'large'} for a building: "
         f"{_advice_on_units(path, size_m, options)}",
     )
 
@@ -201,8 +203,9 @@ def _size_m(source: SourceModel) -> tuple[float, float, float]:
     return east, north, up
 
 
-def _sides(size_m: tuple[float, float, float]) -> str:
-    return " x ".join(f"{side:.3g}" if side < 100.0 else f"{side:.0f}" for side in size_m)
+def _sides(size_m: tuple[float, float, float]) -> tuple[str, str, str]:
+    east, north, up = (f"{side:.3g}" if side < 100.0 else f"{side:.0f}" for side in size_m)
+    return east, north, up
 
 
 def _advice_on_units(path: Path, size_m: tuple[float, float, float], options: ImportOptions) -> str:
@@ -212,9 +215,10 @@ def _advice_on_units(path: Path, size_m: tuple[float, float, float], options: Im
     fitting = []
     for unit, length_m in UNITS_M.items():
         factor = length_m / UNITS_M[options.unit]
-        east, north, up = (side * factor for side in size_m)
-        if unit not in (options.unit, "us-ft") and LEAST_SIDE_M <= max(east, north, up) <= WIDE_M and up <= HIGH_M:
-            fitting.append(f"--units {unit} makes it {_sides((east, north, up))} m (factor {factor:g})")
+        other_m = (size_m[0] * factor, size_m[1] * factor, size_m[2] * factor)
+        if unit not in (options.unit, "us-ft") and LEAST_SIDE_M <= max(other_m) <= WIDE_M and other_m[2] <= HIGH_M:
+            east, north, up = _sides(other_m)
+            fitting.append(f"--units {unit} makes it {east} x {north} x {up} m (factor {factor:g})")
     if fitting:
         return f"if its unit is not what was read, {' and '.join(fitting)}"
     return "no unit makes it plausible, so it is no model of true size; scale it in the program that wrote it"
