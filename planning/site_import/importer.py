@@ -175,8 +175,8 @@ def _check_extent(path: Path, source: SourceModel, options: ImportOptions) -> No
     if max(size_m) > MAX_BUILDING_M:
         east, north, up = _sides(size_m)
         raise InputError(
-            f"{path}: the building would be {east} x {north} x {up} m, at most {MAX_BUILDING_M / 1000.0:g} km are expected; "
-            f"{_advice_on_units(path, size_m, options)}"
+            f"{path}: the building would be {east} x {north} x {up} m, at most {MAX_BUILDING_M / 1000.0:g} km are "
+            f"expected; {_advice_on_units(path, size_m, options)}"
         )
 
 
