@@ -5,8 +5,18 @@ import pytest
 import torch
 
 from groundstation.cli.main import main
+from reconstruction.exports.baked import baked
+from reconstruction.exports.ellipsoids import ellipsoids_of_all
 from reconstruction.modelling.render import render_view
 from reconstruction.modelling.saved import read_model
+from reconstruction.objects.organise import organised
+from reconstruction.splatting.harmonic_colour import display_colours
+from reconstruction.splatting.ply import ODD
+from reconstruction.splatting.raster import RasterSettings
+from reconstruction.splatting.rasteriser import rasterise
+from tests import foreign
+from tests.reconstruction.exports.test_foreign_cesium import FOCAL_PX as CESIUM_FOCAL_PX
+from tests.reconstruction.exports.test_foreign_cesium import look
 from tests.reconstruction.exports.test_web_picture import view_of
 from tests.reconstruction.exports.web_browser import chromium
 
@@ -72,3 +82,95 @@ def test_the_page_shows_what_the_program_shows(trained, tmp_path):
             if not is_off_glass.all():
                 assert psnr(shown, own) > 30.0
         assert browser.errors() == []
+
+
+BEFORE = [((0.0, 25.0, 12.0), (0.0, 0.0, 12.0)), ((-20.0, 20.0, 15.0), (0.0, 0.0, 10.0)), ((0, 30, 10), (40, 20, 12))]
+"""ENU, of eyes and what they look at: the facade, the facade from a side, and along the street."""
+
+
+@pytest.fixture(scope="module")
+def viewers(tmp_path_factory):
+    """A browser for pages of other programs."""
+    if not (foreign.HERE / "node_modules").is_dir():
+        pytest.skip("programs of others are not installed: make foreign")
+    with chromium(tmp_path_factory.mktemp("viewers")) as found:
+        found._call("POST", "/timeouts", {"script": 240_000})
+        yield found
+
+
+@pytest.fixture(scope="module")
+def truth(trained):
+    """Pictures as a viewer of others should show them: what is baked, drawn by the program's own rasteriser."""
+    found = read_model(trained)
+    scene = baked(organised(found), found.model)
+    gaussians = ellipsoids_of_all(scene.components)
+    means, quats, scales, opacities = map(
+        torch.from_numpy, (gaussians.means_m, gaussians.quats, gaussians.scales_m, gaussians.opacities)
+    )
+    sh = torch.from_numpy(gaussians.sh * ODD[:, None])
+
+    def picture(eye, target, focal_px):
+        eye, target = np.asarray(eye, float) - scene.origin_enu_m, np.asarray(target, float) - scene.origin_enu_m
+        east, north, up = target - eye
+        heading, pitch = np.degrees([np.arctan2(east, north), np.arctan2(up, np.hypot(east, north))])
+        camera = {"eye": eye, "heading": heading, "pitch": pitch, "width": 640, "height": 480, "focal": focal_px}
+        view = view_of(camera)
+        colours = display_colours(means, sh, torch.from_numpy(eye).float(), 3).clamp(0.0, 1.0)
+        settings = RasterSettings(blur_px=np.sqrt(0.3), antialiased=True)
+        return rasterise(means, quats, scales, opacities, colours, view, settings=settings).features.numpy().clip(0, 1)
+
+    return scene, picture
+
+
+def assert_like(found, expected, least_db):
+    """As like as that, and much liker than what is mirrored or turned over."""
+    assert found.shape == expected.shape
+    others = [psnr(each, expected) for each in (found[:, ::-1], found[::-1], found[::-1, ::-1])]
+    assert psnr(found, expected) > max(least_db, max(others) + 4.0), others
+
+
+def y_up(place):
+    """Right, up, back: of glTF, and of SPZ."""
+    return [place[0], place[2], -place[1]]
+
+
+SHOWN = {
+    "ply": ("ply", "showPlayCanvas('/files/a.ply', 'gsplat', true)", lambda p: [-p[0], p[2], p[1]]),
+    "sog": ("sog", "showPlayCanvas('/files/a.sog', 'gsplat', true)", lambda p: [-p[0], p[2], p[1]]),
+    "gltf": ("glb", "showBabylon('/files/a.glb', '.glb', true)", y_up),
+    # Left-handed, it mirrors what it reads, and takes both for files whose y is down.
+    "ply in Babylon.js": ("ply", "showBabylon('/files/a.ply', '.ply', false)", lambda p: [p[0], p[2], p[1]]),
+    "spz": ("spz", "showBabylon('/files/a.spz', '.spz', false)", lambda p: [p[0], -p[2], -p[1]]),
+    "spz-4": ("spz", "showBabylon('/files/a.spz', '.spz', false)", lambda p: [p[0], -p[2], -p[1]]),
+}
+"""By format: the file's ending, how it is shown, and where a place of the site is there."""
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_splats_look_the_same_in_viewers_of_others(trained, truth, viewers, tmp_path, name):
+    ending, call, axes = SHOWN[name]
+    scene, picture = truth
+    exported(trained, name.split()[0], tmp_path / f"a.{ending}")
+    # A glTF file has its place in the site; what knows no nodes counts from the model's origin.
+    start = (0.0, 0.0, 0.0) if ending == "glb" else scene.origin_enu_m
+    up = axes((0.0, 0.0, 1.0))
+    with foreign.served(tmp_path) as address:
+        viewers.visit(f"{address}/show_splats.html")
+        viewers.run(f"await {call}")
+        for places in BEFORE:
+            eye, target = (axes((np.array(place, float) - start).tolist()) for place in places)
+            found = foreign.picture_of(viewers.run("return await look(...arguments)", eye, target, up))
+            assert_like(found, picture(*places, 240.0 / np.tan(np.radians(30.0))), 26.0)
+        assert viewers.run("return failures") == []
+
+
+def test_tiles_look_the_same_in_cesium(trained, truth, viewers, tmp_path):
+    scene, picture = truth
+    exported(trained, "3d-tiles", tmp_path / "tiles")
+    with foreign.served(tmp_path / "tiles") as address:
+        viewers.visit(f"{address}/show_cesium.html")
+        viewers.run("await show('/files/gaussians.json')")
+        for offset_m in ((0.0, 25.0, 4.0), (-20.0, 18.0, 6.0)):
+            expected = picture(scene.origin_enu_m + np.array(offset_m), scene.origin_enu_m, CESIUM_FOCAL_PX)
+            assert_like(look(viewers, scene, offset_m), expected, 26.0)
+        assert viewers.run("return failures") == []

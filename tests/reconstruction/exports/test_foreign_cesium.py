@@ -1,9 +1,5 @@
 """3D Tiles in CesiumJS, in headless Chromium: Gaussians where they are and in their colours, and panels to pick."""
 
-import base64
-import functools
-import http.server
-import threading
 from dataclasses import replace
 
 import numpy as np
@@ -26,24 +22,6 @@ FOCAL_PX = 320.0 / np.tan(np.radians(30.0))
 RED, GREEN, BLUE, WHITE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 1.0, 1.0)
 
 
-class Handler(http.server.SimpleHTTPRequestHandler):
-    """The page, CesiumJS and one folder of tiles."""
-
-    def __init__(self, *arguments, tiles, **more):
-        self.tiles = tiles
-        super().__init__(*arguments, **more)
-
-    def translate_path(self, path):
-        path = path.split("?")[0]
-        for start, folder in (("/cesium/", CESIUM), ("/tiles/", self.tiles)):
-            if path.startswith(start):
-                return str(folder / path.removeprefix(start))
-        return str(foreign.HERE / path.strip("/"))
-
-    def log_message(self, *arguments):
-        pass
-
-
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory):
     if not CESIUM.is_dir():
@@ -56,17 +34,14 @@ def browser(tmp_path_factory):
 @pytest.fixture
 def serve(tmp_path, browser):
     """Writes tiles of a scene, and opens the page with layers of them."""
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, tiles=tmp_path))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
+    with foreign.served(tmp_path) as address:
 
-    def shown(scene, *layers, options=DEFAULT):
-        write_tiles(scene, tmp_path, options)
-        browser._call("POST", "/url", {"url": f"http://127.0.0.1:{server.server_port}/show_cesium.html"})
-        browser.run("await show(...arguments)", *(f"/tiles/{layer}" for layer in layers))
+        def shown(scene, *layers, options=DEFAULT):
+            write_tiles(scene, tmp_path, options)
+            browser.visit(f"{address}/show_cesium.html")
+            browser.run("await show(...arguments)", *(f"/files/{layer}" for layer in layers))
 
-    yield shown
-    server.shutdown()
-    server.server_close()
+        yield shown
 
 
 def scene_of(places_m, colours, bands=None, size_m=0.4):
@@ -96,10 +71,9 @@ def look(browser, scene, offset_m):
     lat = site.lat_deg + np.degrees(north / 6_340_000.0)
     lon = site.lon_deg + np.degrees(east / (6_378_000.0 * np.cos(np.radians(site.lat_deg))))
     height = site.ellipsoid_height_m + up
-    width, rows, text = browser.run("return await look(...arguments)", lat, lon, height, list(offset_m)).split()
-    found = np.frombuffer(base64.b64decode(text), np.uint8).reshape(int(rows), int(width), 4)
+    found = foreign.picture_of(browser.run("return await look(...arguments)", lat, lon, height, list(offset_m)))
     assert found.shape[:2] == (480, 640)
-    return found[::-1, :, :3] / 255.0
+    return found
 
 
 def middle_of(picture, colour):

@@ -58,7 +58,10 @@ class Browser:
             raise RuntimeError(f"{value['error']}: {value['message'][:2000]}") from None
 
     def open(self, path, fragment=""):
-        self._call("POST", "/url", {"url": path.absolute().as_uri() + fragment})
+        self.visit(path.absolute().as_uri() + fragment)
+
+    def visit(self, address):
+        self._call("POST", "/url", {"url": address})
 
     def run(self, script, *values):
         """What a function body returns; promises are waited for."""
