@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
@@ -17,7 +18,7 @@ from planning.json_file import expect_format, read_json
 from planning.site import Origin
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.objects.gs_scene import GsElement
-from reconstruction.objects.opening import middle_of, opening_place, outward, places_of
+from reconstruction.objects.opening import largest, middle_of, outward, places_of, standoff_m
 from reconstruction.objects.picking import Quads
 from reconstruction.objects.store import DESCRIPTION, FORMAT, StoredScene
 
@@ -138,16 +139,20 @@ class SceneCard:
 
     @cached_property
     def first_view(self) -> PosedPhoto:
-        """From in front of the facade that has most panels, so that all of it is seen.
+        """Square before the largest facade, so that all of it is seen.
 
-        Where it is known where photos were taken, it is from there, as nothing stood in the way.
+        Where it is known from how far photos of it were taken, it is from no farther, as nothing stood in the way
+        there, unless the field of view would be wider than `WIDEST_RAD`.
         """
-        names = [panel.facade for panel in self.panels]
-        largest = max(dict.fromkeys(names), key=names.count) if names else ""
-        shown = tuple(panel for panel in self.panels if panel.facade == largest)
-        corners = np.array([panel.element.corners_enu_m for panel in shown]).reshape(-1, 4, 3)
-        place = opening_place(corners, self.places_enu_m, math.tan(0.5 * WIDEST_RAD) / ROOM)
-        return view_of(shown) if place is None else _view_from(place, corners)
+        facades: dict[str, list[PanelRow]] = {}
+        for panel in self.panels:
+            facades.setdefault(panel.facade_id, []).append(panel)
+        corners = [np.array([panel.element.corners_enu_m for panel in each]) for each in facades.values()]
+        if not corners:
+            return view_of(())
+        number = largest(corners)
+        shown, standoff = tuple(facades.values())[number], standoff_m(corners[number], self.places_enu_m)
+        return view_of(shown, math.inf if standoff is None else standoff)
 
 
 def is_scene(folder: Path) -> bool:
@@ -188,8 +193,14 @@ def scenes_beside(folder: Path) -> tuple[Path, ...]:
     return tuple(found)
 
 
-def view_of(panels: tuple[PanelRow, ...]) -> PosedPhoto:
-    """A camera straight in front of panels, on their mean normal, that sees all of them; upright, but for roofs."""
+def view_of(panels: Sequence[PanelRow], furthest_m: float = math.inf) -> PosedPhoto:
+    """A camera straight in front of panels, on their mean normal, that sees all of them; upright, but for roofs.
+
+    Parameters
+    ----------
+    furthest_m
+        From their middle; a nearer one has a wider field of view, up to `WIDEST_RAD`, for which it goes back further.
+    """
     corners = np.array([panel.element.corners_enu_m for panel in panels]).reshape(-1, 4, 3)
     width, height = SIZE_PX
     focal_px = 0.5 * width / math.tan(0.5 * FIELD_RAD)
@@ -201,22 +212,18 @@ def view_of(panels: tuple[PanelRow, ...]) -> PosedPhoto:
     forward = np.array([0.0, 1.0, 0.0]) if normal is None else -normal
     rotation, middle = _rotation(forward), middle_of(corners)
     inside = (corners.reshape(-1, 3) - middle) @ rotation.T
-    tangents = np.array([0.5 * width / focal_px, 0.5 * height / focal_px]) / ROOM
-    distance_m = max(LEAST_DISTANCE_M, float((np.abs(inside[:, :2]) / tangents - inside[:, 2:]).max()))
+
+    def enough_m(field_rad: float) -> float:
+        tangents = math.tan(0.5 * field_rad) / ROOM * np.array([1.0, height / width])
+        return max(LEAST_DISTANCE_M, float((np.abs(inside[:, :2]) / tangents - inside[:, 2:]).max()))
+
+    usual_m = enough_m(FIELD_RAD)
+    distance_m = min(usual_m, max(furthest_m, enough_m(WIDEST_RAD)))
+    if distance_m < usual_m:
+        needed = ROOM * np.abs(inside[:, :2] / (inside[:, 2:] + distance_m)).max(axis=0)
+        focal_px = float(np.min(0.5 * np.array([width, height]) / needed))
+        lens = replace(lens, fx_px=focal_px, fy_px=focal_px)
     return PosedPhoto("", Path(), lens, Pose(middle - distance_m * forward, rotation))
-
-
-def _view_from(place_enu_m: Array, corners_enu_m: Array) -> PosedPhoto:
-    """A camera at a place that looks at the middle of panels, with a field as wide as they need, up to `WIDEST_RAD`."""
-    width, height = SIZE_PX
-    towards = middle_of(corners_enu_m) - place_enu_m
-    rotation = _rotation(towards / np.linalg.norm(towards))
-    inside = (corners_enu_m.reshape(-1, 3) - place_enu_m) @ rotation.T
-    tangents = ROOM * np.abs(inside[:, :2] / np.maximum(inside[:, 2:], 1e-9)).max(axis=0)
-    usual, widest = (0.5 * width / math.tan(0.5 * field) for field in (FIELD_RAD, WIDEST_RAD))
-    focal_px = float(np.clip(np.min(0.5 * np.array([width, height]) / tangents), widest, usual))
-    lens = Intrinsics(width, height, focal_px, focal_px, 0.5 * width, 0.5 * height)
-    return PosedPhoto("", Path(), lens, Pose(place_enu_m, rotation))
 
 
 def _rotation(forward: Array) -> Array:

@@ -1,11 +1,11 @@
-"""From where a building is seen at first: from where a photo was taken, since nothing stood before the facade there.
+"""From where a building is seen at first: square before its largest facade.
 
-Straight in front of a facade, far enough away to see all of it, there may be the house across the street.
+Far enough away to see all of it, there may be the house across the street; where photos were taken, there was not.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -46,11 +46,24 @@ def middle_of(corners_enu_m: Array) -> Array:
     return middle
 
 
-def opening_place(corners_enu_m: Array, places_enu_m: Array, half_field: float) -> Array | None:
-    """The place of a photo from which a facade is seen best, shape (3,); None where no photo was taken before it.
+def largest(facades: Sequence[Array]) -> int:
+    """Which facade's panels have the largest area together; the first of several.
 
-    It is the one with the least of: by which share the facade is larger than the field of view, and 1 less the cosine
-    between the line of sight and the facade's normal.
+    Parameters
+    ----------
+    facades
+        Corners of each one's panels, shape (n, 4, 3); at least one.
+    """
+    areas = [
+        np.linalg.norm(np.cross(each[:, 2] - each[:, 0], each[:, 3] - each[:, 1]), axis=1).sum() for each in facades
+    ]
+    return int(np.argmax(areas))
+
+
+def standoff_m(corners_enu_m: Array, places_enu_m: Array) -> float | None:
+    """From how far photos of a facade were taken: the median over those before it; None where there are none.
+
+    Nothing stood between them and the facade.
 
     Parameters
     ----------
@@ -58,21 +71,10 @@ def opening_place(corners_enu_m: Array, places_enu_m: Array, half_field: float) 
         Of the facade's panels, shape (n, 4, 3).
     places_enu_m
         Shape (k, 3).
-    half_field
-        Tangent of half the field of view.
     """
     normal = outward(corners_enu_m) if len(corners_enu_m) else None
-    if normal is None or not len(places_enu_m):
+    if normal is None:
         return None
-    points, middle = corners_enu_m.reshape(-1, 3), middle_of(corners_enu_m)
-    towards = middle - places_enu_m
-    before = -towards @ normal
-    forward = towards / np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-9)
-    rays = points[None] - places_enu_m[:, None]
-    depths = np.einsum("kpi,ki->kp", rays, forward)
-    across = np.sqrt(np.maximum((rays**2).sum(axis=2) - depths**2, 0.0))
-    tangents = np.where(depths > 0.0, across / np.maximum(depths, 1e-9), np.inf).max(axis=1)
-    cost = np.maximum(tangents / half_field - 1.0, 0.0) + 1.0 + forward @ normal
-    cost[before < LEAST_M] = np.inf
-    best = int(np.argmin(cost))
-    return places_enu_m[best] if np.isfinite(cost[best]) else None
+    before = (places_enu_m - middle_of(corners_enu_m)) @ normal
+    before = before[before >= LEAST_M]
+    return float(np.median(before)) if len(before) else None

@@ -43,25 +43,30 @@ def test_a_card_has_all_panels_with_their_facades(folder):
     assert (card.n_gaussians, card.name, card.origin) == (scene.n_gaussians, scene.name, scene.origin)
 
 
-def test_the_first_view_is_from_where_a_photo_was_taken_and_shows_the_whole_facade(tmp_path):
+def test_the_first_view_is_square_before_the_largest_facade_and_shows_all_of_it(tmp_path):
     scene = made_scene()
     corners = np.array([element.corners_enu_m for element in scene.components[0].elements])
-    middle = corners.reshape(-1, 3).mean(axis=0)
+    middle = 0.5 * (corners.reshape(-1, 3).min(axis=0) + corners.reshape(-1, 3).max(axis=0))
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
     normal /= np.linalg.norm(normal)
-    # The last one would do with the usual field of view, but from so far aside that panels are slivers.
     along = np.cross(normal, (0.0, 0.0, 1.0))
-    places = [(middle + metres * normal).tolist() for metres in (-30.0, 0.5, 2.4)]
-    places.append((middle + 8.0 * normal + 20.0 * along).tolist())
-    write_scene(replace(scene, training={**scene.training, "places_enu_m": places}), tmp_path / "a.gsscene")
-    card = read_card(tmp_path / "a.gsscene")
-    first = card.first_view
-    assert first.pose.position_enu_m.tolist() == places[2]
-    inside = (corners.reshape(-1, 3) - places[2]) @ first.pose.cam_from_enu.T
-    lens = first.intrinsics
-    assert (inside[:, 2] > 0.0).all()
-    assert (np.abs(lens.fx_px * inside[:, 0] / inside[:, 2]) < lens.width_px / 2).all()
-    assert (np.abs(lens.fy_px * inside[:, 1] / inside[:, 2]) < lens.height_px / 2).all()
+    found = []
+    # Photos before it were taken from 3.4 m, aside as most are, or nearer than any view begins, or not at all.
+    for number, distance_m in enumerate((3.4, 2.1, None)):
+        places = [] if distance_m is None else [(middle + distance_m * normal + 2.0 * along).tolist()]
+        places += [(middle - 30.0 * normal).tolist(), (middle + 0.5 * normal).tolist()]
+        folder = tmp_path / f"{number}.gsscene"
+        write_scene(replace(scene, training={**scene.training, "places_enu_m": places}), folder)
+        first = read_card(folder).first_view
+        inside = (corners.reshape(-1, 3) - first.pose.position_enu_m) @ first.pose.cam_from_enu.T
+        lens = first.intrinsics
+        assert first.pose.cam_from_enu[2] == pytest.approx(-normal)
+        assert (inside[:, 2] > 0.0).all()
+        assert (np.abs(lens.fx_px * inside[:, 0] / inside[:, 2]) < lens.width_px / 2).all()
+        assert (np.abs(lens.fy_px * inside[:, 1] / inside[:, 2]) < lens.height_px / 2).all()
+        found.append(float((first.pose.position_enu_m - middle) @ normal))
+    assert found[0] == pytest.approx(3.4)
+    assert found[1] < found[0] < found[2]
 
 
 def test_records_are_of_a_panel_its_facade_or_the_building(folder, tmp_path):

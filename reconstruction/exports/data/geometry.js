@@ -84,14 +84,6 @@ function facing(target, radius, heading, pitch, width, height) {
   return camera;
 }
 
-// A camera at a place that looks at another.
-function lookingAt(eye, target, width, height) {
-  const way = minus(target, eye);
-  const distance = Math.max(Math.hypot(...way), 0.05);
-  const pitch = clamped(Math.asin(clamped(way[2] / distance, -1, 1)), -STEEPEST, STEEPEST);
-  return Object.assign(new Camera(), { eye: [...eye], heading: Math.atan2(way[0], way[1]), pitch, distance, width, height });
-}
-
 // Panes as planes through their middle, ready to be met by rays.
 class Panes {
   constructor(panes) {

@@ -81,11 +81,14 @@ function goTo(goal) {
   step(start);
 }
 
-// What is seen at first: from where a photo was taken, if that is known, since there nothing stands in the way.
+// What is seen at first: all of the largest facade, square, unless something would stand in the way from that far.
 function opening() {
-  const { eye, target, radius, heading } = model.view;
-  const { width, height } = camera;
-  return eye ? lookingAt(eye, target, width, height) : facing(target, radius, heading, -0.12, width, height);
+  const { target, heading, pitch, half, front, free } = model.view;
+  const found = Object.assign(new Camera(), { heading, pitch, width: camera.width, height: camera.height });
+  const enough = [camera.width, camera.height].map((size, i) => half[i] / ((0.96 * size) / 2 / found.focal()));
+  found.distance = front + Math.min(Math.max(...enough), free);
+  found.eye = along(target, found.axes()[2], -found.distance);
+  return found;
 }
 
 const home = () => goTo(opening());

@@ -15,7 +15,9 @@ import torch
 
 from planning.errors import InputError, OperationCancelled
 from reconstruction.exports import web
+from reconstruction.exports.ellipsoids import ellipsoids_of_all
 from reconstruction.exports.web import PAGE, SIGN, WebOptions, write_web
+from reconstruction.exports.web_model import first_view
 from reconstruction.exports.web_sky import plain_sky_light, sky_light
 from reconstruction.splatting.sky import Sky
 from tests.reconstruction.objects.made_scene import made_scene
@@ -284,6 +286,63 @@ def test_the_page_finds_the_sky_where_the_model_has_it():
     texture = (web.SOURCES / "picture.js").read_text("utf-8").split("skyTexture({")[1].split("\n  }")[0]
     assert "TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE" in texture
     assert "WRAP_S" not in texture
+
+
+def opening_of(scene):
+    """Where the page begins, and the direction that it looks in."""
+    view = first_view(scene, [element for _, element in scene.elements], ellipsoids_of_all(scene.components))
+    sh, ch, sp, cp = (each(view[name]) for name in ("heading", "pitch") for each in (np.sin, np.cos))
+    return view, np.array([cp * sh, cp * ch, sp])
+
+
+def facade_of(n, width_m, height_m, turn):
+    """A scene of one more facade beside the made one's: n panes side by side, turned from a plane that looks south."""
+    scene = made_scene(sizes=((0, 0, 0), (0,) * n), n_background=400)
+    corners = np.array([element.corners_enu_m for element in scene.components[1].elements])
+    low = corners.reshape(-1, 3).min(axis=0)
+    scaled = (corners - low) / np.ptp(corners.reshape(-1, 3), axis=0).clip(1e-9) * (width_m, 0.0, height_m)
+    placed = (scaled - (width_m / 2, 0.0, 0.0)) @ np.asarray(turn, float).T + scene.origin_enu_m
+    elements = tuple(
+        replace(element, corners_enu_m=tuple(map(tuple, each)))
+        for element, each in zip(scene.components[1].elements, placed, strict=True)
+    )
+    # A fog of large discs, far behind everything.
+    values = scene.components[-1].gaussians.values
+    values["means"][:] = np.random.default_rng(0).uniform(-40.0, 40.0, (400, 3)) + 500.0 * np.array(turn)[:, 1]
+    values["log_scales"][:] = np.log(2.0)
+    values["opacity_logits"][:] = 3.0
+    components = (scene.components[0], replace(scene.components[1], elements=elements), scene.components[-1])
+    return replace(scene, components=components)
+
+
+WEST = [(0, 1, 0), (-1, 0, 0), (0, 0, 1)]
+ROOF = [(1, 0, 0), (0, 0, 1), (0, -1, 0)]
+SOUTH = np.eye(3)
+
+
+@pytest.mark.parametrize(
+    ("turn", "forward"), [(SOUTH, (0, 1, 0)), (WEST, (1, 0, 0)), (ROOF, (0, 0, -1))], ids=["south", "west", "roof"]
+)
+def test_a_page_opens_square_before_the_facade_of_the_largest_area(turn, forward):
+    # The other facade has more panes, of less area together.
+    scene = facade_of(2, 30.0, 12.0, turn)
+    view, looks = opening_of(scene)
+    assert looks @ forward > 0.9995
+    corners = np.array([element.corners_enu_m for element in scene.components[1].elements]).reshape(-1, 3)
+    middle = (corners.min(axis=0) + corners.max(axis=0)) / 2.0 - scene.origin_enu_m
+    np.testing.assert_allclose(view["target"], middle, atol=1e-3)
+    np.testing.assert_allclose(view["half"], (15.0, 6.0), atol=0.3)
+    assert view["free"] >= 15.0 / 0.46 - 0.1
+
+
+def test_a_page_opens_from_before_what_stands_across_the_street():
+    scene = facade_of(2, 30.0, 12.0, SOUTH)
+    values, rng = scene.components[-1].gaussians.values, np.random.default_rng(1)
+    # A wall 20 m before the facade.
+    values["means"][:] = rng.uniform((-25.0, -20.1, -2.0), (25.0, -20.0, 14.0), (400, 3))
+    values["quats"][:] = (np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0)
+    view, _ = opening_of(scene)
+    assert 12.0 < view["free"] < 20.1
 
 
 def test_the_page_says_all_in_both_languages():

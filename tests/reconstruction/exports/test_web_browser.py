@@ -4,7 +4,6 @@ import contextlib
 import socket
 import threading
 import time
-from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -241,22 +240,22 @@ return { blocked, byMarkup, isFetched, bad: window.bad ?? null, knowsTrustedType
 
 
 @pytest.mark.slow
-def test_a_page_opens_from_where_a_photo_was_taken(any_browser, tmp_path):
-    scene = made_scene()
-    corners = np.array([element.corners_enu_m for element in scene.components[0].elements])
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]).sum(axis=0)
-    centre = 0.5 * (corners.reshape(-1, 3).min(axis=0) + corners.reshape(-1, 3).max(axis=0))
-    place = centre + 9.0 * normal / np.linalg.norm(normal) + np.array([0.0, 0.0, 3.0])
-    training = {**scene.training, "places_enu_m": [(2 * centre - place).tolist(), place.tolist()]}
-    opened(any_browser, tmp_path / "page", replace(scene, training=training), size=(500, 500))
+@pytest.mark.parametrize("size", [(900, 500), (420, 700)])
+def test_a_page_opens_square_before_the_largest_facade(any_browser, tmp_path, size):
+    scene = made_scene(sizes=((20, 20, 20), (20,)))
+    opened(any_browser, tmp_path / "page", scene, size=size)
+    any_browser.run("reflight.look([3, 3, 3], 77, 30)")
     any_browser.run("document.getElementById('home').click()")
     time.sleep(0.6)
     any_browser.settled()
     camera = any_browser.run("return reflight.camera()")
-    assert np.abs(np.array(camera["eye"]) - (place - scene.origin_enu_m)).max() < 1e-3
-    forward = axes_of(camera)[2]
-    towards = centre - place
-    assert forward @ towards / np.linalg.norm(towards) > 0.99999
+    corners = np.array([element.corners_enu_m for element in scene.components[0].elements])
+    normal = np.cross(corners[0, 2] - corners[0, 0], corners[0, 3] - corners[0, 1])
+    assert axes_of(camera)[2] @ normal / np.linalg.norm(normal) == pytest.approx(-1.0, abs=1e-9)
+    places = np.array([pixel(camera, corner) for corner in corners.reshape(-1, 3) - scene.origin_enu_m])
+    assert (places > 0.0).all()
+    assert (places < (camera["width"], camera["height"])).all()
+    assert (np.ptp(places, axis=0) / (camera["width"], camera["height"])).max() > 0.9
 
 
 @pytest.fixture
