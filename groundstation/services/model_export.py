@@ -216,26 +216,39 @@ def _ifc(folder: Path, out: Path) -> WrittenModel:
 
 
 def _web(export: _Export) -> list[str]:
+    from contextlib import nullcontext
+
     from groundstation.services.facility_records import open_records, records_path
     from reconstruction.exports.web import WebOptions, write_web
     from reconstruction.exports.web_sky import sky_light
     from reconstruction.records.stored_files import stored_path
 
-    def picture_of(name: str) -> bytes | None:
-        if not records_path(export.folder).is_file():
-            return None
-        with open_records(export.folder) as book:
-            path = stored_path(book, name)
-        return path.read_bytes() if path.is_file() else None
+    has_records = records_path(export.folder).is_file()
+    with open_records(export.folder) if has_records else nullcontext() as book:
 
-    options = WebOptions(
-        degree=export.degree(2),
-        is_baked=export.wanted.baked,
-        sky=sky_light(export.trained.model.sky),
-        picture_of=picture_of,
+        def content_of(name: str) -> bytes | None:
+            try:
+                return None if book is None else stored_path(book, name).read_bytes()
+            except (InputError, OSError):
+                return None
+
+        options = WebOptions(
+            degree=export.degree(2),
+            is_baked=export.wanted.baked,
+            sky=sky_light(export.trained.model.sky),
+            content_of=content_of,
+        )
+        page = write_web(export.scene, export.out, export.rows, options, export.monitor)
+    told = (
+        (page.n_strays, "{0} records of objects that the model lacks are left out"),
+        (
+            page.n_missing,
+            "{0} files of records are missing or changed: the page says so; copy them back beside the records",
+        ),
+        (page.n_damaged, "{0} pictures of records cannot be read: the page says so; attach them again"),
+        (page.n_large, "{0} documents are too large for the page, which names them; pass them on by themselves"),
     )
-    page = write_web(export.scene, export.out, export.rows, options, export.monitor)
-    return [f"{page.n_strays} records of objects that the model lacks are left out"] if page.n_strays else []
+    return [text.format(n) for n, text in told if n]
 
 
 def _gltf(export: _Export) -> list[str]:

@@ -26,7 +26,7 @@ from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.gaussian_blocks import raster_of
 from reconstruction.exports.web_gaussians import COLOUR_RANGE, MAX_GAUSSIANS, MAX_PANES, N_AT_ONCE, packed
 from reconstruction.exports.web_model import described_panes, first_view, panes_of
-from reconstruction.exports.web_pictures import small_jpeg
+from reconstruction.exports.web_pictures import files_of
 from reconstruction.exports.web_records import Row, by_object, columns_of
 from reconstruction.exports.web_sky import Halves, plain_sky_light
 from reconstruction.exports.whole_files import whole_file
@@ -40,9 +40,6 @@ SIGN = f'<meta name="generator" content="{FORMAT}">'
 SOURCES = Path(__file__).parent / "data"
 SCRIPTS = ("words", "geometry", "order", "shaders", "picture", "colours", "records", "motion", "loading", "page")
 LAST = "scripting"
-
-MAX_PICTURE_BYTES = 64 * 2**20
-"""Of all pictures of defects together, as they are in the page."""
 
 MAX_TEXT_BYTES = 64 * 2**20
 """Of records and panes."""
@@ -64,8 +61,8 @@ class WebOptions:
         Whether what panes mirror is in their colours: the page says so in its footnote.
     sky
         What lies behind everything, see `web_sky`; None: a plain one.
-    picture_of
-        Content of a picture that a record names, or None where there is none.
+    content_of
+        Content of a picture or document that a record names, or None where there is none.
     """
 
     title: str = ""
@@ -73,7 +70,7 @@ class WebOptions:
     most: int | None = None
     is_baked: bool = True
     sky: Halves | None = None
-    picture_of: Callable[[str], bytes | None] = field(default=lambda name: None)
+    content_of: Callable[[str], bytes | None] = field(default=lambda name: None)
 
     def __post_init__(self) -> None:
         if self.degree not in (0, 1, 2, 3):
@@ -92,6 +89,9 @@ class WebPage:
     ----------
     n_strays
         Records whose object is not in the scene; they are not in the page.
+    n_missing, n_damaged, n_large
+        Files that records name and that are not in the page, but named there: those that are not beside the records,
+        pictures that cannot be read, and documents for which there is no room.
     """
 
     path: Path
@@ -99,7 +99,11 @@ class WebPage:
     n_gaussians: int
     n_panes: int
     n_pictures: int
+    n_documents: int
     n_strays: int
+    n_missing: int
+    n_damaged: int
+    n_large: int
 
 
 def write_web(
@@ -122,7 +126,7 @@ def write_web(
     ------
     InputError
         The folder has other files and no page of ours, or cannot be written; the scene has more Gaussians or panes than
-        a page bears, or numbers that are not finite; a record or a picture cannot be shown.
+        a page bears, or numbers that are not finite; a record cannot be shown, or pictures are too large together.
     OperationCancelled
         The user cancelled; nothing was written.
     """
@@ -131,7 +135,7 @@ def write_web(
     elements = tuple(element for _, element in scene.elements)
     parts_of_scene = {part.global_id for part in scene.components} | {element.global_id for element in elements}
     found, n_strays = by_object(records, frozenset({scene.global_id, *parts_of_scene}))
-    pictures = _pictures(found, options, monitor)
+    files = files_of(found, options.content_of, monitor)
     gaussians = _gaussians(scene, elements, options, folder)
     chunks = packed(gaussians, panes_of(gaussians, elements), options.degree, options.most)
     sky = plain_sky_light() if options.sky is None else options.sky
@@ -151,7 +155,7 @@ def write_web(
         **described_panes(scene, elements),
         "columns": [asdict(column) for column in columns_of(elements, found)],
         "records": found,
-        "pictures": {name: number for number, name in enumerate(pictures)},
+        "files": files.told(),
     }
     head = _head(described, options.title or scene.name)
 
@@ -160,12 +164,16 @@ def write_web(
         for number, chunk in enumerate(chunks.chunks()):
             monitor.report("writing the page", number * N_AT_ONCE, len(chunks))
             yield _block("g", number, chunk)
-        for number, content in enumerate(pictures.values()):
-            yield _block("p", number, content)
+        for kind, contents in (("p", files.pictures), ("d", files.documents)):
+            for number, content in enumerate(contents.values()):
+                yield _block(kind, number, content)
         yield b"</body></html>\n"
 
     n_bytes = _write(folder, parts())
-    return WebPage(folder / PAGE, n_bytes, len(chunks), len(elements), len(pictures), n_strays)
+    states = list(files.states.values())
+    lost = [states.count(state) for state in ("missing", "damaged", "large")]
+    counts = len(chunks), len(elements), len(files.pictures), len(files.documents), n_strays
+    return WebPage(folder / PAGE, n_bytes, *counts, *lost)
 
 
 def _check_folder(folder: Path) -> None:
@@ -205,28 +213,6 @@ def _gaussians(scene: GsScene, elements: Sequence[GsElement], options: WebOption
             "alone (most), or export one facade"
         )
     return gaussians
-
-
-def _pictures(
-    records: Mapping[str, Sequence[Mapping[str, Any]]], options: WebOptions, monitor: Monitor
-) -> dict[str, bytes]:
-    """Those that defects name and that are there, small."""
-    names = sorted({str(row["picture"]) for rows in records.values() for row in rows if "picture" in row})
-    found: dict[str, bytes] = {}
-    n_bytes = 0
-    for number, name in enumerate(names):
-        monitor.report("reading pictures", number, len(names))
-        content = options.picture_of(name)
-        if content is None:
-            continue
-        found[name] = small_jpeg(name, content)
-        n_bytes += len(found[name])
-        if n_bytes > MAX_PICTURE_BYTES:
-            raise InputError(
-                f"pictures of defects: more than {MAX_PICTURE_BYTES // 2**20} MiB after {number + 1} of {len(names)}, "
-                "even made small; leave some out"
-            )
-    return found
 
 
 def _head(described: Mapping[str, Any], title: str) -> bytes:

@@ -62,6 +62,7 @@ def described_panes(scene: GsScene, elements: Sequence[GsElement]) -> dict[str, 
         raise InputError("corners of a panel hold numbers that are not finite")
     return {
         "facades": [{"id": facade.global_id, "name": facade.name} for facade in facades],
+        "parts": [{"id": part.global_id, "name": part.name} for part in scene.components if part not in facades],
         "panes": [
             {
                 "id": element.global_id,

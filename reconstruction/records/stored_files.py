@@ -62,6 +62,14 @@ def store_document(book: RecordBook, path: Path) -> StoredFile:
     return _stored(book, _read(path, MAX_DOCUMENT_BYTES), ending if _ENDING.fullmatch(ending) else "")
 
 
+def told_name(title: str, stored: str) -> str:
+    """What a stored document is called when somebody gets it: its title, with the ending of its file."""
+    ending = Path(stored).suffix
+    stem = "".join("_" if character in '<>:"/\\|?*' or character < " " else character for character in title)
+    stem = stem.removesuffix(ending).strip(" .")[:100].strip(" .")
+    return f"{stem or 'document'}{ending}"
+
+
 def stored_path(book: RecordBook, name: str) -> Path:
     """Where a stored file lies; its content is checked against its name.
 

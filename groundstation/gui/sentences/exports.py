@@ -14,6 +14,15 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "panels show their own colour only, and mirror nothing"),
     QT_TRANSLATE_NOOP("Sentences", "{0} records of objects that the model lacks are left out"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} files of records are missing or changed: the page says so; copy them back beside the records",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "{0} pictures of records cannot be read: the page says so; attach them again"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "{0} documents are too large for the page, which names them; pass them on by themselves"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "reading documents"),
     QT_TRANSLATE_NOOP("Sentences", "the place on Earth is not known: tiles stay in the site's own frame"),
     QT_TRANSLATE_NOOP(
         "Sentences", "each panel is a picture of its front: mirror images in it belong to that view alone"

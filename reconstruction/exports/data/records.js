@@ -26,32 +26,49 @@ class Records {
 
   // What is searched of each pane; made when it is first needed, in each language.
   textsOf() {
-    if (this.texts?.language === language) return this.texts.folded;
+    if (this.texts?.language === language) return this.texts;
     const { model } = this;
     const texts = model.panes.map((pane) => {
       const facade = model.facades[pane.facade].name;
-      const fields = this.ofObject(pane.id).flatMap((record) => Object.entries(record).flatMap(([key, value]) => this.words(key, value)));
-      return folded([pane.name, facade, pane.id, ...fields].join("\n"));
+      return folded([pane.name, facade, pane.id, ...this.wordsOf(pane.id)].join("\n"));
     });
-    this.texts = { language, folded: texts };
-    return texts;
+    const others = this.others().map(({ id }) => folded(this.wordsOf(id).join("\n")));
+    this.texts = { language, panes: texts, others };
+    return this.texts;
   }
 
-  // A date is found as it is kept and as it is shown.
+  // Facades, other parts and the building, whose records are shown with all of their panes.
+  others() {
+    const { facades, parts, scene } = this.model;
+    const named = facades.map(({ id, name }) => ({ id, name: say("facade", { name }) }));
+    return [...named, ...parts, { id: scene, name: say("building") }];
+  }
+
+  wordsOf(id) {
+    return this.ofObject(id).flatMap((record) => Object.entries(record).flatMap(([key, value]) => this.words(key, value)));
+  }
+
+  // A value is found as it is kept and as it is shown; names of stored files are not shown.
   words(key, value) {
-    if (key === "record" || key === "type" || Array.isArray(value)) return [];
-    return typeof value === "string" && DATE.test(value) ? [value, shown(value)] : [String(value)];
+    if (["record", "type", "picture", "inspection"].includes(key) || Array.isArray(value)) return [];
+    if (key === "place" && own(this.model.files, value) !== null) return [];
+    return [String(value), key === "status" ? stateWords(value) : shown(value)];
   }
 
   ofObject(id) {
     return this.of.get(id) ?? [];
   }
 
-  // Panes whose records or names have a text in them; null where nothing is asked for.
+  // Panes whose records or names, or their facade's records, have a text in them; and of which others it is found.
+  // Null where nothing is asked for.
   found(text) {
     const wanted = folded(text.trim());
     if (!wanted) return null;
-    return new Set(this.textsOf().flatMap((each, pane) => (each.includes(wanted) ? [pane] : [])));
+    const { panes, others } = this.textsOf();
+    const found = others.map((each) => each.includes(wanted));
+    const matches = new Set(panes.flatMap((each, pane) => (each.includes(wanted) || found[this.model.panes[pane].facade] ? [pane] : [])));
+    matches.others = this.others().filter((_, i) => found[i]);
+    return matches;
   }
 
   // Defects with a place on a pane.
@@ -63,10 +80,11 @@ class Records {
     );
   }
 
-  showList(box, matches, column, pick, isFlat) {
+  showList(box, matches, column, pick) {
     const { model } = this;
     const all = matches === null ? model.panes.map((_, i) => i) : [...matches];
-    const counted = matches === null ? "panes" : all.length ? "found" : "none";
+    const others = matches === null ? this.others() : matches.others;
+    const counted = matches === null ? "panes" : all.length ? "found" : others.length ? "others" : "none";
     const list = make("ul", "panes");
     const scale = column && scaleOf(column);
     const add = (start) => {
@@ -89,8 +107,10 @@ class Records {
     };
     const more = button("wide", say("more"), () => {});
     add(0);
-    box.replaceChildren(make("p", "count", say(counted, { n: all.length })), list, more);
-    if (!isFlat) this.showOf(box, model.scene, say("building"));
+    const count = make("p", "count", say(counted === "others" ? "foundElsewhere" : counted, { n: all.length }));
+    const records = make("div");
+    for (const { id, name } of others) this.showOf(records, id, name, matches !== null);
+    box.replaceChildren(count, ...(matches === null ? [list, more, records] : [records, list, more]));
   }
 
   showPane(box, number_, back, show) {
@@ -113,11 +133,12 @@ class Records {
     this.showOf(box, model.scene, say("building"));
   }
 
-  // Records of a facade or the building, folded up.
-  showOf(box, id, name) {
+  // Records of a facade or the building, folded up unless they were looked for.
+  showOf(box, id, name, isOpen = false) {
     const records = this.ofObject(id);
     if (!records.length) return;
     const folder = make("details");
+    folder.open = isOpen;
     folder.append(make("summary", "", name));
     this.showRecords(folder, records);
     box.append(folder);
@@ -149,10 +170,40 @@ class Records {
 
   card(record, hidden = []) {
     const card = make("article", "card");
-    const skipped = ["record", "inspection", "place", ...hidden];
+    const skipped = ["record", "inspection", "place", "file", ...hidden];
     card.append(this.table(Object.entries(record).filter(([key]) => !skipped.includes(key)).map(([key, value]) => [fieldName(key), value])));
-    if (record.place !== undefined) card.append(this.address(String(record.place)));
+    if (record.place !== undefined) card.append(this.document(record));
     return card;
+  }
+
+  // A document: a link to the web, what is in the page, or why it is not.
+  document({ place, file }) {
+    const held = own(this.model.files, String(place));
+    if (!held) return this.address(String(place));
+    const name = String(file ?? place);
+    const box = make("div", "file");
+    if (held.picture !== undefined) box.append(make("code", "", name), this.picture(place));
+    else if (held.document === undefined) box.append(make("code", "", name), this.lost(place));
+    else box.append(button("wide", `${name} · ${fileSize(held.bytes)}`, () => save(held.document, name)));
+    return box;
+  }
+
+  // The picture of a stored file, or why it is not there.
+  picture(name) {
+    const held = own(this.model.files, name);
+    const part = held && document.getElementById(`p${held.picture}`);
+    if (!part) return this.lost(name);
+    const image = make("img");
+    image.alt = say("picture");
+    image.loading = "lazy";
+    image.src = `data:image/jpeg;base64,${part.textContent}`;
+    return image;
+  }
+
+  lost(name) {
+    const held = own(this.model.files, name);
+    const size = held?.bytes ? ` (${fileSize(held.bytes)})` : "";
+    return make("p", "sub", say(own(LOST, held?.state ?? "") ?? "fileMissing", { name }) + size);
   }
 
   // A link only where it leads to the web; anything else, such as the name of a file, is text.
@@ -170,20 +221,27 @@ class Records {
     const level = levelOf(record);
     const mark = badge(level, isOpen ? SEVERITIES[level - 1] : REPAIRED, !isOpen || level >= 4);
     mark.title = say("severity", { n: level });
-    head.append(mark, make("b", "", String(record.kind ?? say("defect"))), make("span", "state", say(isOpen ? "open" : "repaired")));
+    head.append(mark, make("b", "", String(record.kind ?? say("defect"))), make("span", "state", stateWords(record.status)));
     card.prepend(head);
     if (typeof record.u === "number" && typeof record.v === "number") card.append(placeDrawing(record, this.shape));
-    const place = own(this.model.pictures, String(record.picture ?? ""));
-    const held = place === null ? null : document.getElementById(`p${place}`);
-    if (held) {
-      const image = make("img");
-      image.alt = say("picture");
-      image.loading = "lazy";
-      image.src = `data:image/jpeg;base64,${held.textContent}`;
-      card.append(image);
-    }
+    if (record.picture !== undefined) card.append(this.picture(String(record.picture)));
     return card;
   }
+}
+
+const LOST = { missing: "fileMissing", damaged: "fileDamaged", large: "fileLarge" };
+const stateWords = (status) => say(status === "repaired" ? "repaired" : "open");
+
+function fileSize(bytes) {
+  return bytes < 1e5 ? `${number(Math.max(1, Math.round(bytes / 1000)))} kB` : `${number(Math.round(bytes / 1e5) / 10)} MB`;
+}
+
+// Hand a document out as a file; it is never opened here, whatever it is.
+function save(part, name) {
+  const bytes = bytesOf(document.getElementById(`d${part}`).textContent);
+  const address = URL.createObjectURL(new Blob([bytes], { type: "application/octet-stream" }));
+  Object.assign(make("a"), { href: address, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 60000);
 }
 
 const levelOf = (record) => clamped(Math.round(Number(record.severity)) || 1, 1, 5);

@@ -14,7 +14,7 @@ import pytest
 import torch
 
 from planning.errors import InputError, OperationCancelled
-from reconstruction.exports import web
+from reconstruction.exports import web, web_pictures
 from reconstruction.exports.ellipsoids import ellipsoids_of_all
 from reconstruction.exports.web import PAGE, SIGN, WebOptions, write_web
 from reconstruction.exports.web_model import first_view
@@ -121,7 +121,7 @@ def test_pages_are_the_same_bytes_each_time_and_name_no_place_of_this_machine(tm
         {"global_id": scene.components[0].elements[0].global_id, "record": "defect", "kind": "a", "picture": "p"}
     ]
     content = cv2.imencode(".png", np.zeros((5, 5, 3), np.uint8))[1].tobytes()
-    options = WebOptions(picture_of={"p": content}.get)
+    options = WebOptions(content_of={"p": content}.get)
     one = write_web(scene, tmp_path / "one", records, options)
     write_web(scene, tmp_path / "two", records, options)
     again = write_web(scene, tmp_path / "one", records, options)
@@ -194,13 +194,36 @@ def test_scenes_that_no_page_bears_are_refused(tmp_path, monkeypatch):
 
 
 def test_too_many_pictures_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(web, "MAX_PICTURE_BYTES", 1)
+    monkeypatch.setattr(web_pictures, "MAX_PICTURE_BYTES", 1)
     scene = made_scene()
     records = [{"global_id": scene.global_id, "record": "defect", "kind": "a", "picture": "p"}]
     content = cv2.imencode(".png", np.zeros((5, 5, 3), np.uint8))[1].tobytes()
     with pytest.raises(InputError, match="after 1 of 1"):
-        write_web(scene, tmp_path / "page", records, WebOptions(picture_of={"p": content}.get))
+        write_web(scene, tmp_path / "page", records, WebOptions(content_of={"p": content}.get))
     assert not (tmp_path / "page").exists()
+
+
+def test_documents_for_which_there_is_no_room_are_named_the_largest_first(tmp_path, monkeypatch):
+    scene = made_scene()
+    files = {"a.pdf": bytes(400), "b.pdf": bytes(300), "c.pdf": bytes(500), "d.txt": b"1"}
+    rows = [
+        {"global_id": scene.global_id, "record": "document", "title": f"{name[0]}/{name[0]}.pdf", "place": name}
+        for name in (*files, "e.pdf")
+    ]
+    monkeypatch.setattr(web_pictures, "MAX_DOCUMENT_BYTES", 800)
+    page = write_web(scene, tmp_path / "page", rows, WebOptions(content_of=files.get))
+    assert (page.n_documents, page.n_missing, page.n_large) == (3, 1, 1)
+    found = page_of(tmp_path / "page")
+    model = json.loads(found.of("script", id="model")[0])
+    assert {name: each.get("state") for name, each in model["files"].items()} == {
+        **dict.fromkeys(("a.pdf", "b.pdf", "d.txt")),
+        "c.pdf": "large",
+        "e.pdf": "missing",
+    }
+    for name in ("a.pdf", "b.pdf", "d.txt"):
+        part = found.of("script", id=f"d{model['files'][name]['document']}")
+        assert base64.b64decode(part[0]) == files[name]
+    assert [row["file"] for row in model["records"][scene.global_id]][::3] == ["a_a.pdf", "d_d.pdf.txt"]
 
 
 @pytest.mark.parametrize("name", ["means", "opacity_logits", "sh"])

@@ -39,7 +39,7 @@ def test_hostile_records_are_text_in_a_page_that_works(browser, tmp_path):
     panes = scene.components[0].elements
     records = [*hostile_records(scene), of_pane(panes[1], "defect", kind="a", picture="p")]
     browser.log("performance")
-    page = opened(browser, tmp_path / "page", scene, records, (800, 300), picture_of={"p": content}.get)
+    page = opened(browser, tmp_path / "page", scene, records, (800, 300), content_of={"p": content}.get)
     state = browser.run("return reflight.state()")
     assert (state["isLoaded"], state["n"]) == (True, page.n_gaussians)
     counted = "return ['img', 'svg', 'iframe', 'a'].map((name) => document.querySelectorAll(name).length)"
@@ -115,6 +115,75 @@ def test_search_folds_accents_and_finds_all_fields(any_browser, tmp_path):
     assert found(scene.components[1].elements[0].global_id) == ["B-0000"]
     assert found("nowhere") == []
     assert len(found("")) == 4
+
+
+def with_files(scene):
+    """Records that name stored files: of a pane, its facade and the building; and what is beside the records."""
+    facade, pane = scene.components[0], scene.components[0].elements[1]
+    small = cv2.imencode(".png", np.full((6, 8, 3), 90, np.uint8))[1].tobytes()
+    files = {"0a.pdf": b"%PDF-1.7 contract", "0b.png": small, "0c.png": b"\x89PNG\r\n\x1a\n no more"}
+    rows = [
+        of_pane(pane, "defect", kind="chip", severity=2, found_on="2026-01-02", picture="0b.png"),
+        of_pane(pane, "defect", kind="leak", severity=3, found_on="2026-01-02", status="repaired", picture="0c.png"),
+        of_pane(pane, "document", title="Glass data sheet", place="0d.pdf"),
+        of_pane(facade, "document", title="Maintenance contract", place="0a.pdf"),
+        of_pane(facade, "inspection", date="2026-03-31", inspector="Moreau", result="sound"),
+        of_pane(scene, "document", title="Photo of the entrance", place="0b.png"),
+        of_pane(scene, "document", title="Rules", place="https://example.org/rules.pdf"),
+    ]
+    return rows, files
+
+
+@pytest.mark.slow
+def test_documents_come_out_of_the_page_as_they_are_and_what_is_missing_is_named(browser, tmp_path):
+    scene = made_scene(sizes=((20, 20, 20), (20,)))
+    rows, files = with_files(scene)
+    page = opened(browser, tmp_path / "page", scene, rows, content_of=files.get)
+    assert (page.n_pictures, page.n_documents) == (1, 1)
+    assert (page.n_missing, page.n_damaged, page.n_large) == (1, 1, 0)
+    got = tmp_path / "got"
+    got.mkdir()
+    browser.cdp("Page.setDownloadBehavior", behavior="allow", downloadPath=str(got))
+    browser.run("reflight.pick(arguments[0])", scene.components[0].elements[1].global_id)
+    assert browser.texts(".file button") == ["Maintenance contract.pdf · 1 kB"]
+    browser.run("document.querySelector('.file button').click()")
+    for _ in range(100):
+        if [path.name for path in got.iterdir()] == ["Maintenance contract.pdf"]:
+            break
+        time.sleep(0.05)
+    assert (got / "Maintenance contract.pdf").read_bytes() == files["0a.pdf"]
+    said = browser.texts("#content .sub")
+    assert any("missing when this page was written (0d.pdf)" in text for text in said)
+    assert any("could not be read when this page was written (0c.png)" in text for text in said)
+    assert browser.texts(".file code") == ["Glass data sheet.pdf", "Photo of the entrance.png"]
+    browser.run("document.querySelectorAll('#content details').forEach((each) => { each.open = true; })")
+    shown = "return Promise.all([...document.images].map((image) => image.decode().then(() => image.naturalWidth)))"
+    assert browser.run(shown) == [8, 8]
+    assert browser.texts(".card a") == ["https://example.org/rules.pdf"]
+    assert browser.errors() == []
+
+
+@pytest.mark.slow
+def test_what_is_shown_is_found_whatever_it_is_of(any_browser, tmp_path):
+    scene = made_scene(sizes=((20, 20, 20), (20,)))
+    rows, files = with_files(scene)
+    opened(any_browser, tmp_path / "page", scene, rows, content_of=files.get)
+    # Folded up below all panes: of the facade and the building.
+    assert any_browser.texts("#content summary") == ["Facade A", "Building"]
+
+    def found(text):
+        any_browser.choose("search", text)
+        opened_ = any_browser.run(
+            "return [...document.querySelectorAll('#content details[open] > summary')].map((e) => e.textContent)"
+        )
+        return any_browser.texts(".count")[0], any_browser.texts(".row b"), opened_
+
+    assert found("maintenance CONTRACT.pdf") == ("3 panes found", ["A-0000", "A-0001", "A-0002"], ["Facade A"])
+    assert found("moreau")[2] == ["Facade A"]
+    assert found("entrance") == ("Found in records of a facade or the building.", [], ["Building"])
+    assert found("repaired")[1] == found("Mar 31, 2026")[1][1:2] == ["A-0001"]
+    # Names of stored files are not shown, and are not found.
+    assert found("0b.png") == ("No pane has this in its records.", [], [])
 
 
 @pytest.mark.slow
