@@ -301,6 +301,31 @@ def test_a_model_is_exported(reflight, glass, tmp_path, name, ending):
         assert {path.name for path in out.iterdir()} & {"index.html", "tileset.json"}
 
 
+def test_a_page_holds_what_is_attached_to_records_and_says_what_is_missing(reflight, glass, tmp_path):
+    scene = tmp_path / "scene"
+    reflight("organise", glass / "model", "-o", scene)
+    reflight("records", scene, "make")
+    pane = reflight("records", scene, "list", "--json").json["objects"][-1]["name"]
+    (tmp_path / "contract.pdf").write_bytes(b"%PDF-1.7")
+    cv2.imwrite(str(tmp_path / "crack.png"), np.zeros((4, 4, 3), np.uint8))
+    reflight("records", scene, "add", pane, "document", "title=Contract", f"place={tmp_path / 'contract.pdf'}")
+    crack = ("kind=crack", "severity=3", "found_on=2026-03-31", f"picture={tmp_path / 'crack.png'}")
+    assert reflight("records", scene, "add", pane, "defect", *crack).status == 0
+    done = reflight("export", scene, "--format", "web", "-o", tmp_path / "page", "--json")
+    assert not any("missing" in note for note in done.json["notes"])
+    content = (tmp_path / "page" / "index.html").read_text()
+    assert '"file":"Contract.pdf"' in content
+    assert content.count('id="d0"') == content.count('id="p0"') == 1
+    for path in (scene / "records-files").iterdir():
+        path.unlink()
+    done = reflight("export", scene, "--format", "web", "-o", tmp_path / "page", "--json")
+    assert (
+        "2 files of records are missing or changed: the page says so; copy them back beside the records"
+        in done.json["notes"]
+    )
+    assert (tmp_path / "page" / "index.html").read_text().count('"state":"missing"') == 2
+
+
 def test_gaussians_of_gltf_are_numbers_compressed_or_points(reflight, glass, tmp_path):
     sizes = {}
     for how in ("numbers", "spz", "points"):

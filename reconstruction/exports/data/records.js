@@ -191,12 +191,15 @@ class Records {
   // The picture of a stored file, or why it is not there.
   picture(name) {
     const held = own(this.model.files, name);
-    const part = held && document.getElementById(`p${held.picture}`);
-    if (!part) return this.lost(name);
+    if (held?.picture === undefined) return this.lost(name);
     const image = make("img");
     image.alt = say("picture");
     image.loading = "lazy";
-    image.src = `data:image/jpeg;base64,${part.textContent}`;
+    whenRead(() => {
+      const part = document.getElementById(`p${held.picture}`);
+      if (part) image.src = `data:image/jpeg;base64,${part.textContent}`;
+      else image.replaceWith(make("p", "sub", say("damaged")));
+    });
     return image;
   }
 
@@ -238,10 +241,18 @@ function fileSize(bytes) {
 
 // Hand a document out as a file; it is never opened here, whatever it is.
 function save(part, name) {
-  const bytes = bytesOf(document.getElementById(`d${part}`).textContent);
+  const held = document.getElementById(`d${part}`);
+  if (!held) return tell("damaged");
+  const bytes = bytesOf(held.textContent);
   const address = URL.createObjectURL(new Blob([bytes], { type: "application/octet-stream" }));
   Object.assign(make("a"), { href: address, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(address), 60000);
+  return setTimeout(() => URL.revokeObjectURL(address), 60000);
+}
+
+// Files stand at the end of the page, and a pane may be shown before that is read.
+function whenRead(act) {
+  if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", act, { once: true });
+  else act();
 }
 
 const levelOf = (record) => clamped(Math.round(Number(record.severity)) || 1, 1, 5);

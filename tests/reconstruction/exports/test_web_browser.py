@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from reconstruction.exports.web import write_web
+from reconstruction.exports.web import WebOptions, write_web
 from tests.reconstruction.exports.firefox import Firefox
 from tests.reconstruction.exports.test_web import HOSTILE, hostile_records, hostile_scene
 from tests.reconstruction.exports.web_browser import axes_of, middle, opened, pixel
@@ -274,12 +274,20 @@ def test_keys_reach_everything(any_browser, tmp_path):
 
 @pytest.mark.slow
 def test_pages_open_at_the_pane_that_their_address_names(any_browser, tmp_path):
-    scene = made_scene()
-    page = write_web(scene, tmp_path / "page")
-    wanted = scene.components[0].elements[2].global_id
+    scene = made_scene(sizes=((3, 0, 5), (2,)))
+    rows, files = with_files(scene)
+    page = write_web(scene, tmp_path / "page", rows, WebOptions(content_of=files.get))
+    wanted = scene.components[0].elements[1].global_id
     any_browser.open(page.path, f"#{wanted}")
     any_browser.settled()
     assert any_browser.run(PICKED) == wanted
+    # Its picture is there, though it stands behind the script that shows it.
+    assert (
+        any_browser.run(
+            "const image = document.querySelector('#content img'); await image.decode(); return image.naturalWidth"
+        )
+        == 8
+    )
     any_browser.open(page.path, "#%E0%A4%A")
     any_browser.settled()
     assert any_browser.run("return reflight.state().isLoaded")
