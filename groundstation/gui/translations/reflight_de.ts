@@ -11069,6 +11069,22 @@ Take it over?</source>
         <translation>Einträge zu Objekten, die dem Modell fehlen, sind weggelassen: {0}</translation>
     </message>
     <message>
+        <source>{0} files of records are missing or changed: the page says so; copy them back beside the records</source>
+        <translation>{0} Dateien von Einträgen fehlen oder sind verändert: Die Seite sagt es; kopieren Sie sie zurück neben die Einträge</translation>
+    </message>
+    <message>
+        <source>{0} pictures of records cannot be read: the page says so; attach them again</source>
+        <translation>{0} Bilder von Einträgen lassen sich nicht lesen: Die Seite sagt es; hängen Sie sie neu an</translation>
+    </message>
+    <message>
+        <source>{0} documents are too large for the page, which names them; pass them on by themselves</source>
+        <translation>{0} Unterlagen sind zu groß für die Seite, die sie nennt; geben Sie sie gesondert weiter</translation>
+    </message>
+    <message>
+        <source>reading documents</source>
+        <translation>Unterlagen werden gelesen</translation>
+    </message>
+    <message>
         <source>the place on Earth is not known: tiles stay in the site&apos;s own frame</source>
         <translation>der Ort auf der Erde ist nicht bekannt: Kacheln bleiben im eigenen Bezugssystem des Standorts</translation>
     </message>
