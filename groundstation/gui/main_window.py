@@ -129,8 +129,6 @@ class MainWindow(QMainWindow):
                     self._right.addWidget(made.right)
                 if made.bottom is not None:
                     self._bottom.addWidget(made.bottom)
-            for action in made.actions():
-                self.addAction(action)
         return self._tabs[name]
 
     def show_tab(self, name: str) -> None:
@@ -162,9 +160,10 @@ class MainWindow(QMainWindow):
                 stack.setVisible(widget is not None)
                 if widget is not None:
                     stack.setCurrentWidget(widget)
+        # Keys of a tab work while it is shown; which of its actions can be done is the tab's own matter.
         for name, made in self._tabs.items():
             for action in made.actions():
-                action.setEnabled(name == spec.name)
+                (self.addAction if name == spec.name else self.removeAction)(action)
         tab.shown()
         self.tabShown.emit(spec.name)
 

@@ -186,7 +186,7 @@ class Menus(QObject):
 
     def shortcuts_text(self) -> str:
         """All actions with their keys, one in a line."""
-        actions = [action for action in self._window.actions() if action.text()]
+        actions = [action for name in self._window.tab_names() for action in self._window.tab(name).actions()]
         for menu_action in self._window.menuBar().actions():
             menu = menu_action.menu()
             actions += menu.actions() if isinstance(menu, QMenu) else []

@@ -12,7 +12,7 @@ def next_in_order(regions: Sequence[QWidget], current: QWidget | None, *, forwar
     """The widget that gets the focus after `current`; None where no region takes it.
 
     Within a region the order is Qt's own; after the last widget the first one follows. What is outside all regions is
-    skipped.
+    skipped; from a frame inside one it goes on beside it.
 
     Parameters
     ----------
@@ -23,13 +23,37 @@ def next_in_order(regions: Sequence[QWidget], current: QWidget | None, *, forwar
     if not stops:
         return None
     if current not in stops:
-        return stops[0 if forward else -1]
+        is_inside = any(region is current or region.isAncestorOf(current) for region in regions if current is not None)
+        beside = _beside(stops, current, forward) if is_inside else None
+        return stops[0 if forward else -1] if beside is None else beside
     return stops[(stops.index(current) + (1 if forward else -1)) % len(stops)]
 
 
 def first_in(region: QWidget) -> QWidget | None:
     """The first widget of a region that Tab reaches."""
     return next(_stops_in(region), None)
+
+
+def set_enabled(widget: QWidget, is_enabled: bool) -> None:
+    """Enable or disable a widget; where the keyboard was in it, it goes to the frame around.
+
+    Qt would give it to the next widget: a key that is pressed again would press that one, and forms would scroll to it.
+    """
+    focus = widget.window().focusWidget()
+    around = widget.parentWidget()
+    if not is_enabled and around is not None and focus is not None and (focus is widget or widget.isAncestorOf(focus)):
+        around.setFocus(Qt.FocusReason.OtherFocusReason)
+    widget.setEnabled(is_enabled)
+
+
+def _beside(stops: Sequence[QWidget], current: QWidget | None, forward: bool) -> QWidget | None:
+    """The stop next to a widget that is none, where there is one."""
+    widget = current
+    while widget is not None:
+        widget = widget.nextInFocusChain() if forward else widget.previousInFocusChain()
+        if widget is current or widget in stops:
+            return None if widget is current else widget
+    return None
 
 
 def _stops_in(region: QWidget) -> Iterator[QWidget]:

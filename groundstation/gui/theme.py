@@ -18,6 +18,9 @@ TOUCH_PX = 38
 """Height of what can be pressed: 9 mm at the 106 dpi of a 15-inch laptop, the least that is hit reliably by finger
 (Parhi, Karlson and Bederson, 2006, found 9.2 mm)."""
 
+FLIGHT_PX = 48
+"""Height of the buttons of a flight, which are hit in a hurry."""
+
 SORTIES = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#b58900", "#56b4e9")
 FACADES = ("#3f8fd0", "#4aa880", "#8f6fc8", "#c86f9a", "#c8a23f", "#5fa8b8")
 
@@ -169,8 +172,14 @@ def _style_sheet(found: Colours) -> str:
         {{ background: {found.accent}; color: {found.accent_text}; border-color: {found.accent}; }}
     QPushButton[primary="true"]:disabled
         {{ background: {found.window}; color: {found.muted}; border-color: {found.handle}; }}
+    QPushButton[flight] {{ min-height: {FLIGHT_PX - 8}px; }}
+    QPushButton[flight="return"]:enabled
+        {{ background: {found.warning}; color: {found.base}; border-color: {found.warning}; font-weight: bold; }}
+    QPushButton[flight="land"]:enabled
+        {{ background: {found.error}; color: {found.base}; border-color: {found.error}; font-weight: bold; }}
     QPushButton:focus, QToolButton:focus {{ border: 2px solid {found.accent}; padding: 2px 7px; }}
-    QPushButton:checked:focus, QToolButton:checked:focus, QPushButton[primary="true"]:focus
+    QPushButton:checked:focus, QToolButton:checked:focus, QPushButton[primary="true"]:focus,
+    QPushButton[flight="return"]:focus, QPushButton[flight="land"]:focus
         {{ border: 3px solid {found.text}; padding: 1px 6px; }}
     QComboBox, QAbstractSpinBox, QLineEdit {{ min-height: {TOUCH_PX - 6}px; }}
     QComboBox QAbstractItemView::item, QMenu::item {{ min-height: {TOUCH_PX - 6}px; }}

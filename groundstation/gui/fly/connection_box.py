@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QLineEdit, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.fly.signing_box import SigningBox
 from groundstation.gui.inputs import NumberBox
+from groundstation.gui.tab_order import set_enabled
 from groundstation.services.live_choice import USUAL_ADDRESS, ConnectionChoice, LinkKind
 from missions.mavlink.autopilots import Autopilot
 
@@ -52,7 +53,11 @@ class ConnectionBox(QWidget):
             self.kind.addItem(text, kind)
         self.autopilot.addItem("ArduPilot", Autopilot.ARDUPILOT)
         self.autopilot.addItem("PX4", Autopilot.PX4)
-        self._form = QFormLayout()
+        fields = QWidget()
+        # As high as they like: squeezed by what stands below, they would move the button.
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Minimum)
+        fields.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self._form = QFormLayout(fields)
         self._form.setContentsMargins(0, 0, 0, 0)
         self._form.addRow(self.tr("Vehicle"), self.kind)
         self._form.addRow(self.tr("Autopilot"), self.autopilot)
@@ -61,9 +66,9 @@ class ConnectionBox(QWidget):
         self._form.addRow(self.tr("Link"), self.signing)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addLayout(self._form)
-        layout.addWidget(self._says)
+        layout.addWidget(fields)
         layout.addWidget(self.button)
+        layout.addWidget(self._says)
         self.kind.currentIndexChanged.connect(self._kind_chosen)
         self.autopilot.currentIndexChanged.connect(self._edited)
         self.speed_up.valueChanged.connect(self._edited)
@@ -96,7 +101,7 @@ class ConnectionBox(QWidget):
 
     def set_possible(self, *, is_possible: bool) -> None:
         """Whether there is a sortie to connect for."""
-        self.button.setEnabled(is_possible or self._is_connected)
+        set_enabled(self.button, is_possible or self._is_connected)
 
     def _show(self) -> None:
         value = self._value
@@ -116,7 +121,9 @@ class ConnectionBox(QWidget):
             (self.address, not is_simulation),
             (self.signing, not is_simulation),
         ):
-            self._form.setRowVisible(box, is_shown and not self._is_connected)
+            # Connected, they stay where they are: the button below must not move.
+            self._form.setRowVisible(box, is_shown)
+            set_enabled(box, not self._is_connected)
         self._says.setVisible(bool(self._says.text()))
         self.button.setText(self.tr("Disconnect") if self._is_connected else self.tr("Connect"))
         self.button.setProperty("primary", not self._is_connected)

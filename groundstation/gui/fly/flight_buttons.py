@@ -1,19 +1,36 @@
-"""The large buttons of a flight, and their actions with shortcuts that no slip of a finger hits."""
+"""The large buttons of a flight: each has one place in every phase, and Return and Land lie apart from the rest."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
-from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QAction, QColor, QIcon, QKeySequence, QMouseEvent, QPainter, QPainterPath, QPixmap
 from PySide6.QtWidgets import QGridLayout, QPushButton, QSizePolicy, QWidget
 
+from groundstation.gui.tab_order import set_enabled
+from groundstation.gui.theme import colours
 from groundstation.services.live_events import Request
 
-HEIGHT_PX = 48
-"""More than other buttons have: they are hit in a hurry."""
+APART_PX = 16
+"""Free space around Return and Land, in which a click that misses does nothing."""
+
+ICON_PX = 20
+
+PLACES = {
+    Request.UPLOAD: (0, 0, 1),
+    Request.START: (0, 1, 1),
+    Request.PAUSE: (1, 0, 1),
+    Request.RESUME: (1, 1, 1),
+    Request.RETURN: (3, 0, 2),
+    Request.LAND: (5, 0, 2),
+}
+"""Row, column and width in columns; the rows between are empty."""
 
 
 class FlightButtons(QWidget):
     """One button for each request; which can be asked for is told to it.
+
+    Buttons are never hidden and never change their place: what cannot be asked for is shown as such where it is. Return
+    and Land are told apart by word, shape and colour.
 
     Signals
     -------
@@ -28,18 +45,24 @@ class FlightButtons(QWidget):
         self._buttons: dict[Request, QPushButton] = {}
         layout = QGridLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for number, (request, text, key, tip) in enumerate(self._rows()):
+        for request, text, key, tip in self._rows():
             action = QAction(text, self)
             action.setShortcut(QKeySequence(key))
-            action.triggered.connect(lambda _checked=False, request=request: self.requested.emit(request))
-            button = QPushButton(text)
-            button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-            layout.setRowMinimumHeight(number // 2, HEIGHT_PX)
+            action.setAutoRepeat(False)
+            action.triggered.connect(lambda _checked=False, request=request: self._order(request))
+            button = _Button(text)
+            button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+            button.setIconSize(QSize(ICON_PX, ICON_PX))
+            button.setProperty("flight", request.name.lower())
             button.setToolTip(self.tr("{0} ({1})").format(tip, key))
             button.clicked.connect(action.trigger)
             self._actions[request], self._buttons[request] = action, button
-            layout.addWidget(button, number // 2, number % 2)
+            row, column, width = PLACES[request]
+            layout.addWidget(button, row, column, 1, width)
+        for row in (2, 4):
+            layout.setRowMinimumHeight(row, APART_PX - layout.verticalSpacing())
         self.set_allowed(frozenset())
+        self._draw_icons()
 
     def _rows(self) -> tuple[tuple[Request, str, str, str], ...]:
         return (
@@ -48,14 +71,15 @@ class FlightButtons(QWidget):
             (Request.PAUSE, self.tr("Pause"), "Ctrl+Shift+Space", self.tr("Stop on the spot and hover")),
             (Request.RESUME, self.tr("Resume"), "Ctrl+Shift+G", self.tr("Go on with the mission")),
             (Request.RETURN, self.tr("Return"), "Ctrl+Shift+Home", self.tr("Fly home and land there")),
-            (Request.LAND, self.tr("Land"), "Ctrl+Shift+End", self.tr("Land here and now")),
+            # Not End, the neighbour of Home: one is no slip of the other.
+            (Request.LAND, self.tr("Land"), "Ctrl+Shift+L", self.tr("Land here and now")),
         )
 
     def set_allowed(self, allowed: frozenset[Request]) -> None:
         """Enable what can be asked for."""
         for request, action in self._actions.items():
             action.setEnabled(request in allowed)
-            self._buttons[request].setEnabled(request in allowed)
+            set_enabled(self._buttons[request], request in allowed)
         # What cannot be pressed is not stressed: some themes leave its text hard to read.
         wanted = next((request for request in (Request.START, Request.UPLOAD) if request in allowed), None)
         for request in (Request.UPLOAD, Request.START):
@@ -63,6 +87,14 @@ class FlightButtons(QWidget):
             if button.property("primary") != (request is wanted):
                 button.setProperty("primary", request is wanted)
                 button.style().polish(button)
+                self._draw_icon(request)
+
+    def _order(self, request: Request) -> None:
+        """Ask for it; what is asked for once is not asked for again before the flight has told what it may do now."""
+        if request in (Request.UPLOAD, Request.START):
+            self._actions[request].setEnabled(False)
+            set_enabled(self._buttons[request], False)
+        self.requested.emit(request)
 
     def button(self, request: Request) -> QPushButton:
         """The button of a request."""
@@ -71,3 +103,75 @@ class FlightButtons(QWidget):
     def flight_actions(self) -> list[QAction]:
         """For the tab's menu."""
         return list(self._actions.values())
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Draw the icons in the colours of another theme."""
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.PaletteChange, QEvent.Type.StyleChange) and self._buttons:
+            self._draw_icons()
+
+    def _draw_icons(self) -> None:
+        for request in self._buttons:
+            self._draw_icon(request)
+
+    def _draw_icon(self, request: Request) -> None:
+        look, button = colours(), self._buttons[request]
+        is_filled = request in (Request.RETURN, Request.LAND)
+        on = look.base if is_filled else look.accent_text if button.property("primary") else look.text
+        icon = QIcon()
+        for mode, colour in ((QIcon.Mode.Normal, on), (QIcon.Mode.Disabled, look.muted)):
+            icon.addPixmap(_picture(request, colour, self.devicePixelRatioF()), mode)
+        button.setIcon(icon)
+
+
+class _Button(QPushButton):
+    """A button that takes a double click for one."""
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802
+        """The second press is no second order."""
+        event.accept()
+
+
+def _picture(request: Request, colour: str, ratio: float) -> QPixmap:
+    """The sign of a request, drawn: no font has all of them."""
+    picture = QPixmap(round(ICON_PX * ratio), round(ICON_PX * ratio))
+    picture.setDevicePixelRatio(ratio)
+    picture.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(picture)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.scale(ICON_PX / 20.0, ICON_PX / 20.0)
+    painter.fillPath(_shape(request), QColor(colour))
+    painter.end()
+    return picture
+
+
+def _shape(request: Request) -> QPainterPath:
+    """In a square of 20 by 20."""
+    path = QPainterPath()
+    match request:
+        case Request.UPLOAD:
+            _polygon(path, (10, 2), (17, 9), (12, 9), (12, 15), (8, 15), (8, 9), (3, 9))
+            path.addRect(QRectF(3, 16.5, 14, 2))
+        case Request.START:
+            _polygon(path, (5, 3), (17, 10), (5, 17))
+        case Request.PAUSE:
+            path.addRect(QRectF(4, 3, 4, 14))
+            path.addRect(QRectF(12, 3, 4, 14))
+        case Request.RESUME:
+            path.addRect(QRectF(3, 3, 3, 14))
+            _polygon(path, (8, 3), (18, 10), (8, 17))
+        case Request.RETURN:
+            _polygon(path, (10, 1), (19, 10), (16, 10), (16, 18), (12, 18), (12, 12), (8, 12), (8, 18), (4, 18))
+            _polygon(path, (4, 18), (4, 10), (1, 10), (10, 1))
+        case _:
+            _polygon(path, (8, 1), (12, 1), (12, 8), (17, 8), (10, 15), (3, 8), (8, 8))
+            path.addRect(QRectF(2, 16.5, 16, 2.5))
+    path.setFillRule(Qt.FillRule.WindingFill)
+    return path
+
+
+def _polygon(path: QPainterPath, *corners: tuple[float, float]) -> None:
+    path.moveTo(QPointF(*corners[0]))
+    for corner in corners[1:]:
+        path.lineTo(QPointF(*corner))
+    path.closeSubpath()

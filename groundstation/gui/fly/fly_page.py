@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QComboBox, QLabel, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.fly.connection_box import ConnectionBox
-from groundstation.gui.fly.flight_buttons import FlightButtons
+from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons
 from groundstation.gui.fly.flight_in_hand import FlightInHand
 from groundstation.gui.fly.flight_words import FlightWords
 from groundstation.gui.fly.fly_desk import BEFORE_FLIGHT, FlyDesk
@@ -25,6 +25,7 @@ from groundstation.gui.main_window import MainWindow
 from groundstation.gui.mission.findings_list import FindingsList
 from groundstation.gui.scrolling import scrolled
 from groundstation.gui.stage import Stage
+from groundstation.gui.tab_order import set_enabled
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
 from groundstation.services.live_events import FlightEnded, LinkState, LiveView, PhotoCounted, Request
@@ -91,9 +92,18 @@ class FlyPage(QObject):
         layout = QVBoxLayout(left)
         layout.setContentsMargins(6, 6, 6, 6)
         self.sortie.setAccessibleName(self.tr("Sortie to be flown"))
-        for widget in (self.sortie, self.connection, self._phase, self.buttons, self.checks):
-            layout.addWidget(widget)
-        layout.addStretch(1)
+        rest = QWidget()
+        below = QVBoxLayout(rest)
+        below.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.sortie, self.connection, self._phase, self.checks):
+            below.addWidget(widget)
+        below.addStretch(1)
+        # At the top and never scrolled: texts below grow and shrink with the phase, and must not move a button.
+        layout.addWidget(self.buttons)
+        layout.addSpacing(APART_PX - layout.spacing())
+        area = scrolled(rest)
+        area.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
+        layout.addWidget(area, 1)
         return left
 
     def _make_right(self) -> QWidget:
@@ -262,7 +272,7 @@ class FlyPage(QObject):
         is_busy = desk.is_preparing or desk.signing.is_busy
         can_connect = desk.plan is not None and bool(desk.plan.sorties) and not is_busy
         self.connection.set_possible(is_possible=can_connect)
-        self.sortie.setEnabled(desk.plan is not None and not desk.is_in_flight and not desk.is_preparing)
+        set_enabled(self.sortie, desk.plan is not None and not desk.is_in_flight and not desk.is_preparing)
         if not desk.is_connected:
             self.buttons.set_allowed(frozenset())
             self.checks.set_checks(())
@@ -281,7 +291,7 @@ class FlyPage(QObject):
         text = self._words.where_it_stands()
         if self._phase.text() != text:
             self._phase.setText(text)
-        self.sortie.setEnabled(not view.state.is_armed)
+        set_enabled(self.sortie, not view.state.is_armed)
         if view.link is LinkState.LOST and self.desk.is_connected:
             self.band.show_lost(view.silent_s)
         elif not self.band.isHidden():

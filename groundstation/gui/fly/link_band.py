@@ -8,8 +8,6 @@ from PySide6.QtWidgets import QLabel, QMainWindow, QVBoxLayout, QWidget
 from groundstation.gui.theme import colours
 
 FONT_SCALE = 1.3
-UNDER_TABS = 1
-"""Place in the window's column: the tabs come first."""
 
 
 class LinkBand(QLabel):
@@ -27,12 +25,12 @@ class LinkBand(QLabel):
         self.hide()
 
     def put_into(self, window: QWidget) -> None:
-        """Stand below the tabs of a main window, or on top of any other."""
+        """Stand above the messages of a main window, where it moves no button, or on top of any other."""
         centre = window.centralWidget() if isinstance(window, QMainWindow) else None
         page = window if centre is None else centre
         layout = page.layout()
         if isinstance(layout, QVBoxLayout):
-            layout.insertWidget(UNDER_TABS, self)
+            layout.insertWidget(layout.count() - 1, self)
         else:
             self.setParent(page)
 

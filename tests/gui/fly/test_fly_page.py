@@ -1,13 +1,18 @@
 """The Fly tab as a pilot uses it, in the real window, with the embedded simulation."""
 
 import gc
+import itertools
 import time
 
 import pytest
+from PySide6.QtCore import QMargins, QPoint, Qt, QTimer
+from PySide6.QtTest import QTest
 
+from groundstation.gui.fly.flight_buttons import APART_PX, ICON_PX, PLACES
 from groundstation.services.document import Document, ItemKind, PlanEntry
 from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice
 from groundstation.services.live_events import LinkState, Request, ViewState
+from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from missions.mavlink.autopilots import Autopilot
 from planning.findings import Severity
@@ -244,9 +249,6 @@ def test_closing_the_window_in_flight_asks_and_keeps_what_was_flown(application,
 
 
 def test_a_click_on_a_photo_goes_to_its_view(application, desk, page):
-    from PySide6.QtCore import QPoint, Qt
-    from PySide6.QtTest import QTest
-
     connect(application, page)
     turn_until(application, lambda: len(page.strip.states()) == 6)
     place = page.strip.cell(3).center()
@@ -302,6 +304,143 @@ def test_what_went_wrong_is_said_as_an_error(application, desk, page):
     page.desk.request(Request.START)
     turn_until(application, lambda: any(message.severity is Severity.ERROR for message in heard))
     assert "pre-flight list" in heard[-1].text
+
+
+class Places:
+    """Where the buttons of a flight stand in the window, looked at in every turn of the event loop."""
+
+    def __init__(self, desk, page):
+        self.window, self.page = desk.window, page
+        self.first, self.moved, self.covered, self.away = self.now(), [], [], set()
+        self.timer = QTimer(desk.window, interval=20)
+        self.timer.timeout.connect(self.look)
+        self.timer.start()
+
+    def now(self):
+        buttons = {request.name: self.page.buttons.button(request) for request in Request if request in PLACES}
+        buttons["CONNECT"] = self.page.connection.button
+        return {
+            name: (button.mapTo(self.window, QPoint(0, 0)), button.size(), button.isVisible())
+            for name, button in buttons.items()
+        }
+
+    def look(self):
+        """Buttons of the flight never move; Connect, among texts that grow, only while they are laid out."""
+        now, phase = self.now(), self.page._phase.text()
+        away = {name for name, place in now.items() if place != self.first[name]}
+        self.moved += [(name, phase) for name in away if name != "CONNECT" or name in self.away]
+        self.away = away
+        for request in PLACES:
+            button = self.page.buttons.button(request)
+            on_top = self.window.childAt(button.mapTo(self.window, button.rect().center()))
+            if on_top is not button:
+                self.covered.append((request, phase))
+
+
+def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio, desk, page, monkeypatch):
+    """Not connected, uploading, ready, starting, flying, hovering, link lost, coming home, landed."""
+    monkeypatch.setattr(page.desk, "_connection", lambda *_: radio)
+    turn_until_idle(application, desk)
+    places = Places(desk, page)
+    assert all(visible for _, _, visible in places.first.values())
+    phases = set()
+    page.desk.viewChanged.connect(lambda view: phases.add((view.phase, view.link)))
+    connect(application, page)
+    take_off(application, page)
+    press(page, Request.PAUSE)
+    turn_until(application, lambda: page.buttons.button(Request.RESUME).isEnabled())
+    radio.cut.is_unplugged.set()
+    turn_until(application, lambda: page.band.isVisible())
+    turn_until(application, lambda: "LINK LOST for" in page.band.text())
+    radio.cut.is_unplugged.clear()
+    turn_until(application, lambda: page.band.isHidden() and page.buttons.button(Request.RESUME).isEnabled())
+    press(page, Request.RESUME)
+    press(page, Request.RETURN)
+    turn_until(application, lambda: has_landed(page))
+    click_on(desk.window, page.connection.button)
+    turn_until(application, lambda: not page.desk.is_connected)
+    places.look()
+    assert len(phases) >= 4, "ready, flying, lost, and before the upload"
+    assert places.moved == []
+    assert places.covered == []
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.6])
+@pytest.mark.parametrize("language", [Language.ENGLISH, Language.GERMAN])
+def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application, desk, scale, language):
+    from groundstation.gui.theme import TOUCH_PX
+
+    desk.choose(language=language, text_scale=scale)
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    turn_until_idle(application, desk)
+    page = desk.window.tab("fly")
+    try:
+        rooms = {request: page.buttons.button(request).geometry() for request in PLACES}
+        for request in (Request.RETURN, Request.LAND):
+            assert rooms[request].height() >= TOUCH_PX
+            wide = rooms[request].marginsAdded(QMargins(*[APART_PX - 1] * 4))
+            assert [other for other in rooms if other is not request and wide.intersects(rooms[other])] == []
+        for one, other in itertools.combinations(rooms.values(), 2):
+            assert not one.intersects(other)
+        for request in PLACES:
+            button = page.buttons.button(request)
+            assert button.fontMetrics().horizontalAdvance(button.text()) + ICON_PX < button.width()
+            assert not button.icon().isNull()
+    finally:
+        desk.choose(language=Language.ENGLISH, text_scale=1.0)
+        turn_until(application, lambda: desk.window.stage.scene() is not None)
+
+
+def test_pressing_the_keyboard_twice_gives_no_second_order(application, desk, page):
+    """The button that was pressed is disabled, and Qt would give the keyboard to the next one."""
+    connect(application, page)
+    heard = []
+    page.buttons.requested.connect(heard.append)
+    desk.window.activateWindow()
+    turn_until(application, desk.window.isActiveWindow)
+    page.buttons.button(Request.UPLOAD).setFocus()
+    for _ in range(40):
+        QTest.keyClick(desk.window.focusWidget(), Qt.Key.Key_Space)
+        application.processEvents()
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+    QTest.keyClick(desk.window.focusWidget(), Qt.Key.Key_Space)
+    assert heard == [Request.UPLOAD]
+
+
+def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, desk, page):
+    connect(application, page)
+    press(page, Request.UPLOAD)
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+    heard = []
+    page.buttons.requested.connect(heard.append)
+    start = page.buttons.button(Request.START)
+    with clicked("Yes"):
+        QTest.mouseClick(start, Qt.MouseButton.LeftButton)
+    for _ in range(3):
+        QTest.mouseDClick(start, Qt.MouseButton.LeftButton)
+        application.processEvents()
+    turn_until(application, lambda: n_photos(page) >= 1)
+    assert heard == [Request.START]
+
+
+def test_keys_of_a_flight_do_nothing_in_other_tabs_nor_what_is_not_allowed(application, desk, page):
+    heard = []
+    page.buttons.requested.connect(heard.append)
+    desk.window.activateWindow()
+    turn_until(application, desk.window.isActiveWindow)
+    for tab in ("fly", "site", "fly"):
+        desk.window.show_tab(tab)
+        turn_until_idle(application, desk)
+        for action in page.buttons.flight_actions():
+            assert not action.isEnabled(), "nothing is connected"
+            QTest.keySequence(desk.window, action.shortcut())
+    connect(application, page)
+    desk.window.show_tab("site")
+    QTest.keySequence(desk.window, page.buttons.flight_actions()[0].shortcut())
+    assert heard == []
+    desk.window.show_tab("fly")
+    QTest.keySequence(desk.window, page.buttons.flight_actions()[0].shortcut())
+    assert heard == [Request.UPLOAD]
 
 
 def test_times_of_notes_carry_seconds_into_minutes(application, page):
@@ -412,9 +551,6 @@ def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_pictur
 
 
 def test_a_long_sortie_and_a_lost_link_fit_a_small_screen(application, desk):
-    from PySide6.QtCore import Qt
-    from PySide6.QtTest import QTest
-
     page, window = desk.window.tab("fly"), desk.window
     for at in (400, 30):
         states = [ViewState.NEXT if number == at else ViewState.TO_COME for number in range(700)]
