@@ -190,7 +190,8 @@ def paint_page(document: QTextDocument, painter: QPainter, page: int) -> None:
     painter.save()
     painter.translate(0.0, -page * height)
     context = QAbstractTextDocumentLayout.PaintContext()
-    context.clip = QRectF(0.0, page * height, width, height)
+    # But for the last rows: there, the first of a picture at the top of the next page would stand, too.
+    context.clip = QRectF(0.0, page * height, width, height - 2.0)
     painter.setClipRect(context.clip)
     # Paper is white in every theme.
     context.palette.setColor(QPalette.ColorRole.Text, Qt.GlobalColor.black)

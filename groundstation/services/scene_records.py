@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import getpass
-from dataclasses import replace
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from planning.errors import InputError
+from planning.progress import QUIET, Monitor
 
 if TYPE_CHECKING:
     from reconstruction.objects.store import StoredScene
@@ -60,6 +65,59 @@ def with_file(book: RecordBook, entry: Entry, file: Path | None) -> Entry:
         stored = store_document(book, file)
         return replace(entry, place=stored.name, sha256=stored.sha256)
     return entry
+
+
+@dataclass(frozen=True, slots=True)
+class Attachment:
+    """A file that a record names, as far as it is there.
+
+    Parameters
+    ----------
+    n_bytes
+        0 where it is missing, or not the one that was stored.
+    picture
+        A small JPEG of it, where it is a picture that can be read.
+    """
+
+    n_bytes: int = 0
+    picture: bytes | None = None
+
+
+def attachments_of(
+    folder: Path, entries: Iterable[Entry], longest_px: int, monitor: Monitor = QUIET
+) -> dict[str, Attachment]:
+    """Stored files of defects and documents, by their names beside the records.
+
+    Parameters
+    ----------
+    longest_px
+        Side of the pictures.
+
+    Raises
+    ------
+    InputError
+        The records cannot be read.
+    """
+    from reconstruction.exports.web_pictures import PICTURES, small_jpeg
+    from reconstruction.records.book import FILE, RecordBook
+    from reconstruction.records.entries import Defect, Document, is_address
+    from reconstruction.records.stored_files import stored_path
+
+    names = {each.picture for each in entries if isinstance(each, Defect) and each.picture}
+    names |= {each.place for each in entries if isinstance(each, Document) and not is_address(each.place)}
+    found: dict[str, Attachment] = {}
+    if not names:
+        return found
+    with RecordBook(folder / FILE) as book:
+        for number, name in enumerate(sorted(names)):
+            monitor.report("reading what is attached", number, len(names))
+            found[name] = Attachment()
+            with suppress(InputError, OSError):
+                content = stored_path(book, name).read_bytes()
+                found[name] = Attachment(len(content))
+                if name.endswith(PICTURES):
+                    found[name] = Attachment(len(content), small_jpeg(name, content, longest_px))
+    return found
 
 
 def keep_objects(folder: Path, who: str) -> None:

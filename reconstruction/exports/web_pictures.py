@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from planning.errors import InputError
 from planning.progress import Monitor
+from reconstruction.records.entries import is_address
 from reconstruction.records.stored_files import STARTS, told_name
 
 LONGEST_PX = 1280
@@ -88,7 +89,7 @@ def files_of(
     documents: set[str] = set()
     for row in rows:
         place = str(row.get("place", ""))
-        if row["record"] == "document" and place and not place.startswith(("http://", "https://")):
+        if row["record"] == "document" and place and not is_address(place):
             row["file"] = told_name(str(row.get("title", "")), place)
             (pictures if place.endswith(PICTURES) else documents).add(place)
     found = WebFiles({}, {}, {}, {})
@@ -131,13 +132,15 @@ def _take_documents(
                 found.states[largest] = "large"
 
 
-def small_jpeg(name: str, content: bytes) -> bytes:
-    """The picture, at most `LONGEST_PX` pixels wide and high.
+def small_jpeg(name: str, content: bytes, longest_px: int = LONGEST_PX) -> bytes:
+    """The picture, made small.
 
     Parameters
     ----------
     name
         For messages.
+    longest_px
+        Width or height at most.
 
     Raises
     ------
@@ -161,15 +164,17 @@ def small_jpeg(name: str, content: bytes) -> bytes:
         raise InputError(f"{place}: cannot be decoded ({error.err}); copy the file again") from error
     if picture is None or not picture.size:
         raise InputError(f"{place}: cannot be decoded; copy the file again")
-    is_good, written = cv2.imencode(".jpg", _shrunk(np.asarray(picture)), (cv2.IMWRITE_JPEG_QUALITY, QUALITY))
+    is_good, written = cv2.imencode(
+        ".jpg", _shrunk(np.asarray(picture), longest_px), (cv2.IMWRITE_JPEG_QUALITY, QUALITY)
+    )
     if not is_good:
         raise InputError(f"{place}: cannot be written as JPEG")
     return written.tobytes()
 
 
-def _shrunk(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _shrunk(picture: NDArray[np.uint8], longest_px: int) -> NDArray[np.uint8]:
     height, width = picture.shape[:2]
-    factor = LONGEST_PX / max(height, width)
+    factor = longest_px / max(height, width)
     if factor >= 1.0:
         return picture
     size_wh = max(1, round(width * factor)), max(1, round(height * factor))

@@ -236,7 +236,7 @@ class Document:
         check_text(self.place, "place", 2000, required=True)
         if self.sha256 and not SHA256.fullmatch(self.sha256):
             raise InputError(f"sha256: expected 64 hexadecimal digits in lower case, got '{self.sha256[:70]}'")
-        if not _is_address(self.place):
+        if not is_address(self.place):
             check_stored_name(self.place, "place")
 
 
@@ -299,7 +299,8 @@ def check_stored_name(name: str, field: str) -> None:
         )
 
 
-def _is_address(text: str) -> bool:
+def is_address(text: str) -> bool:
+    """Whether a document is on the web; else its place is the name of a file beside the records."""
     try:
         parts = urlsplit(text)
         return parts.scheme in ("http", "https") and bool(parts.hostname) and not any(map(str.isspace, text))

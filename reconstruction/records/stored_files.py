@@ -12,6 +12,7 @@ from planning.folders import make_folder
 from planning.json_file import write_atomically
 from reconstruction.records.book import RecordBook
 from reconstruction.records.entries import check_stored_name
+from reconstruction.records.limits import SHA256
 
 MAX_PICTURE_BYTES = 64 * 2**20
 """The largest JPEG of a drone has 30 MB."""
@@ -60,6 +61,12 @@ def store_document(book: RecordBook, path: Path) -> StoredFile:
     """
     ending = path.suffix.lower()
     return _stored(book, _read(path, MAX_DOCUMENT_BYTES), ending if _ENDING.fullmatch(ending) else "")
+
+
+def shown_place(place: str) -> str:
+    """Where a document is, for people: its address or name; of a file that is kept under its checksum, what it is."""
+    stem, _, ending = place.partition(".")
+    return ending.upper() if SHA256.fullmatch(stem) else place
 
 
 def told_name(title: str, stored: str) -> str:

@@ -24,7 +24,7 @@ from groundstation.services.reconstruct_messages import (
 )
 from groundstation.services.reconstruct_process import ModelProcess
 from groundstation.services.scene_card import Level, SceneCard, Subject, is_model, is_scene, read_card, scenes_beside
-from groundstation.services.scene_records import book_of_scene, user_name, with_file
+from groundstation.services.scene_records import Attachment, attachments_of, book_of_scene, user_name, with_file
 from groundstation.services.worker import Worker
 from planning.errors import GroundStationError
 from planning.findings import Severity
@@ -247,6 +247,22 @@ class ModelDesk(QObject):
         except GroundStationError as error:
             self._say(error)
             return ()
+
+    def read_attached(
+        self,
+        entries: Sequence[Entry],
+        longest_px: int,
+        when_done: Callable[[dict[str, Attachment]], None],
+        when_failed: Callable[[BaseException | None], None],
+    ) -> None:
+        """Read the files that records name, see `attachments_of`."""
+        card = self.card
+        assert card is not None
+
+        def work(context: JobContext) -> dict[str, Attachment]:
+            return attachments_of(card.folder, entries, longest_px, context)
+
+        self._workspace.start(self.tr("Read what is attached to records"), work, when_done, when_failed)
 
     def attribute_names(self) -> tuple[str, ...]:
         """Attributes that panels can be coloured by."""

@@ -26,6 +26,7 @@ from groundstation.gui.model.record_words import choice_words, field_words, kind
 from groundstation.services.scene_card import Level, Subject
 from groundstation.services.units import UnitSystem, area_unit, length_unit
 from reconstruction.records.entries import Attribute, Defect, Document, Entry, Inspection, Maintenance
+from reconstruction.records.stored_files import shown_place
 
 ENTRY = Qt.ItemDataRole.UserRole
 
@@ -208,7 +209,7 @@ def line_of(entry: Entry) -> str:
         cost = "" if entry.cost is None else f"{QLocale().toString(entry.cost, 'f', 2)} {entry.currency}"
         due = "" if entry.next_due is None else f"{field_words('next_due')} {entry.next_due}"
         return f"{entry.date}: {_joined([entry.work, entry.done_by, cost, due, entry.note])}"
-    return _joined([entry.title, entry.kind, entry.place])
+    return _joined([entry.title, entry.kind, shown_place(entry.place)])
 
 
 def _joined(parts: list[str]) -> str:

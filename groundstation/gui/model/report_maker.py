@@ -1,4 +1,8 @@
-"""A report of panels as a PDF file: each from the front as the model shows it, with what its records say."""
+"""A report of panels as a PDF file: each from the front as the model shows it, and all that is known of it.
+
+What is known of a panel is what its records say, with the photos that they hold, and what is said of its facade and of
+the building.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QObject, QPointF, Signal
+from PySide6.QtCore import QLocale, QObject, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF, QTextDocument
 
 from groundstation.gui.brief_printer import BriefDocument, write_pdf
@@ -18,23 +22,33 @@ from groundstation.gui.reconstruct.looks import NUMBERS, image_of
 from groundstation.services.reconstruct_camera import sized
 from groundstation.services.reconstruct_messages import Look, Seen, Subject
 from groundstation.services.scene_card import PanelRow, view_of
+from groundstation.services.scene_records import Attachment
 from groundstation.services.units import UnitSystem, area_unit, length_unit
 from planning.errors import InputError
-from reconstruction.records.entries import Defect
+from reconstruction.records.entries import Defect, Document, Entry
 
 WIDTH_PX, HEIGHT_PX = 640, 480
-"""Of the pictures."""
+"""Of the pictures of the model."""
 
 SHOWN_PX = 380
 """Width of them on the page, of 680."""
 
+PHOTO_PX = 300
+"""Of photos that records hold, width and height at most on the page."""
+
+PHOTO_SCALE = 3
+"""Pixels for each of those: some 300 to the inch."""
+
 REPORT = "report"
 
-MARK_PX = 9.0
+MARK_PX = 11.0
+
+Entries = dict[type[Any], tuple[Any, ...]]
+"""Records of an object by kind."""
 
 
 class ReportMaker(QObject):
-    """Asks for the pictures one after the other, then writes the file.
+    """Asks for the pictures one after the other, reads what is attached to records, then writes the file.
 
     Signals
     -------
@@ -50,14 +64,17 @@ class ReportMaker(QObject):
         self._left: list[PanelRow] = []
         self._panels: tuple[PanelRow, ...] = ()
         self._pictures: dict[str, str | QImage] = {}
+        self._entries: dict[str, Entries] = {}
+        self._attached: dict[str, Attachment] = {}
+        self._is_reading = False
         self._path, self._number, self._is_letter = Path(), 0, False
         self._units = UnitSystem.METRIC
         desk.seen.connect(self._take)
 
     @property
     def is_busy(self) -> bool:
-        """Whether pictures are waited for."""
-        return bool(self._number)
+        """Whether pictures are waited for, or what is attached."""
+        return bool(self._number) or self._is_reading
 
     def make(self, panels: Sequence[PanelRow], path: Path, units: UnitSystem, is_letter: bool = False) -> None:
         """Begin a report; one that is being made is called off."""
@@ -70,15 +87,36 @@ class ReportMaker(QObject):
         if card is None or not self._left:
             self._number = 0
             if card is not None:
-                self._write()
+                self._read()
             return
         panel = self._left[0]
         self._number = next(NUMBERS)
         camera = sized(view_of((panel,)), WIDTH_PX, HEIGHT_PX)
         self._desk.look(Look(REPORT, self._number, Subject("model", card.folder), camera))
 
+    def _read(self) -> None:
+        """Take down what the records say, and read the files that they name."""
+        self._entries = {each: self._entries_of(each) for each in self._subjects()}
+        entries = [entry for kinds in self._entries.values() for each in kinds.values() for entry in each]
+        self._is_reading = True
+        self._desk.read_attached(entries, PHOTO_SCALE * PHOTO_PX, self._write, self._not_read)
+
+    def _not_read(self, _error: BaseException | None) -> None:
+        self._is_reading = False
+
+    def _subjects(self) -> tuple[str, ...]:
+        """GlobalIds of the building, the facades and the panels that the report is about."""
+        card = self._desk.card
+        assert card is not None
+        facades = (panel.facade_id for panel in self._panels)
+        return tuple(dict.fromkeys((card.global_id, *facades, *(panel.global_id for panel in self._panels))))
+
+    def _entries_of(self, global_id: str) -> Entries:
+        found = {kind: self._desk.entries_of(kind, global_id) for kind in KIND_TITLES}
+        return {kind: entries for kind, entries in found.items() if entries}
+
     def _take(self, seen: Seen | None) -> None:
-        if not self.is_busy:
+        if not self._number:
             return
         if seen is None:
             self._number = 0
@@ -90,8 +128,10 @@ class ReportMaker(QObject):
                 self._pictures[panel.global_id] = marked(image_of(seen.picture), seen, panel, defects)
             self._next()
 
-    def _write(self) -> None:
-        document = BriefDocument(self.html(), self._pictures)
+    def _write(self, attached: dict[str, Attachment]) -> None:
+        self._is_reading, self._attached = False, attached
+        photos = {name: QImage.fromData(each.picture) for name, each in attached.items() if each.picture is not None}
+        document = BriefDocument(self.html(), self._pictures | photos)
         card = self._desk.card
         document.setMetaInformation(QTextDocument.MetaInformation.DocumentTitle, "" if card is None else card.name)
         try:
@@ -105,11 +145,20 @@ class ReportMaker(QObject):
         """The page; all that somebody wrote is text in it, and no markup."""
         card = self._desk.card
         assert card is not None
-        heading = escape(self.tr("Panels of {0}").format(card.name or card.folder.name))
+        name = card.name or card.folder.name
+        heading = escape(self.tr("Panels of {0}").format(name))
         when = escape(self.tr("Model of {0}").format(card.written_at.date().isoformat()))
         parts = [f"<h1>{heading}</h1><p>{when}</p>"]
-        for number, panel in enumerate(self._panels):
-            parts.append(self._panel_html(panel, is_first=number == 0))
+        facades = dict.fromkeys((panel.facade_id, panel.facade) for panel in self._panels)
+        about = [(card.global_id, self.tr("The building: {0}").format(name))]
+        about += [(facade_id, self.tr("Facade {0}").format(facade)) for facade_id, facade in facades]
+        for global_id, title in about:
+            if records := self._records_html(global_id):
+                parts.append(f"<h2>{escape(title)}</h2>{records}")
+        has_page = len(parts) > 1
+        for panel in self._panels:
+            parts.append(self._panel_html(panel, is_first=not has_page))
+            has_page = True
         return f"<html><body style='font-family:sans-serif'>{''.join(parts)}</body></html>"
 
     def _panel_html(self, panel: PanelRow, is_first: bool) -> str:
@@ -126,12 +175,42 @@ class ReportMaker(QObject):
         parts = [f"<h2{style}>{escape(panel.name)}</h2><table>{rows}</table>"]
         if panel.global_id in self._pictures:
             parts.append(f"<p><img src='{escape(panel.global_id, quote=True)}' width='{SHOWN_PX}'></p>")
-        for kind, title in KIND_TITLES.items():
-            entries: tuple[Any, ...] = self._desk.entries_of(kind, panel.global_id)
-            if entries:
-                lines = "".join(f"<li>{escape(line_of(entry))}</li>" for entry in entries)
-                parts.append(f"<h3>{escape(title())}</h3><ul>{lines}</ul>")
+        parts.append(self._records_html(panel.global_id))
         return "".join(parts)
+
+    def _records_html(self, global_id: str) -> str:
+        """Records of an object by kind; "" where there are none. Defects have the numbers that the picture has."""
+        parts = []
+        for kind, entries in self._entries.get(global_id, {}).items():
+            lines = "".join(f"<li>{self._entry_html(entry)}</li>" for entry in entries)
+            tag = "ol" if kind is Defect else "ul"
+            parts.append(f"<h3>{escape(KIND_TITLES[kind]())}</h3><{tag}>{lines}</{tag}>")
+        return "".join(parts)
+
+    def _entry_html(self, entry: Entry) -> str:
+        text = escape(line_of(entry)).replace("\n", "<br>")
+        name = entry.picture if isinstance(entry, Defect) else entry.place if isinstance(entry, Document) else ""
+        attached = self._attached.get(name)
+        if attached is None:
+            return text
+        where = escape(name)
+        if not attached.n_bytes:
+            missing = self.tr("The file is missing or not the one that was attached: {0}")
+            return f"{text}<br><i>{escape(missing).format(where)}</i>"
+        if attached.picture is not None:
+            photo = f"<img src='{escape(name, quote=True)}' {_fitted(attached.picture)}>"
+            return f"{text}<p style='margin-top:8px; margin-bottom:8px'>{photo}</p>"
+        if isinstance(entry, Document):
+            return (
+                f"{text}, {QLocale().formattedDataSize(attached.n_bytes, 1, QLocale.DataSizeFormat.DataSizeSIFormat)}"
+            )
+        return f"{text}<br><i>{escape(self.tr('The picture cannot be read: {0}')).format(where)}</i>"
+
+
+def _fitted(picture: bytes) -> str:
+    """Width and height of a photo on the page, as attributes."""
+    size = QImage.fromData(picture).size().scaled(PHOTO_PX, PHOTO_PX, Qt.AspectRatioMode.KeepAspectRatio)
+    return f"width='{size.width()}' height='{size.height()}'"
 
 
 def marked(picture: QImage, seen: Seen, panel: PanelRow, defects: Sequence[Defect]) -> QImage:
@@ -145,6 +224,10 @@ def marked(picture: QImage, seen: Seen, panel: PanelRow, defects: Sequence[Defec
         painter.setPen(QPen(QColor("#e69f00"), 2.5))
         painter.drawPolygon(QPolygonF(outline))
     painter.setPen(QPen(QColor("#ffffff"), 2.5))
+    font = painter.font()
+    font.setBold(True)
+    font.setPixelSize(round(1.2 * MARK_PX))
+    painter.setFont(font)
     for number, defect in enumerate(defects, 1):
         if defect.u is None or defect.v is None or defect.status != "open":
             continue
@@ -154,6 +237,7 @@ def marked(picture: QImage, seen: Seen, panel: PanelRow, defects: Sequence[Defec
         if place is not None:
             painter.setBrush(QColor("#b3261e"))
             painter.drawEllipse(place[0], MARK_PX, MARK_PX)
-            painter.drawText(place[0] + QPointF(MARK_PX + 3.0, 4.0), str(number))
+            box = QRectF(place[0] - QPointF(MARK_PX, MARK_PX), place[0] + QPointF(MARK_PX, MARK_PX))
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, str(number))
     painter.end()
     return found

@@ -23,6 +23,7 @@ SENTENCES = (
         "Sentences", "{0} documents are too large for the page, which names them; pass them on by themselves"
     ),
     QT_TRANSLATE_NOOP("Sentences", "reading documents"),
+    QT_TRANSLATE_NOOP("Sentences", "reading what is attached"),
     QT_TRANSLATE_NOOP("Sentences", "the place on Earth is not known: tiles stay in the site's own frame"),
     QT_TRANSLATE_NOOP(
         "Sentences", "each panel is a picture of its front: mirror images in it belong to that view alone"

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
@@ -275,9 +276,7 @@ def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application
     assert not opened.report.is_busy
     with clicked(choose(tmp_path / "panels")):
         opened.records.report.click()
-    for _ in range(4):
-        answer(opened, looks(opened)[-1])
-    assert not opened.report.is_busy
+    pictures_come(application, opened, 4)
     html = opened.report.html()
     assert "&lt;script&gt;" in html
     assert "<script>" not in html
@@ -286,9 +285,53 @@ def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application
     assert content.count(b"/Type /Page\n") + content.count(b"/Type /Page ") >= 4
     assert "The report is written" in opened.messages[-1].text
     opened.make_report(tmp_path / "nowhere" / "panels.pdf")
-    for _ in range(4):
-        answer(opened, looks(opened)[-1])
+    pictures_come(application, opened, 4)
     assert "cannot be written" in opened.messages[-1].text
+
+
+def pictures_come(application, page, n):
+    """Answer what a report asks for, and wait until it is made."""
+    for _ in range(n):
+        answer(page, looks(page)[-1])
+    assert page.report.is_busy
+    turn_until(application, lambda: not page.report.is_busy)
+
+
+def test_a_report_holds_what_is_attached_and_what_is_known_of_facade_and_building(application, opened, tmp_path):
+    """Of a panel: photos of its defects under their numbers, names of documents, and files that are missing."""
+    card, desk = opened.desk.card, opened.desk
+    panel = card.panels[1]
+    photo, contract, lost = tmp_path / "crack.png", tmp_path / "contract.pdf", tmp_path / "lost.png"
+    for path, grey in ((photo, 40), (lost, 41)):
+        assert cv2.imwrite(str(path), np.full((60, 90, 3), grey, np.uint8))
+    contract.write_bytes(b"%PDF-1.7" + bytes(2400))
+    long = "It runs from the lower left corner. " * 60 + "x" * 400
+    desk.put(Defect(panel.global_id, "scratch", 1, "2026-05-04"))
+    desk.put(Defect(panel.global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note=f"below\n{long}"), photo)
+    desk.put(Defect(panel.global_id, "leak", 3, "2026-05-04"), lost)
+    desk.put(Inspection(panel.facade_id, "2026-03-30", "Moreau", "rope access", "sound"))
+    desk.put(Document(panel.facade_id, "Maintenance contract", "contract.pdf", "contract"), contract)
+    desk.put(Document(card.global_id, "Entrance", "entrance.png"), photo)
+    desk.put(Document(card.global_id, "Rules", "https://example.org/rules.pdf"))
+    (missing,) = (each.picture for each in desk.entries_of(Defect, panel.global_id) if each.kind == "leak")
+    (card.folder / "records-files" / missing).unlink()
+    desk.select(panel.global_id)
+    opened.make_report(tmp_path / "panel.pdf")
+    pictures_come(application, opened, 1)
+    html = opened.report.html()
+    # The building first, then the facade, then the panel; a defect's number is that of its mark.
+    order = ["The building: made", "Entrance", "https://example.org/rules.pdf", f"Facade {panel.facade}", "Moreau"]
+    order += ["Maintenance contract, contract, PDF, 2.4 kB", panel.name, "<ol><li>", "scratch", "crack", "leak"]
+    places = [html.index(text) for text in (*order, missing)]
+    assert places == sorted(places)
+    assert html.count("<img src=") == 3
+    assert "<br>It runs" in html
+    assert f"The file is missing or not the one that was attached: {missing}" in html
+    content = (tmp_path / "panel.pdf").read_bytes()
+    # The same photo is twice on the page, and once in the file.
+    assert content.count(b"/Subtype /Image") == 2
+    assert content.count(b"/Type /Page\n") + content.count(b"/Type /Page ") == 3
+    assert "The report is written" in opened.messages[-1].text
 
 
 def test_a_lost_process_is_told_and_asked_anew(opened):
