@@ -2846,6 +2846,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Das Modell ist geschrieben: {0}, {1} MB</translation>
     </message>
     <message>
+        <source>Read what is attached to records</source>
+        <translation>Anhänge der Einträge lesen</translation>
+    </message>
+    <message>
         <source>The process that shows models has ended (exit status {0}); it starts anew.</source>
         <translation>Der Prozess, der Modelle zeigt, ist beendet (Status {0}); er startet neu.</translation>
     </message>
@@ -4925,6 +4929,14 @@ Take it over?</source>
         <translation>Modell vom {0}</translation>
     </message>
     <message>
+        <source>The building: {0}</source>
+        <translation>Das Gebäude: {0}</translation>
+    </message>
+    <message>
+        <source>Facade {0}</source>
+        <translation>Fassade {0}</translation>
+    </message>
+    <message>
         <source>Facade</source>
         <translation>Fassade</translation>
     </message>
@@ -4935,6 +4947,10 @@ Take it over?</source>
     <message>
         <source>GlobalId</source>
         <translation>GlobalId</translation>
+    </message>
+    <message>
+        <source>The file is missing or not the one that was attached: {0}</source>
+        <translation>Die Datei fehlt oder ist nicht die, die angehängt wurde: {0}</translation>
     </message>
 </context>
 <context>
@@ -11083,6 +11099,10 @@ Take it over?</source>
     <message>
         <source>reading documents</source>
         <translation>Unterlagen werden gelesen</translation>
+    </message>
+    <message>
+        <source>reading what is attached</source>
+        <translation>Anhänge werden gelesen</translation>
     </message>
     <message>
         <source>the place on Earth is not known: tiles stay in the site&apos;s own frame</source>
