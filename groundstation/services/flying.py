@@ -64,8 +64,10 @@ class FlightWish:
         and of everything random.
     speedup
         Of the simulation against real time; None: as fast as it goes.
+    simulations_only
+        At a link: why only a vehicle is flown that says that it is a simulation; empty where any is.
     sets_parameters
-        At a link: set the vehicle's parameters, else only tell what differs.
+        At a link: set the parameters of any vehicle; else those of a simulation, and tell what differs.
     log_folder
         For telemetry logs, which a flight over a link always has; None in the simulation.
     signer
@@ -78,6 +80,7 @@ class FlightWish:
     effects: Mapping[str, Wish] = field(default_factory=dict)
     seed: int = 0
     speedup: float | None = None
+    simulations_only: str = ""
     sets_parameters: bool = False
     needs_rtk: bool = False
     log_folder: Path | None = None
@@ -277,7 +280,12 @@ class _Case:
         wish = self.wish
         if wish.log_folder is None:
             raise ValueError("log_folder: a flight over a link is always logged")
-        options = RunOptions(autopilot=wish.autopilot, sets_parameters=wish.sets_parameters, needs_rtk=wish.needs_rtk)
+        options = RunOptions(
+            autopilot=wish.autopilot,
+            simulations_only=wish.simulations_only,
+            sets_parameters=wish.sets_parameters,
+            needs_rtk=wish.needs_rtk,
+        )
         run, outcome, log = fly_link(
             orders, wish.link, options, wish.log_folder, self.show, signer=wish.signer, monitor=self.monitor
         )

@@ -32,6 +32,7 @@ from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.preflight import OnBoard, PreflightCheck, preflight_checks
 from groundstation.vehicle.recorder import Recorder
 from groundstation.vehicle.run_records import ORDER_MODES, Phase, PilotOrder, RunOptions, RunOutcome, RunView
+from groundstation.vehicle.setup import ParameterChange
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.telemetry import LocalFrame, folded
 from groundstation.vehicle.watch import Watch, WatchRules, watched
@@ -94,6 +95,8 @@ class FlightRun:
         self.may_start = options.starts_itself
         self.was_ordered_away = False
         self.asked_s = -math.inf
+        self.is_simulation = self.has_told_unknown = False
+        self.agreed: tuple[ParameterChange, ...] = ()
         self._frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
         self._steps: Steps | None = None
         self._machine: Exchange | None = None
@@ -160,6 +163,10 @@ class FlightRun:
     def begin(self) -> None:
         """The pilot says: take off."""
         self.may_start = True
+
+    def set_parameters(self, changes: tuple[ParameterChange, ...]) -> None:
+        """The pilot agrees that these parameters are set before take-off."""
+        self.agreed = changes
 
     def view(self) -> RunView:
         """The run as it stands."""

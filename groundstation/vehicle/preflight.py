@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from groundstation.vehicle.orders import SortieOrders
+from groundstation.vehicle.setup import ParameterChange, change_text
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
 from missions.mavlink.transfer.exchange import MissionType
@@ -53,6 +54,8 @@ class OnBoard:
     ----------
     doubt
         Why what was equal is not known any more (`board.py`); empty where nothing speaks against it.
+    changes
+        Parameters that should be set for the plan; None while they were not read.
     failsafes
         What the vehicle will do by itself, by its parameters (`failsafes.py`); empty while they were not read.
     """
@@ -61,6 +64,7 @@ class OnBoard:
     fence: bool | None = None
     rally: bool | None = None
     doubt: str = ""
+    changes: tuple[ParameterChange, ...] | None = None
     failsafes: tuple[PreflightCheck, ...] = ()
 
     def of(self, mission_type: MissionType) -> bool | None:
@@ -95,6 +99,7 @@ def preflight_checks(
         _board("mission", "mission", on_board.mission, on_board.doubt),
         *([_board("geofence", "geofence", on_board.fence, on_board.doubt)] if orders.fences else []),
         *([_board("rally", "list of rally points", on_board.rally, on_board.doubt)] if orders.rally else []),
+        *_parameters(on_board.changes),
         *on_board.failsafes,
     )
 
@@ -191,6 +196,21 @@ def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
         text = f"the wind blows with {wind_m_s:.1f} m/s, more than the {limit_m_s:g} m/s of {name}; wait for less"
         return PreflightCheck("wind", Verdict.BAD, text, wind_m_s, limit_m_s, "m/s")
     return PreflightCheck("wind", Verdict.OK, f"{wind_m_s:.1f} m/s", wind_m_s, limit_m_s, "m/s")
+
+
+def _parameters(changes: tuple[ParameterChange, ...] | None) -> Iterator[PreflightCheck]:
+    if changes is None:
+        return
+    off = [change for change in changes if change.is_off]
+    if not changes:
+        yield PreflightCheck("parameters", Verdict.OK, "they are as the plan needs them")
+    elif off:
+        yield PreflightCheck("parameters", Verdict.BAD, change_text(off[0]), float(len(changes)), 0.0)
+    else:
+        text = change_text(changes[0])
+        if len(changes) > 1:
+            text += f"; {len(changes) - 1} more differ"
+        yield PreflightCheck("parameters", Verdict.WARN, text, float(len(changes)), 0.0)
 
 
 def _board(code: str, what: str, is_equal: bool | None, doubt: str) -> PreflightCheck:

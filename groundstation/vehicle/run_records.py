@@ -54,8 +54,11 @@ class RunOptions:
     ----------
     autopilot
         That is expected; None takes any.
+    simulations_only
+        Why only a vehicle may be flown that says itself that it is a simulation; empty where any may.
     sets_parameters
-        Set the vehicle's parameters; else differences are only told. For simulations, or where the pilot agrees.
+        The pilot agreed that the vehicle's parameters are set as the plan needs them. Those of a vehicle that says that
+        it is a simulation are set in any case; else differences are told, and set by `FlightRun.set_parameters`.
     starts_itself
         Start without waiting for the pilot.
     needs_rtk
@@ -67,6 +70,7 @@ class RunOptions:
     """
 
     autopilot: Autopilot | None = None
+    simulations_only: str = ""
     sets_parameters: bool = False
     starts_itself: bool = True
     needs_rtk: bool = False

@@ -1,7 +1,12 @@
-"""Parameters that a vehicle needs for a plan, and messages that it shall send: `data/setup.toml`."""
+"""Parameters that a vehicle needs for a plan, or by which a simulation tells itself, and messages that it shall send.
+
+The parameters stand in `data/setup.toml`, which explains its fields.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -50,6 +55,7 @@ class VehicleSetup:
     off: dict[str, float]
     landing: SlowLanding
     leg_late_s: float
+    simulation: dict[str, float]
     needed: dict[str, float]
     from_plan: dict[str, tuple[str, float]]
 
@@ -59,14 +65,60 @@ def _setups() -> dict[str, VehicleSetup]:
     return read_toml(DATA_PATH, dict[str, VehicleSetup])
 
 
+@dataclass(frozen=True, slots=True)
+class ParameterChange:
+    """A parameter that should be set for the plan, in the autopilot's units.
+
+    Parameters
+    ----------
+    needs_reboot
+        It takes effect after a reboot only.
+    is_off
+        As it is, the autopilot commands no camera, or no gimbal.
+    """
+
+    name: str
+    old: float
+    new: float
+    needs_reboot: bool
+    is_off: bool
+
+
 def needs_reboot(autopilot: Autopilot) -> frozenset[str]:
     """Parameters whose change takes effect after a reboot only."""
     return _setups()[autopilot].reboot
 
 
-def is_switched_off(autopilot: Autopilot, name: str, value: float) -> bool:
-    """Whether a parameter with this value leaves the autopilot without camera or gimbal."""
-    return _setups()[autopilot].off.get(name) == value
+def change_text(change: ParameterChange) -> str:
+    """What is to be set, and why, in words."""
+    if change.is_off:
+        return (
+            f"{change.name} is {change.old:g}: the autopilot commands no camera, or no gimbal; set it to "
+            f"{change.new:g} and restart the vehicle"
+        )
+    return f"{change.name} is {change.old:g}; the plan was made for {change.new:g}"
+
+
+def simulation_names(autopilot: Autopilot) -> tuple[str, ...]:
+    """Parameters by which a simulated vehicle tells itself."""
+    return tuple(_setups()[autopilot].simulation)
+
+
+def is_simulation(autopilot: Autopilot, values: Mapping[str, float]) -> bool:
+    """Whether a vehicle with these parameters says that it is simulated; those that it does not know are absent."""
+    return any(values.get(name, -math.inf) >= least for name, least in _setups()[autopilot].simulation.items())
+
+
+def parameter_changes(
+    autopilot: Autopilot, wanted: Mapping[str, float], values: Mapping[str, float]
+) -> tuple[ParameterChange, ...]:
+    """What differs from what a plan needs, of the parameters that the vehicle knows."""
+    setup = _setups()[autopilot]
+    return tuple(
+        ParameterChange(name, values[name], new, name in setup.reboot, setup.off.get(name) == values[name])
+        for name, new in wanted.items()
+        if name in values and not math.isclose(values[name], new, rel_tol=1e-3, abs_tol=1e-9)
+    )
 
 
 def landing(autopilot: Autopilot) -> SlowLanding:

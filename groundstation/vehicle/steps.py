@@ -18,7 +18,16 @@ from groundstation.vehicle.parameter_reads import ParameterReads
 from groundstation.vehicle.parameters import ParameterCall, ParameterOutcome, ParameterStatus
 from groundstation.vehicle.preflight import Verdict, is_ready
 from groundstation.vehicle.recorder import Recorder
-from groundstation.vehicle.setup import is_switched_off, message_requests, needs_reboot, wanted_parameters
+from groundstation.vehicle.setup import (
+    ParameterChange,
+    change_text,
+    is_simulation,
+    message_requests,
+    needs_reboot,
+    parameter_changes,
+    simulation_names,
+    wanted_parameters,
+)
 from groundstation.vehicle.state import Landed, VehicleState
 from groundstation.vehicle.watch import STALE_S
 from missions.mavlink.autopilots import Autopilot
@@ -96,40 +105,52 @@ def _connect(run: FlightRun) -> Steps:
 
 def _prepare(run: FlightRun) -> Steps:
     yield from _ask_for_telemetry(run)
-    autopilot, address = vehicle_of(run)
-    changed: set[str] = set()
-    for name, value in wanted_parameters(autopilot, run.orders.mission, run.orders.return_height_m).items():
-        wanted = value if run.options.sets_parameters else None
-        outcome: ParameterOutcome = yield ParameterCall(name, wanted, autopilot, address)
-        if outcome.status is ParameterStatus.SET:
-            changed.add(name)
-            run.note("parameter", f"{name} was {outcome.former:g} and is {value:g} now")
-        elif outcome.status is ParameterStatus.READ and is_switched_off(autopilot, name, outcome.value or 0.0):
-            run.note(
-                "warning-setup",
-                f"{name} is {outcome.value:g}: the autopilot commands no camera, or no gimbal; set it to {value:g} and "
-                "restart the vehicle",
-            )
-        elif outcome.status is ParameterStatus.READ and abs((outcome.value or 0.0) - value) > 1e-3 * abs(value):
-            run.note("parameter", f"{name} is {outcome.value:g}; the plan was made for {value:g}")
-        elif not outcome.is_as_wanted:
-            run.note("parameter", f"{name}: {outcome.status.value}")
-    if changed & needs_reboot(autopilot):
-        yield from _reboot(run)
+    yield from _read_parameters(run)
+    if not run.is_simulation and run.options.simulations_only:
+        raise LinkRejected(f"{run.link_name}: {run.options.simulations_only}")
+    if run.options.sets_parameters or run.is_simulation:
+        yield from _set_parameters(run, run.on_board.changes or ())
+    for change in run.on_board.changes or ():
+        run.note("warning-setup" if change.is_off else "parameter", change_text(change))
     run.camera_reports.ask_count()
-    yield from _read_failsafes(run)
 
 
-def _read_failsafes(run: FlightRun) -> Steps:
+def _read_parameters(run: FlightRun) -> Steps:
+    """What the vehicle is, what it does by itself, and in what it differs from what the plan needs."""
     autopilot, address = vehicle_of(run)
-    values: dict[str, float] = yield ParameterReads(NAMES[autopilot], autopilot, address)
+    wanted = wanted_parameters(autopilot, run.orders.mission, run.orders.return_height_m)
+    names = dict.fromkeys((*simulation_names(autopilot), *wanted, *NAMES[autopilot]))
+    values: dict[str, float] = yield ParameterReads(tuple(names), autopilot, address)
+    run.is_simulation = is_simulation(autopilot, values)
     checks = failsafe_checks(autopilot, values, run.orders)
     known = {check.text for check in run.on_board.failsafes}
     rally = [check for check in run.on_board.failsafes if check.code == "rally"]
-    run.on_board = replace(run.on_board, failsafes=(*rally, *checks))
+    changes = parameter_changes(autopilot, wanted, values)
+    run.on_board = replace(run.on_board, changes=changes, failsafes=(*rally, *checks))
     for check in checks:
         if check.verdict is Verdict.WARN and check.text not in known:
             run.note("warning-failsafe", check.text)
+    unknown = [name for name in wanted if name not in values]
+    if unknown and not run.has_told_unknown:
+        run.has_told_unknown = True
+        run.note("parameter", f"the vehicle does not know these parameters: {', '.join(unknown)}")
+
+
+def _set_parameters(run: FlightRun, changes: tuple[ParameterChange, ...]) -> Steps:
+    """Set what the pilot agreed to, or a simulation needs; restart the vehicle where that takes effect then only."""
+    autopilot, address = vehicle_of(run)
+    is_restart_due = False
+    for change in changes:
+        outcome: ParameterOutcome = yield ParameterCall(change.name, change.new, autopilot, address)
+        if outcome.status is ParameterStatus.SET:
+            is_restart_due |= change.needs_reboot
+            run.note("parameter", f"{change.name} was {outcome.former:g} and is {change.new:g} now")
+        elif not outcome.is_as_wanted:
+            run.note("parameter", f"{change.name}: {outcome.status.value}")
+    if is_restart_due:
+        yield from _reboot(run)
+    if changes:
+        yield from _read_parameters(run)
 
 
 def _ask_for_telemetry(run: FlightRun, *, must_answer: bool = True) -> Steps:
@@ -194,6 +215,9 @@ def _keep_up(run: FlightRun) -> Steps:
         return
     if (motion is None or motion.age_s(run.now_s) > STALE_S) and run.now_s > run.asked_s + ASK_EVERY_S:
         yield from _ask_for_telemetry(run, must_answer=False)
+    if run.agreed:
+        changes, run.agreed = run.agreed, ()
+        yield from _set_parameters(run, changes)
     if not reason:
         return
     if reason == UNREAD:
@@ -201,7 +225,7 @@ def _keep_up(run: FlightRun) -> Steps:
     if reason == RESTARTED:
         run.state = VehicleState(address=run.state.address, autopilot=run.state.autopilot)
         yield from _ask_for_telemetry(run, must_answer=False)
-        yield from _read_failsafes(run)
+        yield from _read_parameters(run)
     yield from read_again(run)
 
 
@@ -237,7 +261,7 @@ def _start(run: FlightRun) -> Steps:
     may have written to the vehicle since it was read.
     """
     autopilot, address = vehicle_of(run)
-    yield from _read_failsafes(run)
+    yield from _read_parameters(run)
     yield from read_again(run)
     _refuse_what_is_not_ours(run)
     if autopilot is Autopilot.ARDUPILOT:

@@ -36,17 +36,25 @@ class ParameterTable:
     Parameters
     ----------
     given
-        Values that differ from the profile's; each name must be one of the profile's.
+        Values that differ from the profile's, None for what this vehicle does not have; each name must be one of the
+        profile's.
     """
 
-    def __init__(self, autopilot: Autopilot, given: Mapping[str, float] | None = None) -> None:
+    def __init__(self, autopilot: Autopilot, given: Mapping[str, float | None] | None = None) -> None:
         self.revision = 0
         self._autopilot = autopilot
         self._values = dict(sorted(vehicle_profile(autopilot).parameters.items()))
         for name, value in (given or {}).items():
             if name not in self._values:
                 raise ValueError(f"expected a parameter of the simulated {autopilot.value}, got '{name}'")
-            self._values[name] = type(self._values[name])(value)
+            if value is None:
+                del self._values[name]
+            else:
+                self._values[name] = type(self._values[name])(value)
+
+    def values(self) -> dict[str, float]:
+        """All of them by name, as they are now."""
+        return dict(self._values)
 
     def __getitem__(self, name: str) -> float:
         return self._values[name]

@@ -84,7 +84,7 @@ class SimulatedVehicle:
     home_enu_m
         Where the vehicle takes its home to be; where it stands, if None.
     parameters
-        Values that differ from those of `data/simulator.toml`.
+        Values that differ from those of `data/simulator.toml`, None for what the vehicle does not have.
     control_step_s
         Simulated time between two decisions of the autopilot.
     is_ready
@@ -97,7 +97,7 @@ class SimulatedVehicle:
         airframe: Airframe,
         origin: Origin,
         home_enu_m: Vec3 | None = None,
-        parameters: Mapping[str, float] | None = None,
+        parameters: Mapping[str, float | None] | None = None,
         address: Address = VEHICLE,
         control_step_s: float = CONTROL_STEP_S,
         unix_start_s: float = UNIX_START_S,

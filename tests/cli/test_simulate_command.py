@@ -2,6 +2,7 @@
 
 import json
 import threading
+from contextlib import contextmanager
 
 import pytest
 
@@ -81,7 +82,8 @@ def test_wishes_are_understood_together():
         (("--link", "tcp:"), "expected KIND:HOST:PORT"),
         (("--link", "serial:/dev/nothing:fast"), "expected serial:DEVICE:BAUD"),
         (("--link", "serial:/dev/nothing:57600"), "this could be a real aircraft"),
-        (("--link", "udp:127.0.0.1:14550"), "this could be a real aircraft"),
+        (("--take-off",), "are for --link URL"),
+        (("--set-parameters",), "are for --link URL"),
         (("--link", "tcp:127.0.0.1:5760", "--wind", 3), "are for --link sim"),
         (("--link", "tcp:127.0.0.1:1"), "cannot be opened"),
     ],
@@ -120,22 +122,61 @@ def test_the_flight_may_not_replace_the_plan(reflight, pane):
     assert (pane / "plan.json").read_bytes() == before
 
 
-@pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
-def test_a_vehicle_at_a_link_is_flown_and_logged(fly, pane, tmp_path, autopilot):
+@contextmanager
+def vehicle_at_a_port(pane, autopilot, forgets=(), home_up_m=0.0):
+    """A vehicle of the pane's plan that serves a port of this machine; it may not know some parameters."""
     plan, model = read_plan(pane / "plan.json"), read_site(pane / "site.json")
-    airframe, _ = make_airframe(plan, model, plan.sorties[0])
-    vehicle = SimulatedVehicle(autopilot, airframe, model.site.origin, is_ready=True)
+    x, y, z = model.site.home_enu_m
+    airframe, _ = make_airframe(plan, model, plan.sorties[0], home_enu_m=(x, y, z + home_up_m))
+    without = dict.fromkeys(forgets)
+    vehicle = SimulatedVehicle(autopilot, airframe, model.site.origin, parameters=without, is_ready=True)
     link = open_link("tcpin:127.0.0.1:0", VEHICLE)
     stop = StopRequest()
     thread = threading.Thread(target=serve, args=(vehicle, [link], 50.0, stop))
     thread.start()
     try:
-        url = f"tcp:127.0.0.1:{link.channel.port}"
-        done = fly("--link", url, "--autopilot", autopilot.value, "--logs", tmp_path / "logs", "--json")
+        yield vehicle, f"tcp:127.0.0.1:{link.channel.port}"
     finally:
         stop.request()
         thread.join()
         link.close()
+
+
+@pytest.mark.parametrize("autopilot", list(Autopilot))
+def test_an_address_of_this_machine_is_no_simulation(fly, pane, tmp_path, autopilot):
+    """Routers listen there: only what the vehicle says of itself counts, and nothing is set on any other."""
+    forgets = ("SIM_SPEEDUP",) if autopilot is Autopilot.ARDUPILOT else ("SYS_HITL",)
+    with vehicle_at_a_port(pane, autopilot, forgets) as (vehicle, url):
+        before = vehicle.parameters.values()
+        error = fly("--link", url).error
+        assert "does not say that it is a simulation: this could be a real aircraft" in error
+        assert "add --take-off" in error
+        assert vehicle.parameters.values() == before
+        assert not vehicle.modes.is_armed
+        assert len(vehicle.stores.mission) == 0
+    assert not (tmp_path / "f.json").exists()
+
+
+@pytest.mark.parametrize("agrees", [False, True])
+def test_parameters_of_a_vehicle_that_may_be_real_are_set_where_the_pilot_agrees(fly, pane, agrees):
+    with vehicle_at_a_port(pane, Autopilot.PX4, ("SYS_HITL",)) as (vehicle, url):
+        before = vehicle.parameters.values()
+        done = fly("--link", url, "--take-off", "--json", *(["--set-parameters"] if agrees else []))
+        changed = {name for name, value in vehicle.parameters.values().items() if value != before[name]}
+    notes = [note["text"] for note in done.json["notes"][0] if note["code"] == "parameter"]
+    if agrees:
+        assert "RTL_RETURN_ALT" in changed
+        assert any("was 60 and is" in text for text in notes)
+    else:
+        assert not changed
+        assert any("RTL_RETURN_ALT is 60; the plan was made for" in text for text in notes)
+
+
+@pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
+def test_a_vehicle_at_a_link_is_flown_and_logged(fly, pane, tmp_path, autopilot):
+    model = read_site(pane / "site.json")
+    with vehicle_at_a_port(pane, autopilot) as (_, url):
+        done = fly("--link", url, "--autopilot", autopilot.value, "--logs", tmp_path / "logs", "--json")
     assert (done.json["n_taken"], done.json["link"]) == (6, url)
     (log,) = (tmp_path / "logs").iterdir()
     assert [str(log)] == done.json["logs"]

@@ -88,7 +88,7 @@ class Toy:
         self.has_flown = False
         self.out: deque = deque()
         self.commands = []
-        self.boot_s = 0.0
+        self.boot_s = -60.0  # it was switched on a minute ago
         self.tells_all = True
         self.texts = []
 

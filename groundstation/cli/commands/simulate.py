@@ -24,8 +24,9 @@ EPILOG = """effects:
   Names are printed with each flight, such as gnss-noise, multipath, gimbal-lag.
 
 a vehicle at a link:
-  --link tcp:127.0.0.1:5760  a simulation of ArduPilot or PX4 on this machine. It is set up, armed and started.
-  Whatever else is named takes off only with --take-off.
+  --link tcp:127.0.0.1:5760  a simulation of ArduPilot or PX4. It is set up, armed and started.
+  A vehicle that does not say itself that it is a simulation takes off only with --take-off, wherever it is: programs
+  on this machine pass links on to aircraft. Its parameters are compared, and set only with --set-parameters.
 
 examples:
   simulate office.plan.json office.site.json -o office.flight.json
@@ -36,7 +37,8 @@ FIXES: dict[str, FixKind] = {"rtk": "rtk-fixed", "float": "rtk-float", "single":
 SITL_SPEEDUP = 10.0
 """Ten times is flown the same as real time, and leaves the link's time-outs room."""
 
-LOCAL_HOSTS = ("127.0.0.1", "localhost", "[::1]")
+MAY_BE_REAL = "this could be a real aircraft, and 'simulate' takes off by itself; add --take-off if it may"
+NO_SIMULATION = f"the vehicle does not say that it is a simulation: {MAY_BE_REAL}; nothing was changed on it"
 
 
 def add_parser(subparsers: Any) -> None:
@@ -65,6 +67,11 @@ def add_parser(subparsers: Any) -> None:
     add("--sitl", type=Path, metavar="BINARY", help="start this arducopter and fly it")
     add("--sitl-defaults", type=Path, metavar="PARM", help="more parameters for it, such as copter.parm")
     add("--take-off", action="store_true", help="let the vehicle at the link take off, wherever it is")
+    add(
+        "--set-parameters",
+        action="store_true",
+        help="set its parameters as the plan needs them; else they are compared",
+    )
     add("--signed", action="store_true", help="sign the link with this computer's key ('signing set')")
     add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
     add("--json", action="store_true", help="print one JSON object instead of text")
@@ -119,6 +126,8 @@ def _wish(options: argparse.Namespace) -> FlightWish:
     is_simulated = options.link == SIMULATED
     if not is_simulated:
         _check_link(options)
+    elif options.set_parameters or options.take_off:
+        raise InputError("--take-off and --set-parameters are for --link URL; nothing real moves in this simulation")
     elif options.signed:
         raise InputError("--signed: is for --link URL; the simulation in this program has no link to listen to")
     wind_m_s = options.wind
@@ -133,7 +142,8 @@ def _wish(options: argparse.Namespace) -> FlightWish:
         effects=effect_wishes(options.effects),
         seed=checked_seed(options.seed),
         speedup=options.speedup,
-        sets_parameters=not is_simulated,
+        simulations_only="" if is_simulated or options.take_off else NO_SIMULATION,
+        sets_parameters=options.set_parameters,
         log_folder=None if is_simulated else (options.logs or options.out.parent / "logs"),
         signer=link_signer() if options.signed else None,
     )
@@ -143,15 +153,11 @@ def _check_link(options: argparse.Namespace) -> None:
     """Refuse what would be ignored, and to start what may be an aircraft."""
     from missions.mavlink.link import parsed_url
 
-    kind, host, _ = parsed_url(options.link)
+    kind, _, _ = parsed_url(options.link)
     if options.effects or options.wind is not None or options.speedup is not None:
         raise InputError("--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own")
-    is_here = kind in ("tcp", "udpout") and host in LOCAL_HOSTS
-    if not is_here and not options.take_off:
-        raise InputError(
-            f"--link {options.link}: this could be a real aircraft, and 'simulate' takes off by itself; add --take-off "
-            "if it may (a simulation on this machine, such as tcp:127.0.0.1:5760, needs no leave)"
-        )
+    if kind == "serial" and not options.take_off:
+        raise InputError(f"--link {options.link}: {MAY_BE_REAL}")
 
 
 def effect_wishes(texts: list[str]) -> dict[str, Wish]:
