@@ -7,6 +7,8 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from missions.build import missions_from_plan
 from missions.dji.write import LinkLoss
 from missions.mavlink.autopilots import Autopilot
@@ -15,8 +17,9 @@ from planning.errors import MissionError
 from planning.findings import Finding, Severity
 from planning.frames import Vec3
 from planning.plan import Plan
-from planning.rally import clear_height_z_m
+from planning.rally import CLEARANCE_M, clear_height_z_m, return_height
 from planning.site import Origin, SiteModel
+from planning.space import unchecked_space
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,9 +58,6 @@ class EncodedFiles:
 
 DEFAULT_OPTIONS = ExportOptions()
 
-CLEARANCE_M = 10.0
-"""How far above the highest point of the site aircraft return."""
-
 
 def encode(
     plan: Plan,
@@ -76,7 +76,7 @@ def encode(
     missions = missions_from_plan(plan, origin, home_enu_m)
     match file_format:
         case FileFormat.DJI_KMZ:
-            return _encode_dji(missions, options)
+            return _encode_dji(plan, missions, options)
         case FileFormat.MAVLINK_PLAN | FileFormat.MAVLINK_WPL:
             return _encode_mavlink(missions, file_format, options)
         case FileFormat.KML:
@@ -89,13 +89,13 @@ def encode(
             return EncodedFiles((csv_bytes(missions),), ())
 
 
-def _encode_dji(missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
+def _encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
     from missions.dji.check import check_dji
     from missions.dji.container import parts_of_kmz
     from missions.dji.write import DjiOptions, kmz_bytes
 
     created_ms = round(options.clock() * 1000.0)
-    rth_height_m, findings = return_height(missions, options)
+    rth_height_m, findings = dji_return_height(plan, missions, options)
     dji_options = DjiOptions(rth_height_m, created_ms, options.height_reference, options.link_loss)
     contents = [kmz_bytes(mission, dji_options) for mission in missions]
     for mission, content in zip(missions, contents, strict=True):
@@ -103,7 +103,7 @@ def _encode_dji(missions: Sequence[Mission], options: ExportOptions) -> EncodedF
     return EncodedFiles(tuple(contents), tuple(findings))
 
 
-def return_height(missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:
+def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:
     """Height above take-off at which an aircraft that leaves its mission flies home, and what there is to say of it."""
     path_m = max(m.height_above_takeoff_m(w.position) for m in missions for w in m.waypoints)
     if options.site is None:
@@ -111,10 +111,20 @@ def return_height(missions: Sequence[Mission], options: ExportOptions) -> tuple[
             return options.rth_height_m, []
         text = "the return height clears the path only, because the site was not given; check that it clears everything"
         return path_m, [Finding(Severity.WARNING, "return-height", text, "", path_m, None, "m")]
-    home_z = options.site.site.home_enu_m[2]
-    top_m = clear_height_z_m(options.site, 0.0) - home_z
+    space = unchecked_space(options.site, plan.constraints.min_distance_m)
+    own = return_height(options.site, space, [np.array(sortie.path_enu_m, np.float64) for sortie in plan.sorties])
+    # What speaks against the height that the program chooses is said by the check of the plan.
     if options.rth_height_m is None:
-        return math.ceil(max(path_m, top_m + CLEARANCE_M)), []
+        return own.above_home_m, []
+    top_m = clear_height_z_m(options.site, 0.0) - options.site.site.home_enu_m[2]
+    if options.rth_height_m > own.ceiling_above_home_m:
+        text = (
+            f"the return height is above the airspace: expected at most {own.ceiling_above_home_m:.1f} m above "
+            f"take-off, got {options.rth_height_m:g} m; {own.above_home_m:g} m are right"
+        )
+        return options.rth_height_m, [
+            Finding(Severity.ERROR, "return-height", text, "", options.rth_height_m, own.ceiling_above_home_m, "m")
+        ]
     if options.rth_height_m < top_m:
         text = (
             f"the return height is below the highest point of the site: a returning aircraft may hit it; expected "

@@ -1,10 +1,10 @@
-"""Rally points: whether aircraft can land there, and the ways on which aircraft return to them or to home."""
+"""How aircraft return by themselves: the height, and the ways to home or to rally points, where they can be landed."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,12 @@ Array = NDArray[np.float64]
 
 BELOW_GROUND_M = 0.01
 """Heights drawn by hand are rounded to 1 mm."""
+
+CLEARANCE_M = 10.0
+"""How far above the highest point of a site aircraft return, where the airspace leaves room for it."""
+
+RETURN_TOLERANCE_M = 0.5
+"""How much nearer than the minimum distance a return may come before it is spoken of: it is flown once, and slowly."""
 
 SAMPLE_M = 2.0
 """Distance between the places of a path from which a return is looked at."""
@@ -167,3 +173,61 @@ def clear_height_z_m(model: SiteModel, distance_m: float) -> float:
     tops = [float(mesh.vertices_enu_m[:, 2].max()) for mesh in meshes if len(mesh.vertices_enu_m)]
     panels = [corner[2] for panel in model.site.panels for corner in panel.corners_enu_m]
     return max([*tops, *panels]) + distance_m
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnHeight:
+    """How high aircraft climb before they return, and what comes of it.
+
+    Parameters
+    ----------
+    z_m, above_home_m
+        In the site's frame, and above home: what autopilots are told.
+    wanted_above_home_m
+        What would clear everything on the site by `CLEARANCE_M`, or by the minimum distance where that is more.
+    ceiling_above_home_m
+        Where the airspace ends.
+    way
+        The ways home from everywhere on the paths, at this height.
+    """
+
+    z_m: float
+    above_home_m: float
+    wanted_above_home_m: float
+    ceiling_above_home_m: float
+    way: ReturnWay
+
+
+def return_height(model: SiteModel, space: FreeSpace, paths_enu_m: Sequence[Array]) -> ReturnHeight:
+    """The height at which aircraft return to home from paths: above everything, but never above the airspace.
+
+    An aircraft that is higher already returns where it is, on all autopilots; so a path may be higher than this.
+
+    Parameters
+    ----------
+    paths_enu_m
+        Each of shape (k, 3), k >= 1; at least one.
+
+    Raises
+    ------
+    ValueError
+        There is no path.
+    """
+    if not paths_enu_m:
+        raise ValueError("paths_enu_m: expected at least one path, got none")
+    home_z_m, ceiling_z_m = float(space.home_enu_m[2]), float(space.high_enu_m[2])
+    wanted_m = clear_height_z_m(model, max(CLEARANCE_M, space.min_distance_m)) - home_z_m
+    height_m = float(math.ceil(round(wanted_m, 6)))
+    ceiling_m = ceiling_z_m - home_z_m
+    if height_m > ceiling_m:
+        height_m = math.floor(round(10.0 * ceiling_m, 6)) / 10.0
+    home: Vec3 = (float(space.home_enu_m[0]), float(space.home_enu_m[1]), home_z_m)
+    upper_m = 2.0 * space.min_distance_m + CLEARANCE_M
+    ways = [return_way(space, path, (home,), home_z_m + height_m, upper_m=upper_m) for path in paths_enu_m]
+    way = ReturnWay(
+        min(way.gap_m for way in ways),
+        any(way.crosses_no_fly for way in ways),
+        sum(way.n_elsewhere for way in ways),
+        sum(way.n_places for way in ways),
+    )
+    return ReturnHeight(home_z_m + height_m, height_m, wanted_m, ceiling_m, way)

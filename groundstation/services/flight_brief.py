@@ -10,7 +10,7 @@ from groundstation.services.finding_texts import by_severity
 from groundstation.services.waypoints import WaypointRow, waypoint_rows
 from missions.build import missions_from_plan
 from missions.dji.write import LinkLoss
-from missions.encode import ExportOptions, return_height
+from missions.encode import ExportOptions, dji_return_height
 from planning.errors import GroundStationError
 from planning.findings import Finding, Severity, is_flyable
 from planning.plan import Plan
@@ -189,5 +189,5 @@ def _return_height(
         missions = missions_from_plan(plan, site.origin, site.home_enu_m)
     except GroundStationError as error:
         return None, (Finding(Severity.ERROR, "no-mission", f"no mission can be made of this plan: {error}"),)
-    height_m, findings = return_height(missions, options)
+    height_m, findings = dji_return_height(plan, missions, options)
     return height_m, tuple(findings)

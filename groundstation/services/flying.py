@@ -68,6 +68,10 @@ class FlightWish:
         At a link: why only a vehicle is flown that says that it is a simulation; empty where any is.
     sets_parameters
         At a link: set the parameters of any vehicle; else those of a simulation, and tell what differs.
+    overrules
+        At a link: codes of checks before take-off that the pilot overrules.
+    raised_m
+        At a link: how much lower than planned the aircraft takes off; its heights above take-off are as much larger.
     log_folder
         For telemetry logs, which a flight over a link always has; None in the simulation.
     signer
@@ -83,6 +87,8 @@ class FlightWish:
     simulations_only: str = ""
     sets_parameters: bool = False
     needs_rtk: bool = False
+    overrules: frozenset[str] = frozenset()
+    raised_m: float = 0.0
     log_folder: Path | None = None
     signer: Signer | None = None
 
@@ -178,7 +184,7 @@ def fly_plan(
         if flown and between is not None and wish.link != SIMULATED:
             between(mission.number)
         try:
-            record, sortie, error = case.fly(sortie_orders(plan, site_model, mission))
+            record, sortie, error = case.fly(sortie_orders(plan, site_model, mission, wish.raised_m))
         except GroundStationError as failure:
             # A real flight cannot be flown again for its record.
             if not flown or wish.link == SIMULATED or isinstance(failure, OperationCancelled):
@@ -285,6 +291,7 @@ class _Case:
             simulations_only=wish.simulations_only,
             sets_parameters=wish.sets_parameters,
             needs_rtk=wish.needs_rtk,
+            overrules=wish.overrules,
         )
         run, outcome, log = fly_link(
             orders, wish.link, options, wish.log_folder, self.show, signer=wish.signer, monitor=self.monitor

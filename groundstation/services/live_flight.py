@@ -42,6 +42,7 @@ from groundstation.services.live_sortie import LiveSortie
 from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
 from groundstation.vehicle.run_records import Phase, RunOptions
+from groundstation.vehicle.setup import ParameterChange
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.telemetry import LocalFrame
 from groundstation.vehicle.watch import PHOTO_LATE_S, Watch
@@ -56,6 +57,10 @@ VIEW_EVERY_S = 0.1
 
 MAX_BATCH = 200
 """Messages taken before the flight is shown again: none is behind by more than some milliseconds."""
+
+
+_Asked = Request | LiveSortie | FlightSettings | tuple[ParameterChange, ...] | str
+"""What crosses to the flight's thread; a text is the code of a check that the pilot overrules."""
 
 
 class LiveFlight:
@@ -87,7 +92,7 @@ class LiveFlight:
     ) -> None:
         self._connection, self._publish = connection, publish
         self._settings, self._clock = settings, clock
-        self._asked: queue.SimpleQueue[Request | LiveSortie | FlightSettings] = queue.SimpleQueue()
+        self._asked: queue.SimpleQueue[_Asked] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._live, name="live-flight", daemon=True)
         self._is_closing = False
         self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock)
@@ -123,6 +128,14 @@ class LiveFlight:
     def set_settings(self, settings: FlightSettings) -> None:
         """The pilot decided otherwise; parameters are set with the next upload."""
         self._asked.put(settings)
+
+    def set_parameters(self, changes: tuple[ParameterChange, ...]) -> None:
+        """The pilot agrees that these parameters of the vehicle are set; passed over in flight."""
+        self._asked.put(changes)
+
+    def overrule(self, code: str) -> None:
+        """The pilot overrules a check before take-off, until the next upload."""
+        self._asked.put(code)
 
     def close(self, timeout_s: float = 10.0) -> bool:
         """Disconnect, keep what was flown; True where that was done in time. The aircraft goes on with what it does."""
@@ -193,6 +206,9 @@ class LiveFlight:
             elif isinstance(asked, LiveSortie):
                 if self._run is None or self._run.phase in BEFORE_TAKE_OFF:
                     self._put_in_hand(asked, self._machine.state)
+            elif not isinstance(asked, Request):
+                if self._run is not None and self._run.phase in BEFORE_TAKE_OFF:
+                    self._agree(self._run, asked)
             elif asked not in self._now().may:
                 self._publish(Answered(asked, False, REFUSALS[asked]))
             else:
@@ -202,6 +218,12 @@ class LiveFlight:
         self._settings = settings
         if self._run is not None:
             self._run.options = replace(self._run.options, needs_rtk=settings.needs_rtk)
+
+    def _agree(self, run: FlightRun, asked: str | tuple[ParameterChange, ...]) -> None:
+        if isinstance(asked, str):
+            run.options = replace(run.options, overrules=run.options.overrules | {asked})
+        else:
+            run.set_parameters(asked)
 
     def _do(self, request: Request) -> None:
         if request is Request.DISCONNECT:
@@ -218,7 +240,7 @@ class LiveFlight:
     def _begin_run(self) -> None:
         settings, connection = self._settings, self._connection
         options = RunOptions(
-            sets_parameters=settings.sets_parameters or connection.is_simulated,
+            sets_parameters=connection.is_simulated,
             starts_itself=False,
             needs_rtk=settings.needs_rtk,
         )
@@ -312,7 +334,10 @@ class LiveFlight:
         """The flight as it stands."""
         run, state, now_s = self._run, self._machine.state, self._clock()
         orders, on_board = self._sortie.orders, OnBoard() if run is None else run.on_board
-        checks = preflight_checks(state, orders, on_board, now_s, needs_rtk=self._settings.needs_rtk)
+        overrules: frozenset[str] = frozenset() if run is None else run.options.overrules
+        checks = preflight_checks(
+            state, orders, on_board, now_s, needs_rtk=self._settings.needs_rtk, overrules=overrules
+        )
         phase, watch = (None, Watch()) if run is None else (run.phase, run.watch)
         link = link_state(state, now_s, is_open=self._wire.opened is not None)
         missing = [view_id for view_id, since_s in watch.passed_s if now_s - since_s > PHOTO_LATE_S]

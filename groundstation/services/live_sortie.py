@@ -40,7 +40,12 @@ def is_same_place(one: Site, other: Site) -> bool:
 
 
 def prepare_sortie(
-    plan: Plan, site_model: SiteModel, number: int, known: Case | None = None, monitor: Monitor = QUIET
+    plan: Plan,
+    site_model: SiteModel,
+    number: int,
+    known: Case | None = None,
+    raised_m: float = 0.0,
+    monitor: Monitor = QUIET,
 ) -> LiveSortie:
     """A sortie of a plan, counted from 1, ready to be flown.
 
@@ -48,6 +53,8 @@ def prepare_sortie(
     ----------
     known
         The case of the same plan, where it was measured already.
+    raised_m
+        How much lower than planned the aircraft takes off.
 
     Raises
     ------
@@ -66,7 +73,7 @@ def prepare_sortie(
             f"the plan breaks {len(errors)} pre-flight rules, such as: {first}; correct it before it is flown"
         )
     monitor.report("preparing the flight", 1, 2)
-    return LiveSortie(case, sortie_orders(plan, site_model, missions[number - 1]))
+    return LiveSortie(case, sortie_orders(plan, site_model, missions[number - 1], raised_m))
 
 
 @dataclass(frozen=True, slots=True)

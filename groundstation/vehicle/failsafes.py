@@ -6,6 +6,7 @@ which never returns above the fence's height. PX4: parameter reference 1.16.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum, auto
@@ -24,7 +25,8 @@ NAMES = {
         *("RALLY_INCL_HOME", *fence_limits.NAMES[Autopilot.ARDUPILOT]),
     ),
     Autopilot.PX4: (
-        *("NAV_DLL_ACT", "COM_DL_LOSS_T", "COM_DLL_EXCEPT", "RTL_RETURN_ALT", "RTL_TYPE"),
+        *("NAV_DLL_ACT", "COM_DL_LOSS_T", "COM_DLL_EXCEPT"),
+        *("RTL_RETURN_ALT", "RTL_TYPE", "RTL_CONE_ANG", "RTL_DESCEND_ALT"),
         *fence_limits.NAMES[Autopilot.PX4],
     ),
 }
@@ -161,9 +163,13 @@ def return_of(autopilot: Autopilot, values: Mapping[str, float], orders: SortieO
         return Return(height_m, name, places, values.get("RTL_CONE_SLOPE", 0.0))
     if "RTL_RETURN_ALT" not in values:
         return None
+    angle_deg = values.get("RTL_CONE_ANG", 0.0)
+    slope = 1.0 / math.tan(math.radians(angle_deg)) if 0.0 < angle_deg < 90.0 else 0.0
+    is_flat = angle_deg >= 90.0 and "RTL_DESCEND_ALT" in values
+    name = "RTL_DESCEND_ALT" if is_flat else "RTL_RETURN_ALT"
     kind = int(values.get("RTL_TYPE", 0.0))
     places = (home,) if kind in HOME_ONLY or not rally else rally if kind in RALLY_FIRST else (home, *rally)
-    return Return(values["RTL_RETURN_ALT"], "RTL_RETURN_ALT", places)
+    return Return(values[name], name, places, slope)
 
 
 def _return(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Iterator[PreflightCheck]:
@@ -188,16 +194,23 @@ def _return(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrd
     if not n_rally or found.destinations_enu_m == (orders.home_enu_m,):
         where = f"{found.height_m:g} m above take-off, to home"
     advice = f"set {found.height_name} so that it returns {orders.return_height_m:g} m above take-off"
+    ceiling_m = float(around.space.high_enu_m[2]) - orders.home_enu_m[2]
+    if found.height_m > ceiling_m + DISTANCE_TOLERANCE_M:
+        text = f"it returns above the airspace, which ends {ceiling_m:.1f} m above take-off ({where}): {advice}"
+        yield PreflightCheck("return", Verdict.BAD, text, found.height_m, ceiling_m, "m")
+        return
     if way.gap_m <= 0.0:
         text = f"it returns straight through the building or an obstacle ({where}): {advice}"
     elif way.gap_m < limit_m - DISTANCE_TOLERANCE_M:
         text = f"it returns {way.gap_m:.1f} m from the building or an obstacle ({where}): {advice}"
     elif way.crosses_no_fly:
         text = f"it returns across a no-fly zone ({where}); fly it back by hand"
+        yield PreflightCheck("return", Verdict.WARN, text, way.gap_m, limit_m, "m")
+        return
     else:
         yield PreflightCheck("return", Verdict.OK, f"it returns {where}", way.gap_m, limit_m, "m")
         return
-    yield PreflightCheck("return", Verdict.WARN, text, way.gap_m, limit_m, "m")
+    yield PreflightCheck("return", Verdict.BAD, text, way.gap_m, limit_m, "m")
 
 
 def _fence(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Iterator[PreflightCheck]:

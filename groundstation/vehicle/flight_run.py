@@ -188,8 +188,15 @@ class FlightRun:
     def checks(self) -> tuple[PreflightCheck, ...]:
         """The pre-flight list: now, and once it was started as it was then."""
         if self.phase not in (Phase.STARTING, Phase.FLYING, Phase.ENDED):
-            needs_rtk = self.options.needs_rtk
-            self._checks = preflight_checks(self.state, self.orders, self.on_board, self.now_s, needs_rtk=needs_rtk)
+            options = self.options
+            self._checks = preflight_checks(
+                self.state,
+                self.orders,
+                self.on_board,
+                self.now_s,
+                needs_rtk=options.needs_rtk,
+                overrules=options.overrules,
+            )
         return self._checks
 
     def note(self, code: str, text: str) -> None:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from groundstation.vehicle.surroundings import Surroundings
-from missions.encode import CLEARANCE_M
 from missions.mavlink.areas import FencePolygon, fence_items, rally_items, rally_points
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.fence import fence_polygons
@@ -16,10 +17,12 @@ from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import to_wire
 from missions.model import GeoPoint, HeightReference, Mission
+from planning.errors import MissionError
 from planning.frames import Vec3
 from planning.plan import Plan
-from planning.rally import clear_height_z_m
+from planning.rally import return_height
 from planning.site import Site, SiteModel
+from planning.space import TAKEOFF_CLIMB_M, unchecked_space
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +45,8 @@ class SortieOrders:
         By autopilot, as photos are triggered by other items.
     battery_needed
         Part of a full battery that the sortie takes, reserve included.
+    raised_m
+        How much lower than the site's home the aircraft takes off: its heights above take-off are as much larger.
     """
 
     site: Site
@@ -53,6 +58,7 @@ class SortieOrders:
     battery_needed: float
     rally: tuple[GeoPoint, ...] = ()
     return_height_m: float = 0.0
+    raised_m: float = 0.0
 
     @property
     def home(self) -> GeoPoint:
@@ -62,7 +68,8 @@ class SortieOrders:
     @property
     def home_enu_m(self) -> Vec3:
         """The same in the site's frame."""
-        return self.site.home_enu_m
+        x, y, z = self.site.home_enu_m
+        return (x, y, z - self.raised_m)
 
 
 def first_seq(autopilot: Autopilot) -> int:
@@ -81,8 +88,21 @@ def rally_messages(orders: SortieOrders, autopilot: Autopilot) -> tuple[MissionI
     return to_wire(rally_items(orders.rally, orders.home), autopilot, MissionType.RALLY)
 
 
-def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission) -> SortieOrders:
-    """Orders for one of a plan's missions (`missions.build`)."""
+def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m: float = 0.0) -> SortieOrders:
+    """Orders for one of a plan's missions (`missions.build`).
+
+    Parameters
+    ----------
+    raised_m
+        Of `SortieOrders`: the aircraft flies the same places in space, from a take-off that is lower, or higher where
+        this is negative.
+
+    Raises
+    ------
+    MissionError
+        The aircraft stands so high that it would begin without a climb.
+    """
+    mission = _raised(mission, raised_m)
     items = {autopilot: mission_items(mission, autopilot, HeightReference.ABOVE_TAKEOFF) for autopilot in Autopilot}
     surroundings = {}
     for autopilot, of_autopilot in items.items():
@@ -91,8 +111,9 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission) -> Sortie
         surroundings[autopilot] = Surroundings.of_sortie(site_model, plan, mission.number, trigger_seqs)
     fences, _ = fence_polygons(mission, site_model.site.airspace.no_fly)
     needed = plan.rules.battery_reserve + mission.duration_s / plan.aircraft.endurance_s
-    site, highest_z_m = site_model.site, max(z for _, _, z in plan.sorties[mission.number - 1].path_enu_m)
-    clear_z_m = clear_height_z_m(site_model, max(CLEARANCE_M, plan.constraints.min_distance_m))
+    site = site_model.site
+    space = unchecked_space(site_model, plan.constraints.min_distance_m)
+    path = np.array(plan.sorties[mission.number - 1].path_enu_m, np.float64)
     return SortieOrders(
         site=site,
         number=mission.number,
@@ -102,5 +123,19 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission) -> Sortie
         surroundings=surroundings,
         battery_needed=needed,
         rally=rally_points(site),
-        return_height_m=math.ceil(max(highest_z_m, clear_z_m) - site.home_enu_m[2]),
+        return_height_m=return_height(site_model, space, [path]).above_home_m + raised_m,
+        raised_m=raised_m,
     )
+
+
+def _raised(mission: Mission, raised_m: float) -> Mission:
+    home = mission.takeoff
+    lowered = replace(home, height_ellipsoid_m=home.height_ellipsoid_m - raised_m)
+    ends = (mission.waypoints[0], mission.waypoints[-1]) if mission.waypoints else ()
+    climb_m = min((end.position.height_ellipsoid_m - lowered.height_ellipsoid_m for end in ends), default=math.inf)
+    if climb_m < TAKEOFF_CLIMB_M:
+        raise MissionError(
+            f"the flight would begin {climb_m:.1f} m above take-off, at least {TAKEOFF_CLIMB_M:g} m are needed; plan "
+            "it from where the aircraft stands"
+        )
+    return replace(mission, takeoff=lowered)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -11,10 +11,15 @@ from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.setup import ParameterChange, change_text
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
+from missions.heights import altitude_amsl_m as home_altitude_amsl_m
+from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.transfer.exchange import MissionType
 
 HOME_M = 3.0
 """How far from the planned home the aircraft may stand: it climbs where it is, and the plan's column has that room."""
+
+HOME_HEIGHT_M = 1.0
+"""How much higher or lower than the planned home it may stand: every height of the flight is counted from there."""
 
 PRE_ARM = "pre-arm checks"
 """Name of that bit in `data/vehicle.toml`."""
@@ -85,14 +90,27 @@ class OnBoard:
 
 
 def preflight_checks(
-    state: VehicleState, orders: SortieOrders, on_board: OnBoard, now_s: float, *, needs_rtk: bool
+    state: VehicleState,
+    orders: SortieOrders,
+    on_board: OnBoard,
+    now_s: float,
+    *,
+    needs_rtk: bool,
+    overrules: frozenset[str] = frozenset(),
 ) -> tuple[PreflightCheck, ...]:
-    """All checks, in the order in which they are shown."""
-    return (
+    """All checks, in the order in which they are shown.
+
+    Parameters
+    ----------
+    overrules
+        Codes that the pilot overruled.
+    """
+    checks = (
         _link(state, now_s),
         _position(state, now_s),
         _gnss(state, now_s, needs_rtk),
         _home(state, orders, now_s),
+        _home_height(state, orders),
         _battery(state, orders, now_s),
         *_sensors(state),
         _wind(state, orders),
@@ -101,6 +119,21 @@ def preflight_checks(
         *([_board("rally", "list of rally points", on_board.rally, on_board.doubt)] if orders.rally else []),
         *_parameters(on_board.changes),
         *on_board.failsafes,
+    )
+    return overruled(checks, overrules)
+
+
+OVERRULABLE = frozenset(("return", "home-height", "parameters"))
+"""Codes of checks that ground a flight until the pilot overrules them by typing the code."""
+
+
+def overruled(checks: Iterable[PreflightCheck], codes: frozenset[str]) -> tuple[PreflightCheck, ...]:
+    """Checks with those that the pilot overruled told as warnings."""
+    return tuple(
+        replace(check, verdict=Verdict.WARN, text=f"{check.text} (overruled)")
+        if check.verdict is Verdict.BAD and check.code in codes & OVERRULABLE
+        else check
+        for check in checks
     )
 
 
@@ -156,6 +189,43 @@ def _home(state: VehicleState, orders: SortieOrders, now_s: float) -> PreflightC
         text = f"the aircraft stands {away_m:.1f} m from the planned home; put it at {place}, or plan from here"
         return PreflightCheck("home", Verdict.BAD, text, away_m, HOME_M, "m")
     return PreflightCheck("home", Verdict.OK, f"{away_m:.1f} m from the planned home", away_m, HOME_M, "m")
+
+
+def stands_above_m(state: VehicleState, orders: SortieOrders, altitude_amsl_m: float) -> float:
+    """How far above the planned home an altitude lies that the vehicle tells, by its receiver's own geoid."""
+    geoid_m = None if state.fix is None else state.fix.value.geoid_m
+    if geoid_m is None:
+        return altitude_amsl_m - home_altitude_amsl_m(orders.home)
+    return altitude_amsl_m + geoid_m - orders.home.height_ellipsoid_m
+
+
+def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
+    """Where the aircraft stands, and from where it counts its heights: both are the height of the planned home."""
+    if state.motion is None or state.home_altitude_amsl_m is None:
+        return PreflightCheck("home-height", Verdict.WAIT, "how high the aircraft stands is not known yet")
+    stands_m = state.home_altitude_amsl_m + state.motion.value.height_above_home_m
+    above_m = stands_above_m(state, orders, stands_m)
+    accuracy_m = None if state.fix is None else state.fix.value.vertical_accuracy_m
+    told = "" if accuracy_m is None else f" (its GNSS height is good to {accuracy_m:.1f} m)"
+    if abs(above_m) > HOME_HEIGHT_M:
+        by_m, side, mend = abs(above_m), *(("lower", "raise") if above_m < 0.0 else ("higher", "lower"))
+        text = (
+            f"the aircraft stands {by_m:.1f} m {side} than the planned home{told}, and all of the flight would be: "
+            f"{mend} it by {by_m:.1f} m, or plan from here"
+        )
+        return PreflightCheck("home-height", Verdict.BAD, text, above_m, HOME_HEIGHT_M, "m")
+    counted_m = state.home_position_amsl_m
+    off_m = 0.0 if counted_m is None else stands_above_m(state, orders, counted_m)
+    if abs(off_m) > HOME_HEIGHT_M:
+        # ArduPilot sets its home anew when it is armed, and that is looked at again; PX4 takes off at once.
+        side = "higher" if off_m > 0.0 else "lower"
+        text = (
+            f"the vehicle's own home lies {abs(off_m):.1f} m {side} than the planned one: set it anew where it stands"
+        )
+        verdict = Verdict.WARN if state.autopilot is Autopilot.ARDUPILOT else Verdict.BAD
+        return PreflightCheck("home-height", verdict, text, off_m, HOME_HEIGHT_M, "m")
+    text = f"{abs(above_m):.1f} m {'above' if above_m >= 0.0 else 'below'} the planned home{told}"
+    return PreflightCheck("home-height", Verdict.OK, text, above_m, HOME_HEIGHT_M, "m")
 
 
 def _battery(state: VehicleState, orders: SortieOrders, now_s: float) -> PreflightCheck:

@@ -63,6 +63,8 @@ class RunOptions:
         Start without waiting for the pilot.
     needs_rtk
         Do not start without RTK, and say so when it is lost.
+    overrules
+        Codes of checks that shall not ground the flight (`preflight.OVERRULABLE`).
     connect_s, ready_s
         Longest waits for the first heartbeat, and for the pre-flight list.
     link_lost_s
@@ -74,6 +76,7 @@ class RunOptions:
     sets_parameters: bool = False
     starts_itself: bool = True
     needs_rtk: bool = False
+    overrules: frozenset[str] = frozenset()
     connect_s: float = 30.0
     ready_s: float = 180.0
     link_lost_s: float = 300.0

@@ -66,12 +66,17 @@ class Angles:
 
 @dataclass(frozen=True, slots=True)
 class GnssFix:
-    """What the GNSS receiver says of itself: MAVLink's GPS_FIX_TYPE; accuracies, 1 sigma, None where it says none."""
+    """What the GNSS receiver says of itself: MAVLink's GPS_FIX_TYPE; accuracies, 1 sigma, None where it says none.
+
+    `geoid_m` is how far its own geoid, from which it counts altitudes, lies above the ellipsoid; None where it does not
+    tell. Receivers carry coarse geoids, some metres from EGM96 in places.
+    """
 
     fix_type: int
     n_satellites: int
     horizontal_accuracy_m: float | None
     vertical_accuracy_m: float | None
+    geoid_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,8 +140,10 @@ class VehicleState:
         real time it runs ahead.
     photo_clock
         From the UNIX time of photos to the vehicle's own.
-    home_altitude_amsl_m
-        From where it counts heights above home, as its positions tell; PX4 corrects it in flight.
+    home_altitude_amsl_m, home_heard_s
+        From where it counts heights above home, as its positions tell, and when; PX4 corrects it in flight.
+    home_position_amsl_m
+        The same as HOME_POSITION tells it.
     camera
         Attitude of the camera as the gimbal reports it, against north and the horizon.
     wind_enu_m_s
@@ -159,6 +166,8 @@ class VehicleState:
     landed: Timed[Landed] | None = None
     motion: Timed[Motion] | None = None
     home_altitude_amsl_m: float | None = None
+    home_heard_s: float = 0.0
+    home_position_amsl_m: float | None = None
     attitude: Timed[Angles] | None = None
     camera: Timed[Angles] | None = None
     fix: Timed[GnssFix] | None = None

@@ -16,7 +16,7 @@ from groundstation.vehicle.failsafes import NAMES, failsafe_checks
 from groundstation.vehicle.modes import MISSION_MODE, set_mode_command
 from groundstation.vehicle.parameter_reads import ParameterReads
 from groundstation.vehicle.parameters import ParameterCall, ParameterOutcome, ParameterStatus
-from groundstation.vehicle.preflight import Verdict, is_ready
+from groundstation.vehicle.preflight import HOME_HEIGHT_M, Verdict, is_ready, overruled, stands_above_m
 from groundstation.vehicle.recorder import Recorder
 from groundstation.vehicle.setup import (
     ParameterChange,
@@ -43,6 +43,9 @@ REBOOT_AUTOPILOT = 1.0
 
 ARMING_S, ARMING_PAUSE_S = 60.0, 2.0
 """How long arming is tried while the autopilot still has something to say against it."""
+
+HOME_S = 2.0
+"""Wait for a position after arming."""
 
 MODE_S = 5.0
 TAKE_OFF_S = 60.0
@@ -270,6 +273,7 @@ def _start(run: FlightRun) -> Steps:
         yield from _arm(run)
         if run.was_ordered_away:
             return
+        yield from _wait_for_home(run)
         yield from _stop_where_doubted(run)
         yield from _set_mode(run, MISSION_MODE[autopilot])
         yield from _stop_where_doubted(run)
@@ -295,26 +299,41 @@ def _start(run: FlightRun) -> Steps:
     run.note("started", f"sortie {run.orders.number}")
 
 
-def _refuse_what_is_not_ours(run: FlightRun) -> None:
-    """Raise where what is on board is not what was uploaded, or not known."""
+def _refuse_what_is_not_ours(run: FlightRun, *, is_armed: bool = False) -> None:
+    """Raise where what is on board is not what was uploaded, or not known; armed, where its home has moved away."""
     for ours in run.lists:
         if run.on_board.of(ours.route.mission_type) is False:
             raise LinkRejected(
                 f"the {ours.what} on the vehicle is not the one that was uploaded; it was not started: upload it again"
             )
-    bad = [check.text for check in run.on_board.failsafes if check.verdict is Verdict.BAD]
+    checks = overruled(run.on_board.failsafes, run.options.overrules)
+    bad = [check.text for check in checks if check.verdict is Verdict.BAD]
     if bad:
         raise LinkRejected(f"{bad[0]}; it was not started")
+    home_m = run.state.home_altitude_amsl_m
+    off_m = 0.0 if home_m is None else stands_above_m(run.state, run.orders, home_m)
+    if is_armed and abs(off_m) > HOME_HEIGHT_M and "home-height" not in run.options.overrules:
+        side = "higher" if off_m > 0.0 else "lower"
+        raise LinkRejected(
+            f"the vehicle counts its heights from {abs(off_m):.1f} m {side} than the planned home; it was not started: "
+            "set its home anew where it stands"
+        )
     if run.on_board.doubt:
         raise LinkRejected(
             f"what is on the vehicle is not known ({run.on_board.doubt}); it was not started: wait until it is read"
         )
 
 
+def _wait_for_home(run: FlightRun) -> Steps:
+    """Wait for the height from which an armed vehicle counts: ArduPilot sets its home anew with arming."""
+    armed_s = run.now_s
+    yield from _wait(run, lambda state: state.home_heard_s > armed_s, HOME_S)
+
+
 def _stop_where_doubted(run: FlightRun) -> Steps:
     """Disarm a vehicle that stands armed on the ground, where its mission may be another one by now."""
     try:
-        _refuse_what_is_not_ours(run)
+        _refuse_what_is_not_ours(run, is_armed=True)
     except LinkRejected:
         _, address = vehicle_of(run)
         command = CommandLong(address.system, address.component, MAV_CMD_COMPONENT_ARM_DISARM, 0.0)

@@ -126,7 +126,8 @@ def _position(
     above_m = message.relative_alt / 1000.0
     velocity = (message.vy / 100.0, message.vx / 100.0, -message.vz / 100.0)
     motion = Motion(frame.enu_m(message.lat, message.lon, above_m), velocity, above_m)
-    return replace(state, motion=Timed(motion, now_s), home_altitude_amsl_m=message.alt / 1000.0 - above_m)
+    home_m = message.alt / 1000.0 - above_m
+    return replace(state, motion=Timed(motion, now_s), home_altitude_amsl_m=home_m, home_heard_s=now_s)
 
 
 def _attitude(state: VehicleState, message: messages.Attitude, now_s: float, _: LocalFrame) -> VehicleState:
@@ -157,7 +158,9 @@ def _gimbal(
 
 def _gps(state: VehicleState, message: messages.GpsRawInt, now_s: float, _: LocalFrame) -> VehicleState:
     h_acc, v_acc = (value / 1000.0 if value > 0 else None for value in (message.h_acc, message.v_acc))
-    return replace(state, fix=Timed(GnssFix(message.fix_type, message.satellites_visible, h_acc, v_acc), now_s))
+    geoid_m = (message.alt_ellipsoid - message.alt) / 1000.0 if message.alt_ellipsoid != 0 else None
+    fix = GnssFix(message.fix_type, message.satellites_visible, h_acc, v_acc, geoid_m)
+    return replace(state, fix=Timed(fix, now_s))
 
 
 def _sys_status(state: VehicleState, message: messages.SysStatus, now_s: float, _: LocalFrame) -> VehicleState:
@@ -223,7 +226,8 @@ def _lacking(flags: int) -> str:
 def _home(state: VehicleState, message: messages.HomePosition, now_s: float, frame: LocalFrame) -> VehicleState:
     if not _on_globe(message.latitude, message.longitude):
         return state
-    return replace(state, home_enu_m=Timed(frame.enu_m(message.latitude, message.longitude, 0.0), now_s))
+    place = Timed(frame.enu_m(message.latitude, message.longitude, 0.0), now_s)
+    return replace(state, home_enu_m=place, home_position_amsl_m=message.altitude / 1000.0)
 
 
 def _landed(state: VehicleState, message: messages.ExtendedSysState, now_s: float, _: LocalFrame) -> VehicleState:

@@ -13,6 +13,7 @@ from planning.checks.measures import pose_of
 from planning.errors import InfeasibleError
 from planning.findings import Finding, Severity
 from planning.plan import Sortie, Viewpoint
+from planning.rally import RETURN_TOLERANCE_M, return_height
 from planning.site_file import is_planned_on
 from planning.sortie_timing import SAME_PLACE_M, photo_vertices
 from planning.timing import motion_limits, photo_stop_s
@@ -260,6 +261,48 @@ def duplicates(case: Case) -> Iterator[Finding]:
     )
 
 
+def return_home(case: Case) -> Iterator[Finding]:
+    """An aircraft that returns by itself stays inside the airspace, and keeps the minimum distance on its way.
+
+    Where the airspace ends too low for that, no height is right: one leads into the building, the other out of it. What
+    the path itself does wrong is not said of the return again.
+    """
+    paths = [path for _, _, path in case.sorties()]
+    if not paths:
+        return
+    found = return_height(case.site_model, case.space, paths)
+    gaps = case.measures
+    way, limit_m = found.way, min(case.space.min_distance_m, *gaps.solid_gaps.legs_m.values())
+    crosses_by_itself = way.crosses_no_fly and min(gaps.no_fly_gaps.legs_m.values(), default=math.inf) > 0.0
+    where = f"{found.above_home_m:g} m above take-off"
+    is_capped = found.above_home_m < found.wanted_above_home_m
+    if way.gap_m < limit_m - RETURN_TOLERANCE_M and is_capped:
+        what = "through the building or an obstacle" if way.gap_m <= 0.0 else f"{way.gap_m:.1f} m from something"
+        text = (
+            f"an aircraft that returns by itself would fly {what}: at {found.wanted_above_home_m:.1f} m above take-off "
+            f"it clears everything, and the airspace ends at {found.ceiling_above_home_m:.1f} m; raise its ceiling, or "
+            "move home to the side of the building that is flown"
+        )
+        yield Finding(
+            Severity.ERROR,
+            "return-height",
+            text,
+            "",
+            found.wanted_above_home_m,
+            found.ceiling_above_home_m,
+            "m",
+        )
+    elif way.gap_m < limit_m - RETURN_TOLERANCE_M:
+        text = f"an aircraft that returns by itself climbs within {way.gap_m:.1f} m of the building or an obstacle"
+        yield Finding(Severity.WARNING, "return-height", text, "", way.gap_m, limit_m, "m")
+    elif crosses_by_itself:
+        text = f"an aircraft that returns by itself, {where}, crosses a no-fly zone; fly it back by hand"
+        yield Finding(Severity.WARNING, "return-height", text, "", found.above_home_m, found.ceiling_above_home_m, "m")
+    else:
+        text = f"an aircraft that returns by itself flies {where}, {found.ceiling_above_home_m:.1f} m are allowed"
+        yield Finding(Severity.OK, "return-height", text, "", found.above_home_m, found.ceiling_above_home_m, "m")
+
+
 FLIGHT_RULES: tuple[Rule, ...] = (
     site_file,
     sorties,
@@ -270,4 +313,5 @@ FLIGHT_RULES: tuple[Rule, ...] = (
     ground_sampling,
     duplicates,
     stated_coverage,
+    return_home,
 )

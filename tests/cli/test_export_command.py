@@ -92,7 +92,7 @@ def test_kmz_passes_the_checks_of_its_format_without_an_error(reflight, sorties,
 )
 def test_heights_and_autopilot_can_be_chosen(reflight, pane, tmp_path, file_format, heights, autopilot):
     out = tmp_path / f"m{ENDINGS[file_format]}"
-    options = ["--heights", heights, "--autopilot", autopilot, "--link-loss", "go-home", "--return-height", 60]
+    options = ["--heights", heights, "--autopilot", autopilot, "--link-loss", "go-home", "--return-height", 45]
     assert reflight("export", pane / "plan.json", "--format", file_format, "-o", out, *options).status == 0
     assert read_missions(out)[0].n_photos == 6
 

@@ -84,6 +84,8 @@ def test_wishes_are_understood_together():
         (("--link", "serial:/dev/nothing:57600"), "this could be a real aircraft"),
         (("--take-off",), "are for --link URL"),
         (("--set-parameters",), "are for --link URL"),
+        (("--raise", 2), "are for --link URL"),
+        (("--link", "tcp:127.0.0.1:1", "--overrule", "battery"), "expected one of home-height, parameters, return"),
         (("--link", "tcp:127.0.0.1:5760", "--wind", 3), "are for --link sim"),
         (("--link", "tcp:127.0.0.1:1"), "cannot be opened"),
     ],
@@ -161,7 +163,11 @@ def test_an_address_of_this_machine_is_no_simulation(fly, pane, tmp_path, autopi
 def test_parameters_of_a_vehicle_that_may_be_real_are_set_where_the_pilot_agrees(fly, pane, agrees):
     with vehicle_at_a_port(pane, Autopilot.PX4, ("SYS_HITL",)) as (vehicle, url):
         before = vehicle.parameters.values()
-        done = fly("--link", url, "--take-off", "--json", *(["--set-parameters"] if agrees else []))
+        if not agrees:
+            # As it was set, it would return 10 m above the airspace.
+            assert "it returns above the airspace" in fly("--link", url, "--take-off").error
+        agreed = ["--set-parameters"] if agrees else ["--overrule", "return"]
+        done = fly("--link", url, "--take-off", "--json", *agreed)
         changed = {name for name, value in vehicle.parameters.values().items() if value != before[name]}
     notes = [note["text"] for note in done.json["notes"][0] if note["code"] == "parameter"]
     if agrees:
@@ -170,6 +176,22 @@ def test_parameters_of_a_vehicle_that_may_be_real_are_set_where_the_pilot_agrees
     else:
         assert not changed
         assert any("RTL_RETURN_ALT is 60; the plan was made for" in text for text in notes)
+
+
+@pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
+def test_a_vehicle_that_stands_lower_than_planned_flies_once_its_flight_is_raised(fly, pane, tmp_path, autopilot):
+    """Tried: 3 m lower and 10 m higher flew without a word."""
+    with vehicle_at_a_port(pane, autopilot, home_up_m=-3.0) as (vehicle, url):
+        error = fly("--link", url).error
+        assert "stands 3.0 m lower than the planned home" in error
+        assert "raise it by 3.0 m" in error
+        assert not vehicle.modes.is_armed
+    with vehicle_at_a_port(pane, autopilot, home_up_m=-3.0) as (vehicle, url):
+        done = fly("--link", url, "--raise", 3.0, "--json")
+    assert done.json["n_taken"] == 6
+    heights_m = sorted(shot.pose.position_enu_m[2] for shot in vehicle.shots)
+    planned_m = sorted(view.position_enu_m[2] for view in read_plan(pane / "plan.json").viewpoints)
+    assert heights_m == pytest.approx(planned_m, abs=0.2)
 
 
 @pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tempfile
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 
 from missions.build import missions_from_plan
-from missions.encode import CLEARANCE_M, ExportOptions, encode
+from missions.encode import ExportOptions, encode
 from missions.formats import export, read_missions, sortie_path
 from missions.heights import altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
@@ -24,6 +25,7 @@ from planning.findings import Severity
 from planning.geodesy.geoid import undulation_m
 from planning.mesh import box_mesh, empty_mesh
 from planning.plan import Plan, Sortie, Viewpoint
+from planning.rally import CLEARANCE_M
 from planning.site import Airspace, Facade, NoFlyZone, Obstacle, Panel, Site, SiteModel
 from planning.sortie_timing import photo_vertices
 from tests.missions.plans import HOME, HONG_KONG, example_plan, plans
@@ -260,10 +262,14 @@ class TestReturnHeight:
         assert found is not None
         least_m, clear_m = float(found[1]), float(found[2])
         path = tmp_path / "m.kmz"
-        export(example_plan(), None, None, FileFormat.DJI_KMZ, path, replace(low, rth_height_m=least_m))
+        is_inside = least_m <= low.site.site.airspace.max_enu_m[2] - HOME[2]
+        with nullcontext() if is_inside else pytest.raises(MissionError, match="above the airspace"):
+            export(example_plan(), None, None, FileFormat.DJI_KMZ, path, replace(low, rth_height_m=least_m))
         with pytest.raises(MissionError, match="return height"):
             export(example_plan(), None, None, FileFormat.DJI_KMZ, path, replace(low, rth_height_m=least_m - 0.11))
-        assert self.height(replace(low, rth_height_m=None)) == math.ceil(clear_m)
+        ceiling_m = low.site.site.airspace.max_enu_m[2] - HOME[2]
+        wanted_m = math.ceil(clear_m)
+        assert self.height(replace(low, rth_height_m=None)) == min(wanted_m, ceiling_m)
 
     def test_without_the_site_a_warning_says_that_only_the_path_is_cleared(self) -> None:
         findings = encode(example_plan(), None, None, FileFormat.DJI_KMZ, FIXED).findings

@@ -22,7 +22,8 @@ from planning.request import PlanRequest
 from planning.site import RallyPoint
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import QUICK
-from tests.vehicle.toy import Toy, ToyLink
+from tests.vehicle.test_flight_run import toy_at_home
+from tests.vehicle.toy import ToyLink
 
 VEHICLE = Address(1, 1)
 ARDUPILOT, PX4 = Autopilot.ARDUPILOT, Autopilot.PX4
@@ -81,7 +82,7 @@ def test_a_vehicle_that_does_not_say_is_not_taken_for_safe(planned, autopilot):
 
 
 @pytest.mark.parametrize(("autopilot", "name", "factor"), [(ARDUPILOT, "RTL_ALT", 100.0), (PX4, "RTL_RETURN_ALT", 1.0)])
-def test_a_return_through_the_building_is_warned_of_until_the_height_suffices(planned, autopilot, name, factor):
+def test_a_return_through_the_building_grounds_until_the_height_suffices(planned, autopilot, name, factor):
     """Of an aircraft behind it; at the height that an upload would set, all is well."""
     plan, orders = planned[1], orders_of(planned)
     behind = np.array([[0.0, 22.0, 5.0], [0.0, 22.0, 5.0]])
@@ -89,12 +90,47 @@ def test_a_return_through_the_building_is_warned_of_until_the_height_suffices(pl
     orders = replace(orders, surroundings=around)
     changes = {"RTL_CONE_SLOPE": 0.0} if autopilot is ARDUPILOT else {}
     low = found(orders, autopilot, "return", **changes, **{name: 6.0 * factor})
-    assert low.verdict is Verdict.WARN
+    assert low.verdict is Verdict.BAD
     assert "straight through the building" in low.text
     assert f"set {name}" in low.text
     high = found(orders, autopilot, "return", **changes, **{name: orders.return_height_m * factor})
     assert high.verdict is Verdict.OK
     assert high.value >= plan.constraints.min_distance_m - 0.5
+    above = found(orders, autopilot, "return", **changes, **{name: 200.0 * factor})
+    assert above.verdict is Verdict.BAD
+    assert "above the airspace, which ends" in above.text
+    assert above.limit == pytest.approx(around[autopilot].space.high_enu_m[2] - orders.home_enu_m[2])
+
+
+@pytest.mark.parametrize(("angle_deg", "slope"), [(0.0, 0.0), (45.0, 1.0), (65.0, 0.4663), (80.0, 0.1763)])
+def test_px4s_cone_lets_it_return_lower_close_to_home(planned, angle_deg, slope):
+    orders = orders_of(planned)
+    of = return_of(PX4, values(PX4, RTL_CONE_ANG=angle_deg), orders)
+    assert of.cone_slope == pytest.approx(slope, abs=1e-4)
+    flat = return_of(PX4, values(PX4, RTL_CONE_ANG=90.0, RTL_DESCEND_ALT=12.0), orders)
+    assert (flat.height_m, flat.height_name) == (12.0, "RTL_DESCEND_ALT")
+
+
+def test_a_return_through_the_building_is_flown_only_where_the_pilot_overrules_it(planned):
+    orders = orders_of(planned)
+    behind = np.array([[0.0, 22.0, 5.0], [0.0, 22.0, 5.0]])
+    around = {each: replace(orders.surroundings[each], path_enu_m=behind) for each in Autopilot}
+    orders = replace(orders, surroundings=around)
+    low = {"RTL_ALT": 600.0, "CAM1_TYPE": 1.0, "MNT1_TYPE": 1.0}
+    options = RunOptions(connect_s=10.0, ready_s=20.0)
+    toy = toy_at_home(orders, parameters=dict(low))
+    _, outcome = fly(orders, toy, options)
+    assert "straight through the building" in str(outcome.error)
+    assert not toy.has_flown
+    toy = toy_at_home(orders, parameters=dict(low))
+    run, outcome = fly(orders, toy, replace(options, overrules=frozenset({"return"})))
+    assert outcome.succeeded
+    (told,) = [check for check in run.checks() if check.code == "return"]
+    assert (told.verdict, told.text[-12:]) == (Verdict.WARN, " (overruled)")
+    # What cannot be overruled stays.
+    toy = toy_at_home(orders, battery=5, parameters=dict(low))
+    _, outcome = fly(orders, toy, replace(options, overrules=frozenset({"return", "battery"})))
+    assert "battery holds 5%" in str(outcome.error)
 
 
 def test_rally_points_count_as_the_parameters_have_it(planned):
@@ -214,13 +250,12 @@ def test_several_parameters_are_read_at_once_and_unknown_ones_are_given_up():
     assert n_asked == N_ATTEMPTS
 
 
-def fly(orders, toy):
-    run = FlightRun(orders, RunOptions(sets_parameters=True, connect_s=10.0, ready_s=20.0), "toy")
+SETS = RunOptions(sets_parameters=True, connect_s=10.0, ready_s=20.0)
+
+
+def fly(orders, toy, options=SETS):
+    run = FlightRun(orders, options, "toy")
     return run, conduct(run, ToyLink(toy), lambda: toy.now_s)
-
-
-def toy_at_home(orders, **faults):
-    return Toy((round(orders.home.lat_deg * 1e7), round(orders.home.lon_deg * 1e7)), **faults)
 
 
 def test_rally_points_of_the_site_are_put_on_board_and_read_back(planned):

@@ -11,6 +11,7 @@ from groundstation.vehicle.preflight import is_ready
 from groundstation.vehicle.run_records import Phase, PilotOrder, RunOptions
 from groundstation.vehicle.state import LINK_LOST_S
 from missions.build import missions_from_plan
+from missions.heights import altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
 from planning.errors import LinkError, LinkRejected, LinkTimeout, MissionError, OperationCancelled
 from planning.planner import plan_flight
@@ -36,8 +37,10 @@ def orders():
     return sortie_orders(plan, model, mission)
 
 
-def toy_at_home(orders, **faults):
+def toy_at_home(orders, stands_m=0.0, **faults):
+    """One that stands at the planned home, `stands_m` higher."""
     home = orders.home
+    faults.setdefault("home_amsl_m", altitude_amsl_m(home) + stands_m)
     return Toy((round(home.lat_deg * 1e7), round(home.lon_deg * 1e7)), **faults)
 
 
@@ -135,6 +138,26 @@ def test_an_aircraft_far_from_the_planned_home_is_not_started(orders):
     _, outcome = fly(orders, toy)
     assert isinstance(outcome.error, MissionError)
     assert "5.5 m from the planned home" in str(outcome.error)
+
+
+@BOTH
+@pytest.mark.parametrize("stands_m", [-3.0, 10.0])
+def test_an_aircraft_at_another_height_than_planned_is_not_started(orders, autopilot, stands_m):
+    toy = toy_at_home(orders, stands_m, autopilot=autopilot)
+    _, outcome = fly(orders, toy)
+    assert f"stands {abs(stands_m):.1f} m" in str(outcome.error)
+    assert not toy.has_flown
+    toy = toy_at_home(orders, stands_m, autopilot=autopilot)
+    _, outcome = fly(orders, toy, replace(OPTIONS, overrules=frozenset({"home-height"})))
+    assert outcome.succeeded, "the pilot knows better"
+
+
+def test_a_home_that_moves_with_arming_stops_the_motors_again(orders):
+    toy = toy_at_home(orders, moves_home_m=-5.0)
+    _, outcome = fly(orders, toy)
+    assert "counts its heights from 5.0 m lower than the planned home" in str(outcome.error)
+    assert not toy.has_flown
+    assert not toy.is_armed
 
 
 def test_arming_is_tried_again_while_the_autopilot_settles(orders):

@@ -18,8 +18,11 @@ from groundstation.vehicle.state import (
     VehicleText,
 )
 from missions.build import missions_from_plan
+from missions.heights import altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
+from missions.mavlink.transfer.wire_items import to_wire
+from planning.errors import MissionError
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import single_panel
@@ -44,6 +47,7 @@ def ready_state(orders):
         autopilot=Autopilot.ARDUPILOT,
         heartbeat=Timed(9, NOW_S),
         motion=Timed(Motion((x + 0.5, y, z), (0.0, 0.0, 0.0), 0.0), NOW_S),
+        home_altitude_amsl_m=altitude_amsl_m(orders.home),
         fix=Timed(GnssFix(6, 20, 0.014, 0.02), NOW_S),
         battery=Timed(BatteryLevel(0.98), NOW_S),
         estimator=Timed(EstimatorHealth(), NOW_S),
@@ -167,3 +171,87 @@ def test_a_sortie_that_no_battery_lasts_for_is_not_cured_by_a_full_one(orders):
     assert (check.code, check.verdict) == ("battery", Verdict.BAD)
     assert "shorter sorties" in check.text
     assert "full one" not in check.text
+
+
+# The height of home
+
+
+def home_height(state, orders):
+    (found,) = [check for check in checks(state, orders) if check.code == "home-height"]
+    return found
+
+
+def standing(orders, above_m, **changes):
+    """Above the planned home, with heights counted from there."""
+    return replace(ready_state(orders), home_altitude_amsl_m=altitude_amsl_m(orders.home) + above_m, **changes)
+
+
+@pytest.mark.parametrize(
+    ("above_m", "verdict", "words"),
+    [
+        (
+            -3.0,
+            Verdict.BAD,
+            "stands 3.0 m lower than the planned home, and all of the flight would be: raise it by 3.0 m",
+        ),
+        (
+            10.0,
+            Verdict.BAD,
+            "stands 10.0 m higher than the planned home, and all of the flight would be: lower it by 10.0",
+        ),
+        (-1.05, Verdict.BAD, "plan from here"),
+        (0.9, Verdict.OK, "0.9 m above"),
+        (-0.95, Verdict.OK, "below the planned home"),
+    ],
+)
+def test_an_aircraft_that_stands_at_another_height_than_planned_is_grounded(orders, above_m, verdict, words):
+    state = standing(orders, above_m, fix=Timed(GnssFix(6, 20, 0.014, None), NOW_S))
+    found = home_height(state, orders)
+    assert found.verdict is verdict
+    assert words in found.text
+    assert found.value == pytest.approx(above_m)
+    assert is_ready(checks(state, orders)) is (verdict is Verdict.OK)
+
+
+def test_baro_drift_before_arming_is_no_other_place(orders):
+    """The vehicle counts from 4 m below and says that it is 4 m up: it stands where it should."""
+    motion = ready_state(orders).motion
+    up = replace(motion, value=replace(motion.value, height_above_home_m=4.0))
+    assert home_height(standing(orders, -4.0, motion=up), orders).verdict is Verdict.OK
+
+
+@pytest.mark.parametrize(("geoid_m", "verdict"), [(None, Verdict.OK), (0.0, Verdict.BAD)])
+def test_the_receivers_own_geoid_counts_where_it_tells_it(orders, geoid_m, verdict):
+    """One that takes the geoid for the ellipsoid is off by what lies between them."""
+    fix = GnssFix(6, 20, 0.014, 0.02, geoid_m)
+    assert home_height(standing(orders, 0.0, fix=Timed(fix, NOW_S)), orders).verdict is verdict
+    between_m = orders.home.height_ellipsoid_m - altitude_amsl_m(orders.home)
+    told = replace(fix, geoid_m=between_m + 5.0)
+    assert home_height(standing(orders, -5.0, fix=Timed(told, NOW_S)), orders).verdict is Verdict.OK
+
+
+@pytest.mark.parametrize(("autopilot", "verdict"), [(Autopilot.ARDUPILOT, Verdict.WARN), (Autopilot.PX4, Verdict.BAD)])
+@pytest.mark.parametrize("off_m", [-3.0, 10.0])
+def test_a_home_of_the_vehicles_own_at_another_height_is_told(orders, autopilot, verdict, off_m):
+    told_m = altitude_amsl_m(orders.home) + off_m
+    state = standing(orders, 0.0, autopilot=autopilot, home_position_amsl_m=told_m)
+    found = home_height(state, orders)
+    assert found.verdict is verdict
+    assert f"own home lies {abs(off_m):.1f} m {'higher' if off_m > 0 else 'lower'}" in found.text
+
+
+def test_a_raised_flight_passes_through_the_same_places(orders):
+    """From 3 m lower, all heights above take-off are 3 m larger."""
+    model = single_panel()
+    plan = plan_flight(model, PlanRequest(n_views=3, greedy=QUICK, profile_id="ardupilot")).plan
+    (mission,) = missions_from_plan(plan, model.site.origin, model.site.home_enu_m)
+    plain, raised = (sortie_orders(plan, model, mission, by_m) for by_m in (0.0, 3.0))
+    for autopilot in Autopilot:
+        for one, other in zip(*(to_wire(each.items[autopilot], autopilot) for each in (plain, raised)), strict=True):
+            is_up = one.command in (16, 22) and one.frame == 3
+            assert other.z - one.z == pytest.approx(3.0 if is_up else 0.0, abs=1e-4)
+    assert raised.home_enu_m[2] == plain.home_enu_m[2] - 3.0
+    assert raised.return_height_m == plain.return_height_m + 3.0
+    assert home_height(standing(plain, -3.0), raised).verdict is Verdict.OK
+    with pytest.raises(MissionError, match="plan it from where the aircraft stands"):
+        sortie_orders(plan, model, mission, -40.0)

@@ -15,6 +15,7 @@ from missions.mavlink.messages import (
     GlobalPositionInt,
     GpsRawInt,
     Heartbeat,
+    HomePosition,
     MissionAck,
     MissionClearAll,
     MissionCount,
@@ -57,6 +58,12 @@ class Toy:
         How much faster its time goes than ours, as in a simulation that is sped up.
     forgets_requests
         After a reboot it sends heartbeats only, until it is asked for more.
+    home_amsl_m
+        Where it stands, and counts its heights from.
+    told_home_amsl_m
+        What HOME_POSITION says of it; None: nothing.
+    moves_home_m
+        How far its home moves up when it is armed.
     tells_total
         MISSION_CURRENT says how many items it has.
     """
@@ -69,6 +76,9 @@ class Toy:
     drops_photo: int = 0
     clock_rate: float = 1.0
     forgets_requests: bool = False
+    home_amsl_m: float = 0.0
+    told_home_amsl_m: float | None = None
+    moves_home_m: float = 0.0
     tells_total: bool = True
     takes_off: bool = True
     disarms_itself: bool = True
@@ -210,7 +220,11 @@ class Toy:
         boot_ms = round(1000.0 * self.clock_rate * (self.now_s - self.boot_s)) + 1
         lat, lon, up = self.place
         if self.tells_all:
-            self.say(GlobalPositionInt(boot_ms, lat, lon, 0, up, 0, 0, 0, 0))
+            amsl_mm = round(1000.0 * self.home_amsl_m) + up
+            shift_mm = round(1000.0 * self.moves_home_m) if self.is_armed else 0
+            self.say(GlobalPositionInt(boot_ms, lat, lon, amsl_mm, up - shift_mm, 0, 0, 0, 0))
+            if self.told_home_amsl_m is not None:
+                self.say(HomePosition(*self.home, round(1000.0 * self.told_home_amsl_m)))
             self.say(Attitude(boot_ms, 0.0, 0.0, 0.0))
             self.say(GimbalDeviceAttitudeStatus(0, 0, boot_ms, 44, (1.0, 0.0, 0.0, 0.0)))
         self.say(ExtendedSysState(0, 2 if self.is_flying else 1))

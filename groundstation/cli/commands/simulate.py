@@ -27,6 +27,7 @@ a vehicle at a link:
   --link tcp:127.0.0.1:5760  a simulation of ArduPilot or PX4. It is set up, armed and started.
   A vehicle that does not say itself that it is a simulation takes off only with --take-off, wherever it is: programs
   on this machine pass links on to aircraft. Its parameters are compared, and set only with --set-parameters.
+  --overrule return, home-height or parameters flies though that line of the list before take-off grounds it.
 
 examples:
   simulate office.plan.json office.site.json -o office.flight.json
@@ -72,6 +73,8 @@ def add_parser(subparsers: Any) -> None:
         action="store_true",
         help="set its parameters as the plan needs them; else they are compared",
     )
+    add("--raise", type=number, dest="raised", metavar="M", help="take-off lies this much lower than the planned home")
+    add("--overrule", action="append", default=[], metavar="CHECK", help="fly though this check grounds it")
     add("--signed", action="store_true", help="sign the link with this computer's key ('signing set')")
     add("--logs", type=Path, metavar="DIR", help="folder for telemetry logs of a link (default: beside FLIGHT)")
     add("--json", action="store_true", help="print one JSON object instead of text")
@@ -126,8 +129,10 @@ def _wish(options: argparse.Namespace) -> FlightWish:
     is_simulated = options.link == SIMULATED
     if not is_simulated:
         _check_link(options)
-    elif options.set_parameters or options.take_off:
-        raise InputError("--take-off and --set-parameters are for --link URL; nothing real moves in this simulation")
+    elif options.set_parameters or options.take_off or options.overrule or options.raised is not None:
+        raise InputError(
+            "--take-off, --set-parameters, --raise and --overrule are for --link URL; nothing real moves here"
+        )
     elif options.signed:
         raise InputError("--signed: is for --link URL; the simulation in this program has no link to listen to")
     wind_m_s = options.wind
@@ -144,9 +149,20 @@ def _wish(options: argparse.Namespace) -> FlightWish:
         speedup=options.speedup,
         simulations_only="" if is_simulated or options.take_off else NO_SIMULATION,
         sets_parameters=options.set_parameters,
+        overrules=_overrules(options.overrule),
+        raised_m=options.raised or 0.0,
         log_folder=None if is_simulated else (options.logs or options.out.parent / "logs"),
         signer=link_signer() if options.signed else None,
     )
+
+
+def _overrules(codes: list[str]) -> frozenset[str]:
+    from groundstation.vehicle.preflight import OVERRULABLE
+
+    for code in codes:
+        if code not in OVERRULABLE:
+            raise InputError(f"--overrule: expected one of {', '.join(sorted(OVERRULABLE))}, got '{code}'")
+    return frozenset(codes)
 
 
 def _check_link(options: argparse.Namespace) -> None:
