@@ -26,6 +26,7 @@ from missions.simulator.scene import Conditions
 from missions.simulator.server import MAX_SPEEDUP, serve
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.effects import Decision, Wish
+from planning.frames import Vec3
 from planning.plan import Plan
 from planning.progress import Clock
 from planning.site import Origin, SiteModel
@@ -44,7 +45,7 @@ class SampledVehicle(SimulatedVehicle):
     """A simulated vehicle that notes where it truly is, on the thread that flies it."""
 
     def __init__(
-        self, autopilot: Autopilot, airframe: Airframe, origin: Origin, parameters: Mapping[str, float]
+        self, autopilot: Autopilot, airframe: Airframe, origin: Origin, parameters: Mapping[str, float | None]
     ) -> None:
         super().__init__(autopilot, airframe, origin, parameters=parameters, is_ready=True)
         self._lock = threading.Lock()
@@ -155,6 +156,10 @@ class Simulation:
         Of the battery when the link is opened, 1 full to 0 empty.
     seed
         The same seed gives the same errors.
+    stands_enu_m
+        Where the aircraft stands; None: at home.
+    parameters
+        Of the vehicle, where they differ from its profile's; None for one that it does not have.
     """
 
     plan: Plan
@@ -165,6 +170,8 @@ class Simulation:
     wishes: Mapping[str, Wish] = field(default_factory=dict)
     charge: float = 1.0
     seed: int = 0
+    stands_enu_m: Vec3 | None = None
+    parameters: Mapping[str, float | None] = field(default_factory=dict)
     is_simulated: bool = True
 
     def __post_init__(self) -> None:
@@ -185,6 +192,7 @@ class Simulation:
             sortie,
             conditions=self.conditions,
             wishes=self.wishes,
+            home_enu_m=self.stands_enu_m,
             seed=self.seed,
             autopilot=self.autopilot,
         )
@@ -199,13 +207,13 @@ class Simulation:
         ).start()
         return OpenedLink(link, decisions, vehicle)
 
-    def _parameters(self) -> dict[str, float]:
+    def _parameters(self) -> dict[str, float | None]:
         """What a vehicle whose time runs faster than the orders to it needs to be set otherwise.
 
         ArduPilot stops its motors where it is not told to take off within DISARM_DELAY after arming: 10 s, which forty
         times as fast are over before the next order has come.
         """
         if self.autopilot is not Autopilot.ARDUPILOT or self.speed_up <= 1.0:
-            return {}
+            return dict(self.parameters)
         usual_s = vehicle_profile(self.autopilot).parameters["DISARM_DELAY"]
-        return {"DISARM_DELAY": min(usual_s * self.speed_up, LONGEST_DISARM_DELAY_S)}
+        return {"DISARM_DELAY": min(usual_s * self.speed_up, LONGEST_DISARM_DELAY_S), **self.parameters}

@@ -14,6 +14,7 @@ from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
 from missions.heights import altitude_amsl_m as home_altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.transfer.exchange import MissionType
+from planning.frames import Vec3
 
 HOME_M = 3.0
 """How far from the planned home the aircraft may stand: it climbs where it is, and the plan's column has that room."""
@@ -123,6 +124,17 @@ def preflight_checks(
     return overruled(checks, overrules)
 
 
+class Mend(Enum):
+    """What the pilot can do about a check from here."""
+
+    SET_PARAMETERS = "set-parameters"
+    RAISE = "raise"
+    """Fly the same places from where the aircraft stands."""
+    PLAN_FROM_HERE = "plan-from-here"
+    """Make the place where the aircraft stands the site's home."""
+    OVERRULE = "overrule"
+
+
 OVERRULABLE = frozenset(("return", "home-height", "parameters"))
 """Codes of checks that ground a flight until the pilot overrules them by typing the code."""
 
@@ -135,6 +147,19 @@ def overruled(checks: Iterable[PreflightCheck], codes: frozenset[str]) -> tuple[
         else check
         for check in checks
     )
+
+
+def mends(check: PreflightCheck, on_board: OnBoard) -> tuple[Mend, ...]:
+    """What can be done about a check, the best first; nothing about one that is well, or that time mends."""
+    if check.verdict not in (Verdict.WARN, Verdict.BAD):
+        return ()
+    ways: list[Mend] = []
+    if check.code in ("parameters", "return") and on_board.changes:
+        ways.append(Mend.SET_PARAMETERS)
+    if check.verdict is Verdict.BAD:
+        ways += {"home": [Mend.PLAN_FROM_HERE], "home-height": [Mend.RAISE, Mend.PLAN_FROM_HERE]}.get(check.code, [])
+        ways += [Mend.OVERRULE] if check.code in OVERRULABLE else []
+    return tuple(ways)
 
 
 def is_ready(checks: tuple[PreflightCheck, ...]) -> bool:
@@ -197,6 +222,15 @@ def stands_above_m(state: VehicleState, orders: SortieOrders, altitude_amsl_m: f
     if geoid_m is None:
         return altitude_amsl_m - home_altitude_amsl_m(orders.home)
     return altitude_amsl_m + geoid_m - orders.home.height_ellipsoid_m
+
+
+def stands_enu_m(state: VehicleState, orders: SortieOrders) -> Vec3 | None:
+    """Where the aircraft stands, its height by its own altitude; None where that is not known."""
+    if state.motion is None or state.home_altitude_amsl_m is None:
+        return None
+    x, y, _ = state.motion.value.position_enu_m
+    stands_m = state.home_altitude_amsl_m + state.motion.value.height_above_home_m
+    return (x, y, orders.home_enu_m[2] + stands_above_m(state, orders, stands_m))
 
 
 def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:

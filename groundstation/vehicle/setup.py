@@ -21,6 +21,8 @@ DATA_PATH = Path(__file__).parent / "data" / "setup.toml"
 MAV_CMD_SET_MESSAGE_INTERVAL, MAV_CMD_REQUEST_MESSAGE = 511, 512
 HOME_POSITION = 242
 
+HUNDREDTHS = 100
+
 RATES_HZ = {
     33: 10.0,  # GLOBAL_POSITION_INT
     30: 10.0,  # ATTITUDE
@@ -147,7 +149,8 @@ def wanted_parameters(autopilot: Autopilot, mission: Mission, return_height_m: f
     for name, (field, factor) in setup.from_plan.items():
         value = own[field] if field in own else getattr(aircraft, field)
         if value is not None:
-            wanted[name] = value * factor
+            # Hundredths are whole numbers on ArduPilot.
+            wanted[name] = float(round(value * factor)) if factor == HUNDREDTHS else value * factor
     return wanted
 
 

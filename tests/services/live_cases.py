@@ -70,12 +70,12 @@ class Reopening:
 
     speed_up, is_simulated, name = SPEED_UP, True, "radio"
 
-    def __init__(self):
-        self._opened = None
+    def __init__(self, **changes):
+        self._opened, self.changes = None, changes
 
     def open(self, orders, clock, observe):
         if self._opened is None:
-            opened = simulation(self.speed_up).open(orders, clock, observe)
+            opened = simulation(self.speed_up, **self.changes).open(orders, clock, observe)
             self._opened = replace(opened, link=Cut(opened.link))
         if self.cut.is_unplugged.is_set():
             raise LinkError("there is no radio")

@@ -141,7 +141,7 @@ def test_the_last_choice_comes_back_and_a_damaged_file_gives_the_first_one(tmp_p
 def test_whether_rtk_is_needed_comes_back_and_leave_to_set_parameters_does_not(tmp_path):
     path = tmp_path / "flight.toml"
     assert read_flight_settings(path) == FlightSettings()
-    write_kept(path, FlightSettings(needs_rtk=True, sets_parameters=True))
+    write_kept(path, FlightSettings(needs_rtk=True))
     assert read_flight_settings(path) == FlightSettings(needs_rtk=True)
     path.write_text("needs_rtk = 'perhaps'")
     assert read_flight_settings(path) == FlightSettings()

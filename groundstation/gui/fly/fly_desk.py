@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -43,13 +44,14 @@ from groundstation.services.live_readouts import BEFORE_TAKE_OFF
 from groundstation.services.live_record import flights_folder
 from groundstation.services.live_settings import (
     FlightSettings,
-    SetParameter,
     flight_settings_path,
-    parameters_to_set,
     read_flight_settings,
 )
 from groundstation.services.live_sortie import LiveSortie, prepare_sortie
 from groundstation.services.signing import link_signer
+from groundstation.services.site_edits import move_home
+from groundstation.vehicle.preflight import stands_enu_m
+from groundstation.vehicle.setup import ParameterChange
 from planning.checks.case import Case
 from planning.errors import InputError
 from planning.findings import Severity
@@ -153,14 +155,42 @@ class FlyDesk(QObject):
             self._preparing_id = self.limit.share_out(found, self.connect_vehicle)
             self.stateChanged.emit()
 
-    def parameters_to_set(self) -> tuple[SetParameter, ...]:
-        """What an upload would set on a real vehicle; nothing where the pilot has not allowed it."""
+    def parameter_changes(self) -> tuple[ParameterChange, ...]:
+        """What differs on the vehicle from what the plan needs."""
         in_hand = self.in_hand
-        is_real = self.choice.kind is not LinkKind.SIMULATION
-        if in_hand is None or in_hand.view is None or not (is_real and self.settings.sets_parameters):
-            return ()
-        autopilot = in_hand.view.state.autopilot
-        return () if autopilot is None else parameters_to_set(autopilot, in_hand.sortie.orders)
+        return () if in_hand is None or in_hand.view is None else in_hand.view.on_board.changes or ()
+
+    def set_parameters(self, changes: tuple[ParameterChange, ...]) -> None:
+        """The pilot agrees that these are set."""
+        if self._flight is not None:
+            self._flight.set_parameters(changes)
+
+    def overrule(self, code: str) -> None:
+        """The pilot overrules a check before take-off, until the next upload."""
+        if self._flight is not None:
+            self._flight.overrule(code)
+
+    def raise_flight(self, by_m: float) -> None:
+        """Fly the same places from a take-off that lies so much lower; to be uploaded again."""
+        in_hand = self.in_hand
+        if self._flight is not None and in_hand is not None and self.is_for_shown_plan:
+            self._prepare(self._take_on, in_hand.sortie.orders.raised_m + by_m)
+
+    def plan_from_here(self) -> None:
+        """Make the place where the aircraft stands the site's home."""
+        in_hand, document = self.in_hand, self._workspace.document
+        if in_hand is None or in_hand.view is None or document.site is None:
+            return
+        place = stands_enu_m(in_hand.view.state, in_hand.sortie.orders)
+        if place is None:
+            return
+        try:
+            model = move_home(document.site, place)
+        except InputError as error:
+            self._say(Severity.ERROR, str(error))
+            return
+        self._workspace.change(self.tr("Home to the aircraft"), replace(document, site=model))
+        self._workspace.say(Severity.NOTE, self.tr("Home is where the aircraft stands: plan again, then connect anew."))
 
     def set_sortie(self, number: int) -> None:
         """Fly another sortie of the plan, from 1; connected, it becomes the next one."""
@@ -196,13 +226,13 @@ class FlyDesk(QObject):
         except InputError as error:
             self._say(Severity.WARNING, str(error))
 
-    def _prepare(self, then: Callable[[LiveSortie], None]) -> None:
+    def _prepare(self, then: Callable[[LiveSortie], None], raised_m: float = 0.0) -> None:
         plan, site_model, number, known = self.plan, self._workspace.document.site, self.number, self._case
         if plan is None or site_model is None or self.is_preparing:
             return
 
         def work(context: JobContext) -> LiveSortie:
-            return prepare_sortie(plan, site_model, number, known, context)
+            return prepare_sortie(plan, site_model, number, known, raised_m, context)
 
         def done(sortie: LiveSortie) -> None:
             self._case = sortie.case

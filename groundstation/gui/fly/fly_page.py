@@ -32,6 +32,7 @@ from groundstation.services.live_events import FlightEnded, LinkState, LiveView,
 from groundstation.services.live_sortie import is_same_place, take_off_of
 from groundstation.services.places import item_of_place
 from groundstation.services.units import UnitSystem, minutes_text
+from groundstation.vehicle.preflight import Mend, PreflightCheck
 from planning.findings import Severity
 
 
@@ -140,6 +141,7 @@ class FlyPage(QObject):
         self.connection.disconnectRequested.connect(self._disconnect)
         self.sortie.activated.connect(lambda index: desk.set_sortie(index + 1))
         self.buttons.requested.connect(self._request)
+        self.checks.mendRequested.connect(self._mend)
         self.simulation.valueChanged.connect(self._simulation_chosen)
         self.settings.valueChanged.connect(desk.set_settings)
         self.findings.placePicked.connect(self._go_to_place)
@@ -164,9 +166,27 @@ class FlyPage(QObject):
     # What the user does
 
     def _request(self, request: Request) -> None:
-        asks = {Request.START: self._may_start, Request.UPLOAD: self._may_set_parameters}
-        if request not in asks or asks[request]():
+        if request is not Request.START or self._may_start():
             self.desk.request(request)
+
+    def _mend(self, mend: Mend, check: PreflightCheck) -> None:
+        """Do something about a check before take-off, once the pilot agrees."""
+        desk, ask, window = self.desk, self.questions, self._stage.window()
+        match mend:
+            case Mend.SET_PARAMETERS:
+                changes = desk.parameter_changes()
+                if changes and ask.set_parameters(window, changes):
+                    desk.set_parameters(changes)
+            case Mend.RAISE:
+                by_m = -round(check.value or 0.0, 1)
+                if ask.raise_flight(window, by_m, self._workspace.units):
+                    desk.raise_flight(by_m)
+            case Mend.PLAN_FROM_HERE:
+                if ask.plan_from_here(window):
+                    desk.plan_from_here()
+            case Mend.OVERRULE:
+                if ask.overrule(window, self._workspace.words(check.text), check.code.upper()):
+                    desk.overrule(check.code)
 
     def _connect_vehicle(self) -> None:
         found = self.desk.limit.exceeded(self.desk.choice)
@@ -177,10 +197,6 @@ class FlyPage(QObject):
 
     def _simulation_chosen(self) -> None:
         self.desk.simulation.choose(*self.simulation.value(), self.desk.plan, self.desk.number)
-
-    def _may_set_parameters(self) -> bool:
-        parameters = self.desk.parameters_to_set()
-        return not parameters or self.questions.set_parameters(self._stage.window(), parameters)
 
     def _may_start(self) -> bool:
         in_hand = self.desk.in_hand
@@ -286,7 +302,10 @@ class FlyPage(QObject):
         note = self.tr("In flight; the list comes back after the landing.") if view.state.is_armed else ""
         is_connected = self.desk.is_connected
         may = view.may if self.desk.is_for_shown_plan else view.may - frozenset(BEFORE_FLIGHT)
-        self.checks.set_checks(view.checks if is_connected else (), note if is_connected else "")
+        if is_connected:
+            self.checks.set_checks(view.checks, view.on_board, note)
+        else:
+            self.checks.set_checks(())
         self.buttons.set_allowed(may if is_connected else frozenset())
         text = self._words.where_it_stands()
         if self._phase.text() != text:

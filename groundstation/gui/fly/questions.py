@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.questions import agrees
+from groundstation.gui.questions import agrees, ask_text
 from groundstation.services.live_limit import TooLong
-from groundstation.services.live_settings import SetParameter
 from groundstation.services.live_sortie import TakeOff
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text
+from groundstation.vehicle.setup import ParameterChange
 
 
 class FlightQuestions(QObject):
@@ -51,24 +51,48 @@ class FlightQuestions(QObject):
             is_usual=True,
         )
 
-    def set_parameters(self, parent: QWidget, parameters: Sequence[SetParameter]) -> bool:
+    def set_parameters(self, parent: QWidget, changes: Sequence[ParameterChange]) -> bool:
         """Whether to set parameters of a real vehicle."""
-        title, text = self.tr("Set parameters of the vehicle"), self.parameters_text(parameters)
+        title, text = self.tr("Set parameters of the vehicle"), self.parameters_text(changes)
         return agrees(parent, title, text, warns=True)
 
-    def parameters_text(self, parameters: Sequence[SetParameter]) -> str:
-        """What would be set."""
-        set_now = [one for one in parameters if not one.needs_reboot]
-        lines = [
-            self.tr("The upload sets these parameters of the vehicle where they differ, and they stay so:"),
-            "\n".join(f"{one.name} = {one.value:g}" for one in set_now),
-        ]
-        rebooted = [one for one in parameters if one.needs_reboot]
+    def parameters_text(self, changes: Sequence[ParameterChange]) -> str:
+        """What would be set: each with its value of now and the new one."""
+        set_now = [_change_line(change) for change in changes if not change.needs_reboot]
+        lines = []
+        if set_now:
+            lines += [self.tr("These parameters of the vehicle are set, and they stay so:"), "\n".join(set_now)]
+        rebooted = [_change_line(change) for change in changes if change.needs_reboot]
         if rebooted:
-            lines.append(self.tr("and these, after which the autopilot is restarted:"))
-            lines.append("\n".join(f"{one.name} = {one.value:g}" for one in rebooted))
-        lines.append(self.tr("Set them, and upload?"))
+            lines += [self.tr("These are set, and the autopilot is restarted after it:"), "\n".join(rebooted)]
+        lines.append(self.tr("Set them?"))
         return "\n\n".join(lines)
+
+    def raise_flight(self, parent: QWidget, by_m: float, units: UnitSystem) -> bool:
+        """Whether to fly from where the aircraft stands, higher or lower than planned."""
+        text = self.tr(
+            "The aircraft stands {0} {1} than planned. Its heights above take-off are made as much {2}, so that it "
+            "flies through the same places, and have to be uploaded again. Do so only where you know that it really "
+            "stands there: a GNSS height can be wrong by metres. Fly from this height?"
+        )
+        sides = (self.tr("lower"), self.tr("larger")) if by_m > 0.0 else (self.tr("higher"), self.tr("smaller"))
+        return agrees(
+            parent, self.tr("Fly from this height"), text.format(length_unit(units).text(abs(by_m)), *sides), warns=True
+        )
+
+    def plan_from_here(self, parent: QWidget) -> bool:
+        """Whether to make the place where the aircraft stands the site's home."""
+        text = self.tr(
+            "The site's home moves to where the aircraft stands (Undo takes it back). Plans start at home, so the "
+            "flight has to be planned again. Move it?"
+        )
+        return agrees(parent, self.tr("Home here"), text)
+
+    def overrule(self, parent: QWidget, check: str, word: str) -> bool:
+        """Whether to fly though a check grounds the flight: the pilot types the word."""
+        text = self.tr("{0}\n\nTo fly all the same, type {1}:").format(check, word)
+        typed = ask_text(parent, self.tr("Overrule"), text, "")
+        return typed is not None and typed.strip().casefold() == word.casefold()
 
     def leave_in_flight(self, parent: QWidget) -> bool:
         """Whether to stop watching an aircraft that is in the air."""
@@ -81,3 +105,7 @@ class FlightQuestions(QObject):
             ),
             warns=True,
         )
+
+
+def _change_line(change: ParameterChange) -> str:
+    return f"{change.name}: {change.old:g} \u2192 {change.new:g}"

@@ -1,4 +1,4 @@
-"""What the pilot decides: whether RTK is needed, and whether an upload may set parameters of a real vehicle."""
+"""What the pilot decides: whether RTK is needed."""
 
 from __future__ import annotations
 
@@ -21,37 +21,24 @@ class SettingsPage(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.needs_rtk = QCheckBox(self.tr("RTK needed for take-off"))
-        self.sets_parameters = QCheckBox(self.tr("Upload sets parameters"))
+        says = QLabel(self.tr("Start waits for RTK, and a warning comes when it is lost in flight."))
+        says.setWordWrap(True)
+        says.setProperty("role", "muted")
         layout = QVBoxLayout(self)
-        for box, text in (
-            (self.needs_rtk, self.tr("Start waits for RTK, and a warning comes when it is lost in flight.")),
-            (
-                self.sets_parameters,
-                self.tr(
-                    "Camera, gimbal and speeds of a real vehicle are set as the plan needs them. Each upload names the "
-                    "parameters and asks first. Without it they are only compared. Those of a simulation are always "
-                    "set."
-                ),
-            ),
-        ):
-            says = QLabel(text)
-            says.setWordWrap(True)
-            says.setProperty("role", "muted")
-            layout.addWidget(box)
-            layout.addWidget(says)
-            box.toggled.connect(self._edited)
+        layout.addWidget(self.needs_rtk)
+        layout.addWidget(says)
         layout.addStretch(1)
+        self.needs_rtk.toggled.connect(self._edited)
 
     def value(self) -> FlightSettings:
         """What was chosen."""
-        return FlightSettings(self.needs_rtk.isChecked(), self.sets_parameters.isChecked())
+        return FlightSettings(self.needs_rtk.isChecked())
 
     def setValue(self, value: FlightSettings) -> None:  # noqa: N802
         """Show another choice."""
-        blockers = [QSignalBlocker(box) for box in (self.needs_rtk, self.sets_parameters)]
+        blocker = QSignalBlocker(self.needs_rtk)
         self.needs_rtk.setChecked(value.needs_rtk)
-        self.sets_parameters.setChecked(value.sets_parameters)
-        del blockers
+        del blocker
 
     def _edited(self, _is_on: bool) -> None:
         self.valueChanged.emit(self.value())

@@ -374,4 +374,51 @@ SENTENCES = (
         "Sentences",
         "the vehicle has another mission now than the one that was uploaded: pause it, and look what it does",
     ),
+    QT_TRANSLATE_NOOP("Sentences", "{0} m above take-off"),
+    QT_TRANSLATE_NOOP("Sentences", "through the building or an obstacle"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} m from something"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "an aircraft that returns by itself would fly {0}: at {1} m above take-off it clears everything, "
+        "and the airspace ends at {2} m; raise its ceiling, or move home to the side of the building "
+        "that is flown",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "an aircraft that returns by itself climbs within {0} m of the building or an obstacle"
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "an aircraft that returns by itself, {0}, crosses a no-fly zone; fly it back by hand"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "an aircraft that returns by itself flies {0}, {1} m are allowed"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the return height is above the airspace: expected at most {0} m above take-off, got {1} m; {2} m are right",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "it returns above the airspace, which ends {0} m above take-off ({1}): {2}"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the flight would begin {0} m above take-off, at least {1} m are needed; plan it from where the "
+        "aircraft stands",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "{0} (overruled)"),
+    QT_TRANSLATE_NOOP("Sentences", "how high the aircraft stands is not known yet"),
+    QT_TRANSLATE_NOOP("Sentences", " (its GNSS height is good to {0} m)"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the aircraft stands {0} m {1} than the planned home{2}, and all of the flight would be: {3} it "
+        "by {4} m, or plan from here",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "the vehicle's own home lies {0} m {1} than the planned one: set it anew where it stands"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "{0} m above the planned home{1}"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} m below the planned home{1}"),
+    QT_TRANSLATE_NOOP("Sentences", "they are as the plan needs them"),
+    QT_TRANSLATE_NOOP("Sentences", "; {0} more differ"),
+    QT_TRANSLATE_NOOP("Sentences", "the vehicle does not know these parameters: {0}"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the vehicle counts its heights from {0} m {1} than the planned home; it was not started: set "
+        "its home anew where it stands",
+    ),
 )

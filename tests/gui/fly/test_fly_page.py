@@ -7,6 +7,7 @@ import time
 import pytest
 from PySide6.QtCore import QMargins, QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QLineEdit
 
 from groundstation.gui.fly.flight_buttons import APART_PX, ICON_PX, PLACES
 from groundstation.services.document import Document, ItemKind, PlanEntry
@@ -14,9 +15,11 @@ from groundstation.services.live_choice import ConnectionChoice, LinkKind, choic
 from groundstation.services.live_events import LinkState, Request, ViewState
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
+from groundstation.vehicle.preflight import Mend
+from groundstation.vehicle.run_records import Phase
 from missions.mavlink.autopilots import Autopilot
 from planning.findings import Severity
-from tests.gui.driving import click_on, clicked, close_desk, escape, shut, turn_until, turn_until_idle
+from tests.gui.driving import click_on, clicked, close_desk, escape, press, shut, turn_until, turn_until_idle, type_into
 from tests.services.live_cases import Reopening, planned
 
 ONE_IN = 100
@@ -55,7 +58,7 @@ def page(desk):
     return desk.window.tab("fly")
 
 
-def press(page, request):
+def ask_for(page, request):
     button = page.buttons.button(request)
     click_on(button.window(), button)
 
@@ -68,10 +71,10 @@ def connect(application, page, speed_up=20.0, autopilot=Autopilot.ARDUPILOT):
 
 
 def take_off(application, page):
-    press(page, Request.UPLOAD)
+    ask_for(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
     with clicked("Yes"):
-        press(page, Request.START)
+        ask_for(page, Request.START)
     turn_until(application, lambda: n_photos(page) >= 1)
 
 
@@ -92,12 +95,12 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     connect(application, page, speed_up=10.0)
     assert "not uploaded yet" in page.checks.text()
     assert not page.buttons.button(Request.START).isEnabled()
-    press(page, Request.UPLOAD)
+    ask_for(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
     well = page.checks.text().count("\u2713") + page.checks.text().count("!")
     assert well == len(page.checks.text().splitlines())
     with clicked("Yes") as asked:
-        press(page, Request.START)
+        ask_for(page, Request.START)
     assert "takes 6 photos" in asked[0]
     turn_until(application, lambda: n_photos(page) >= 1)
     gc.collect()
@@ -139,11 +142,11 @@ def test_coverage_is_painted_on_the_panels_as_it_grows(application, desk, page):
 def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(application, desk, page):
     connect(application, page)
     take_off(application, page)
-    press(page, Request.PAUSE)
+    ask_for(page, Request.PAUSE)
     turn_until(application, lambda: page.buttons.button(Request.RESUME).isEnabled())
-    press(page, Request.RESUME)
+    ask_for(page, Request.RESUME)
     turn_until(application, lambda: page.buttons.button(Request.PAUSE).isEnabled())
-    press(page, Request.RETURN)
+    ask_for(page, Request.RETURN)
     turn_until(application, lambda: has_landed(page))
     missing = {row[0] for row in page.report.rows() if row[2] != "taken"}
     assert missing
@@ -216,10 +219,10 @@ def test_an_address_that_leads_nowhere_is_told_and_another_can_be_tried(applicat
 @pytest.mark.parametrize("no", ["Cancel", escape, shut])
 def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page, no):
     connect(application, page)
-    press(page, Request.UPLOAD)
+    ask_for(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
     with clicked(no) as asked:
-        press(page, Request.START)
+        ask_for(page, Request.START)
     assert "Is everybody clear of the aircraft?" in asked[0]
     end = time.monotonic() + 0.5
     while time.monotonic() < end:
@@ -347,15 +350,15 @@ def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio
     page.desk.viewChanged.connect(lambda view: phases.add((view.phase, view.link)))
     connect(application, page)
     take_off(application, page)
-    press(page, Request.PAUSE)
+    ask_for(page, Request.PAUSE)
     turn_until(application, lambda: page.buttons.button(Request.RESUME).isEnabled())
     radio.cut.is_unplugged.set()
     turn_until(application, lambda: page.band.isVisible())
     turn_until(application, lambda: "LINK LOST for" in page.band.text())
     radio.cut.is_unplugged.clear()
     turn_until(application, lambda: page.band.isHidden() and page.buttons.button(Request.RESUME).isEnabled())
-    press(page, Request.RESUME)
-    press(page, Request.RETURN)
+    ask_for(page, Request.RESUME)
+    ask_for(page, Request.RETURN)
     turn_until(application, lambda: has_landed(page))
     click_on(desk.window, page.connection.button)
     turn_until(application, lambda: not page.desk.is_connected)
@@ -409,7 +412,7 @@ def test_pressing_the_keyboard_twice_gives_no_second_order(application, desk, pa
 
 def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, desk, page):
     connect(application, page)
-    press(page, Request.UPLOAD)
+    ask_for(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
     heard = []
     page.buttons.requested.connect(heard.append)
@@ -452,7 +455,7 @@ def test_times_of_notes_carry_seconds_into_minutes(application, page):
 def test_a_finding_of_the_report_leads_to_its_view(application, desk, page):
     connect(application, page)
     take_off(application, page)
-    press(page, Request.RETURN)
+    ask_for(page, Request.RETURN)
     turn_until(application, lambda: has_landed(page))
     found = next(finding for finding in page.desk.in_hand.ended.report.findings if finding.code == "views-taken")
     row = next(n for n, text in enumerate(page.findings.texts()) if "views-taken" in text)
@@ -490,7 +493,7 @@ def test_start_waits_for_rtk_only_where_it_is_needed(application, desk, page):
 
     page.desk.simulation.conditions = Conditions(fix="single")
     connect(application, page)
-    press(page, Request.UPLOAD)
+    ask_for(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
     page.settings.needs_rtk.click()
     turn_until(application, lambda: not page.buttons.button(Request.START).isEnabled())
@@ -499,30 +502,99 @@ def test_start_waits_for_rtk_only_where_it_is_needed(application, desk, page):
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
 
-def test_parameters_of_a_real_vehicle_are_set_only_where_allowed_and_after_a_question(
-    application, radio, desk, page, monkeypatch
-):
+def connect_radio(application, radio, page, monkeypatch):
+    """Connect the vehicle at the radio, which is not taken for a simulation, and upload to it."""
     # Answers are waited for a second of the vehicle's: on a busy computer too short for 40 times as fast.
     radio.is_simulated, radio.speed_up = False, 8.0
     monkeypatch.setattr(page.desk, "_connection", lambda *_: radio)
     page.desk.set_choice(ConnectionChoice(LinkKind.TCP, "127.0.0.1:5760"))
     page.connection.setValue(page.desk.choice)
     page.connection.button.click()
+    upload(application, page)
+
+
+def upload(application, page):
     turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
-    assert page.desk.parameters_to_set() == ()
-    page.settings.sets_parameters.click()
-    for no in ("Cancel", escape):
-        turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
-        with clicked(no) as asked:
-            press(page, Request.UPLOAD)
-        assert "MNT1_PITCH_MIN = " in asked[-1]
-        assert "restarted" in asked[-1]
-        assert page.desk.in_hand.view.phase is None
-    # On a busy computer the link may be late for a moment.
-    turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
-    with clicked("Yes"):
-        press(page, Request.UPLOAD)
+    ask_for(page, Request.UPLOAD)
+    turn_until(application, lambda: page.desk.in_hand.view.phase in (Phase.CHECKING, Phase.READY))
+
+
+def mend(application, page, code, way):
+    """Press the button beside a check."""
+    turn_until(application, lambda: (found := page.checks.button(code, way)) is not None and found.isVisible())
+    button = page.checks.button(code, way)
+    click_on(button.window(), button)
+
+
+def test_parameters_of_a_real_vehicle_are_set_only_after_a_question(application, radio, desk, page, monkeypatch):
+    radio.changes = {"parameters": {"SIM_SPEEDUP": None, "RTL_ALT": 2100.0, "MNT1_PITCH_MIN": -45.0}}
+    connect_radio(application, radio, page, monkeypatch)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+    assert "the plan was made for" in page.checks.text()
+    before = radio._opened.simulated.parameters.values()
+    assert before["MNT1_PITCH_MIN"] == -45.0, "an upload sets nothing"
+    for no in ("Cancel", escape):
+        with clicked(no) as asked:
+            mend(application, page, "parameters", Mend.SET_PARAMETERS)
+        assert "MNT1_PITCH_MIN: -45 \u2192 -90" in asked[-1]
+    assert radio._opened.simulated.parameters.values() == before
+    with clicked("Yes"):
+        mend(application, page, "parameters", Mend.SET_PARAMETERS)
+    turn_until(application, lambda: "they are as the plan needs them" in page.checks.text())
+    assert radio._opened.simulated.parameters.values()["MNT1_PITCH_MIN"] == -90.0
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+
+
+def test_an_aircraft_at_another_height_flies_once_the_pilot_has_agreed(application, radio, desk, page, monkeypatch):
+    x, y, z = planned()[0].site.home_enu_m
+    radio.changes = {"stands_enu_m": (x, y, z - 3.0)}
+    connect_radio(application, radio, page, monkeypatch)
+    turn_until(application, lambda: "stands 3.0 m lower than the planned home" in page.checks.text())
+    assert not page.buttons.button(Request.START).isEnabled()
+    with clicked("Cancel") as asked:
+        mend(application, page, "home-height", Mend.RAISE)
+    assert "stands 3.0 m lower than planned" in asked[-1]
+    with clicked("Yes"):
+        mend(application, page, "home-height", Mend.RAISE)
+    turn_until(application, lambda: page.desk.in_hand.sortie.orders.raised_m == pytest.approx(3.0, abs=0.1))
+    upload(application, page)
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+
+
+def test_home_can_be_where_the_aircraft_stands(application, radio, desk, page, monkeypatch):
+    x, y, z = planned()[0].site.home_enu_m
+    radio.changes = {"stands_enu_m": (x + 8.0, y, z + 2.0)}
+    connect_radio(application, radio, page, monkeypatch)
+    turn_until(application, lambda: "8.0 m from the planned home" in page.checks.text())
+    with clicked("Yes"):
+        mend(application, page, "home", Mend.PLAN_FROM_HERE)
+    assert desk.workspace.document.site.site.home_enu_m == pytest.approx((x + 8.0, y, z + 2.0), abs=0.05)
+    assert "plan again" in desk.window.messages.texts()
+
+
+def answer(text):
+    """Type a text into the dialog, and say OK."""
+
+    def step(dialog):
+        type_into(dialog.findChild(QLineEdit), text)
+        press("OK")(dialog)
+
+    return step
+
+
+def test_a_return_through_the_building_needs_a_typed_word(application, radio, desk, page, monkeypatch):
+    radio.changes = {"autopilot": Autopilot.PX4, "parameters": {"SYS_HITL": 0, "RTL_RETURN_ALT": 500.0}}
+    connect_radio(application, radio, page, monkeypatch)
+    turn_until(application, lambda: "it returns above the airspace" in page.checks.text())
+    for typed in (answer("go on"), escape):
+        with clicked(typed) as asked:
+            mend(application, page, "return", Mend.OVERRULE)
+        assert "type RETURN" in asked[-1]
+        assert not page.buttons.button(Request.START).isEnabled()
+    with clicked(answer("return")):
+        mend(application, page, "return", Mend.OVERRULE)
+    turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
+    assert "(overruled)" in page.checks.text()
 
 
 @pytest.mark.slow
@@ -543,7 +615,7 @@ def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_pictur
     assert page._phase.text().startswith("Flying.")
     assert page.buttons.button(Request.RETURN).isEnabled()
     assert not page.buttons.button(Request.UPLOAD).isEnabled()
-    press(page, Request.RETURN)
+    ask_for(page, Request.RETURN)
     turn_until(application, lambda: has_landed(page))
     page.report.top_up.click()
     flown_over = planned()[0].site.name

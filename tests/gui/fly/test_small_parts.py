@@ -22,8 +22,8 @@ def new_desk(application, tmp_path, monkeypatch):
 
 
 def test_whether_rtk_is_needed_is_known_at_the_next_start(new_desk):
-    new_desk().set_settings(FlightSettings(needs_rtk=True, sets_parameters=True))
-    assert new_desk().settings == FlightSettings(needs_rtk=True, sets_parameters=False)
+    new_desk().set_settings(FlightSettings(needs_rtk=True))
+    assert new_desk().settings == FlightSettings(needs_rtk=True)
     new_desk().set_settings(FlightSettings())
     assert new_desk().settings == FlightSettings()
 
