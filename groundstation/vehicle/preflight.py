@@ -242,19 +242,24 @@ def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
     accuracy_m = None if state.fix is None else state.fix.value.vertical_accuracy_m
     told = "" if accuracy_m is None else f" (its GNSS height is good to {accuracy_m:.1f} m)"
     if abs(above_m) > HOME_HEIGHT_M:
-        by_m, side, mend = abs(above_m), *(("lower", "raise") if above_m < 0.0 else ("higher", "lower"))
-        text = (
-            f"the aircraft stands {by_m:.1f} m {side} than the planned home{told}, and all of the flight would be: "
-            f"{mend} it by {by_m:.1f} m, or plan from here"
-        )
+        if above_m < 0.0:
+            text = (
+                f"the aircraft stands {-above_m:.1f} m lower than the planned home{told}, and all of the flight would "
+                f"be: raise it by {-above_m:.1f} m, or plan from here"
+            )
+        else:
+            text = (
+                f"the aircraft stands {above_m:.1f} m higher than the planned home{told}, and all of the flight would "
+                f"be: lower it by {above_m:.1f} m, or plan from here"
+            )
         return PreflightCheck("home-height", Verdict.BAD, text, above_m, HOME_HEIGHT_M, "m")
     counted_m = state.home_position_amsl_m
     off_m = 0.0 if counted_m is None else stands_above_m(state, orders, counted_m)
     if abs(off_m) > HOME_HEIGHT_M:
         # ArduPilot sets its home anew when it is armed, and that is looked at again; PX4 takes off at once.
-        side = "higher" if off_m > 0.0 else "lower"
         text = (
-            f"the vehicle's own home lies {abs(off_m):.1f} m {side} than the planned one: set it anew where it stands"
+            f"the vehicle's own home lies {abs(off_m):.1f} m {'higher' if off_m > 0.0 else 'lower'} than the planned "
+            "one: set it anew where it stands"
         )
         verdict = Verdict.WARN if state.autopilot is Autopilot.ARDUPILOT else Verdict.BAD
         return PreflightCheck("home-height", verdict, text, off_m, HOME_HEIGHT_M, "m")

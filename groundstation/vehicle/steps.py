@@ -313,10 +313,9 @@ def _refuse_what_is_not_ours(run: FlightRun, *, is_armed: bool = False) -> None:
     home_m = run.state.home_altitude_amsl_m
     off_m = 0.0 if home_m is None else stands_above_m(run.state, run.orders, home_m)
     if is_armed and abs(off_m) > HOME_HEIGHT_M and "home-height" not in run.options.overrules:
-        side = "higher" if off_m > 0.0 else "lower"
         raise LinkRejected(
-            f"the vehicle counts its heights from {abs(off_m):.1f} m {side} than the planned home; it was not started: "
-            "set its home anew where it stands"
+            f"the vehicle counts its heights from {abs(off_m):.1f} m {'above' if off_m > 0.0 else 'below'} the planned "
+            "home; it was not started: set its home anew where it stands"
         )
     if run.on_board.doubt:
         raise LinkRejected(

@@ -155,7 +155,7 @@ def test_an_aircraft_at_another_height_than_planned_is_not_started(orders, autop
 def test_a_home_that_moves_with_arming_stops_the_motors_again(orders):
     toy = toy_at_home(orders, moves_home_m=-5.0)
     _, outcome = fly(orders, toy)
-    assert "counts its heights from 5.0 m lower than the planned home" in str(outcome.error)
+    assert "counts its heights from 5.0 m below the planned home" in str(outcome.error)
     assert not toy.has_flown
     assert not toy.is_armed
 

@@ -403,14 +403,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "{0} (overruled)"),
     QT_TRANSLATE_NOOP("Sentences", "how high the aircraft stands is not known yet"),
     QT_TRANSLATE_NOOP("Sentences", " (its GNSS height is good to {0} m)"),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "the aircraft stands {0} m {1} than the planned home{2}, and all of the flight would be: {3} it "
-        "by {4} m, or plan from here",
-    ),
-    QT_TRANSLATE_NOOP(
-        "Sentences", "the vehicle's own home lies {0} m {1} than the planned one: set it anew where it stands"
-    ),
     QT_TRANSLATE_NOOP("Sentences", "{0} m above the planned home{1}"),
     QT_TRANSLATE_NOOP("Sentences", "{0} m below the planned home{1}"),
     QT_TRANSLATE_NOOP("Sentences", "they are as the plan needs them"),
@@ -418,7 +410,28 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "the vehicle does not know these parameters: {0}"),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "the vehicle counts its heights from {0} m {1} than the planned home; it was not started: set "
-        "its home anew where it stands",
+        "the aircraft stands {0} m lower than the planned home{1}, and all of the flight would be: raise "
+        "it by {2} m, or plan from here",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the aircraft stands {0} m higher than the planned home{1}, and all of the flight would be: "
+        "lower it by {2} m, or plan from here",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "the vehicle's own home lies {0} m higher than the planned one: set it anew where it stands"
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "the vehicle's own home lies {0} m lower than the planned one: set it anew where it stands"
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the vehicle counts its heights from {0} m above the planned home; it was not started: set its "
+        "home anew where it stands",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the vehicle counts its heights from {0} m below the planned home; it was not started: set its "
+        "home anew where it stands",
     ),
 )
