@@ -1524,16 +1524,60 @@ Blickrichtung: {2}</translation>
         <translation>Parameter des Fluggeräts setzen</translation>
     </message>
     <message>
-        <source>The upload sets these parameters of the vehicle where they differ, and they stay so:</source>
-        <translation>Das Hochladen setzt diese Parameter des Fluggeräts, wo sie abweichen, und sie bleiben so:</translation>
+        <source>These parameters of the vehicle are set, and they stay so:</source>
+        <translation>Diese Parameter des Fluggeräts werden gesetzt und bleiben so:</translation>
     </message>
     <message>
-        <source>and these, after which the autopilot is restarted:</source>
-        <translation>und diese, wonach der Autopilot neu gestartet wird:</translation>
+        <source>These are set, and the autopilot is restarted after it:</source>
+        <translation>Diese werden gesetzt, und danach wird der Autopilot neu gestartet:</translation>
     </message>
     <message>
-        <source>Set them, and upload?</source>
-        <translation>Setzen und hochladen?</translation>
+        <source>Set them?</source>
+        <translation>Setzen?</translation>
+    </message>
+    <message>
+        <source>The aircraft stands {0} {1} than planned. Its heights above take-off are made as much {2}, so that it flies through the same places, and have to be uploaded again. Do so only where you know that it really stands there: a GNSS height can be wrong by metres. Fly from this height?</source>
+        <translation>Das Fluggerät steht {0} {1} als geplant. Seine Höhen über dem Startplatz werden um ebenso viel {2}, damit es durch dieselben Stellen fliegt, und müssen noch einmal hochgeladen werden. Nur tun, wenn sicher ist, dass es wirklich dort steht: Eine GNSS-Höhe kann um Meter falsch sein. Von dieser Höhe fliegen?</translation>
+    </message>
+    <message>
+        <source>lower</source>
+        <translation>niedriger</translation>
+    </message>
+    <message>
+        <source>larger</source>
+        <translation>größer</translation>
+    </message>
+    <message>
+        <source>higher</source>
+        <translation>höher</translation>
+    </message>
+    <message>
+        <source>smaller</source>
+        <translation>kleiner</translation>
+    </message>
+    <message>
+        <source>Fly from this height</source>
+        <translation>Von dieser Höhe fliegen</translation>
+    </message>
+    <message>
+        <source>The site&apos;s home moves to where the aircraft stands (Undo takes it back). Plans start at home, so the flight has to be planned again. Move it?</source>
+        <translation>Der Startplatz des Standorts rückt dorthin, wo das Fluggerät steht (Rückgängig nimmt es zurück). Pläne beginnen am Startplatz, also muss der Flug neu geplant werden. Verschieben?</translation>
+    </message>
+    <message>
+        <source>Home here</source>
+        <translation>Startplatz hier</translation>
+    </message>
+    <message>
+        <source>{0}
+
+To fly all the same, type {1}:</source>
+        <translation>{0}
+
+Um trotzdem zu fliegen, {1} eintippen:</translation>
+    </message>
+    <message>
+        <source>Overrule</source>
+        <translation>Übergehen</translation>
     </message>
     <message>
         <source>The aircraft is in the air</source>
@@ -1629,6 +1673,14 @@ Blickrichtung: {2}</translation>
 </context>
 <context>
     <name>FlyDesk</name>
+    <message>
+        <source>Home to the aircraft</source>
+        <translation>Startplatz zum Fluggerät</translation>
+    </message>
+    <message>
+        <source>Home is where the aircraft stands: plan again, then connect anew.</source>
+        <translation>Der Startplatz ist jetzt, wo das Fluggerät steht: neu planen, dann neu verbinden.</translation>
+    </message>
     <message>
         <source>Prepare the flight</source>
         <translation>Flug vorbereiten</translation>
@@ -4157,6 +4209,22 @@ Blickrichtung: {3}</translation>
         <translation>{0}: {1}</translation>
     </message>
     <message>
+        <source>Set parameters ...</source>
+        <translation>Parameter setzen ...</translation>
+    </message>
+    <message>
+        <source>Fly from this height ...</source>
+        <translation>Von dieser Höhe fliegen ...</translation>
+    </message>
+    <message>
+        <source>Home here ...</source>
+        <translation>Startplatz hier ...</translation>
+    </message>
+    <message>
+        <source>Overrule ...</source>
+        <translation>Übergehen ...</translation>
+    </message>
+    <message>
         <source>Link</source>
         <translation>Verbindung</translation>
     </message>
@@ -4171,6 +4239,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Home</source>
         <translation>Startplatz</translation>
+    </message>
+    <message>
+        <source>Height of home</source>
+        <translation>Höhe des Startplatzes</translation>
     </message>
     <message>
         <source>Battery</source>
@@ -4195,6 +4267,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Rally points on board</source>
         <translation>Rally-Punkte an Bord</translation>
+    </message>
+    <message>
+        <source>Parameters</source>
+        <translation>Parameter</translation>
     </message>
     <message>
         <source>Link lost</source>
@@ -9077,6 +9153,102 @@ Take it over?</source>
         <translation>das Fluggerät hat jetzt eine andere Mission als die hochgeladene: anhalten und nachsehen, was es tut</translation>
     </message>
     <message>
+        <source>{0} m above take-off</source>
+        <translation>{0} m über dem Startplatz</translation>
+    </message>
+    <message>
+        <source>through the building or an obstacle</source>
+        <translation>durch das Gebäude oder ein Hindernis</translation>
+    </message>
+    <message>
+        <source>{0} m from something</source>
+        <translation>{0} m an etwas vorbei</translation>
+    </message>
+    <message>
+        <source>an aircraft that returns by itself would fly {0}: at {1} m above take-off it clears everything, and the airspace ends at {2} m; raise its ceiling, or move home to the side of the building that is flown</source>
+        <translation>ein Fluggerät, das selbst zurückkehrt, flöge {0}: Mit {1} m über dem Startplatz kommt es über alles hinweg, und der Luftraum endet bei {2} m; seine Obergrenze anheben, oder den Startplatz auf die Seite des Gebäudes legen, die beflogen wird</translation>
+    </message>
+    <message>
+        <source>an aircraft that returns by itself climbs within {0} m of the building or an obstacle</source>
+        <translation>ein Fluggerät, das selbst zurückkehrt, steigt {0} m neben dem Gebäude oder einem Hindernis auf</translation>
+    </message>
+    <message>
+        <source>an aircraft that returns by itself, {0}, crosses a no-fly zone; fly it back by hand</source>
+        <translation>ein Fluggerät, das selbst zurückkehrt, {0}, kreuzt eine Flugverbotszone; von Hand zurückfliegen</translation>
+    </message>
+    <message>
+        <source>an aircraft that returns by itself flies {0}, {1} m are allowed</source>
+        <translation>ein Fluggerät, das selbst zurückkehrt, fliegt {0}, {1} m sind erlaubt</translation>
+    </message>
+    <message>
+        <source>the return height is above the airspace: expected at most {0} m above take-off, got {1} m; {2} m are right</source>
+        <translation>die Rückkehrhöhe liegt über dem Luftraum: erwartet höchstens {0} m über dem Startplatz, angegeben {1} m; {2} m sind richtig</translation>
+    </message>
+    <message>
+        <source>it returns above the airspace, which ends {0} m above take-off ({1}): {2}</source>
+        <translation>es kehrt über dem Luftraum zurück, der {0} m über dem Startplatz endet ({1}): {2}</translation>
+    </message>
+    <message>
+        <source>the flight would begin {0} m above take-off, at least {1} m are needed; plan it from where the aircraft stands</source>
+        <translation>der Flug begänne {0} m über dem Startplatz, mindestens {1} m sind nötig; von dort planen, wo das Fluggerät steht</translation>
+    </message>
+    <message>
+        <source>{0} (overruled)</source>
+        <translation>{0} (übergangen)</translation>
+    </message>
+    <message>
+        <source>how high the aircraft stands is not known yet</source>
+        <translation>wie hoch das Fluggerät steht, ist noch nicht bekannt</translation>
+    </message>
+    <message>
+        <source> (its GNSS height is good to {0} m)</source>
+        <translation> (seine GNSS-Höhe ist auf {0} m genau)</translation>
+    </message>
+    <message>
+        <source>{0} m above the planned home{1}</source>
+        <translation>{0} m über dem geplanten Startplatz{1}</translation>
+    </message>
+    <message>
+        <source>{0} m below the planned home{1}</source>
+        <translation>{0} m unter dem geplanten Startplatz{1}</translation>
+    </message>
+    <message>
+        <source>they are as the plan needs them</source>
+        <translation>sie sind, wie der Plan sie braucht</translation>
+    </message>
+    <message>
+        <source>; {0} more differ</source>
+        <translation>; {0} weitere weichen ab</translation>
+    </message>
+    <message>
+        <source>the vehicle does not know these parameters: {0}</source>
+        <translation>diese Parameter kennt das Fluggerät nicht: {0}</translation>
+    </message>
+    <message>
+        <source>the aircraft stands {0} m lower than the planned home{1}, and all of the flight would be: raise it by {2} m, or plan from here</source>
+        <translation>das Fluggerät steht {0} m tiefer als der geplante Startplatz{1}, und so läge der ganze Flug: ihn um {2} m anheben, oder von hier planen</translation>
+    </message>
+    <message>
+        <source>the aircraft stands {0} m higher than the planned home{1}, and all of the flight would be: lower it by {2} m, or plan from here</source>
+        <translation>das Fluggerät steht {0} m höher als der geplante Startplatz{1}, und so läge der ganze Flug: ihn um {2} m absenken, oder von hier planen</translation>
+    </message>
+    <message>
+        <source>the vehicle&apos;s own home lies {0} m higher than the planned one: set it anew where it stands</source>
+        <translation>der eigene Startplatz des Fluggeräts liegt {0} m höher als der geplante: dort neu setzen, wo es steht</translation>
+    </message>
+    <message>
+        <source>the vehicle&apos;s own home lies {0} m lower than the planned one: set it anew where it stands</source>
+        <translation>der eigene Startplatz des Fluggeräts liegt {0} m tiefer als der geplante: dort neu setzen, wo es steht</translation>
+    </message>
+    <message>
+        <source>the vehicle counts its heights from {0} m above the planned home; it was not started: set its home anew where it stands</source>
+        <translation>das Fluggerät zählt seine Höhen von {0} m über dem geplanten Startplatz; nicht gestartet: seinen Startplatz dort neu setzen, wo es steht</translation>
+    </message>
+    <message>
+        <source>the vehicle counts its heights from {0} m below the planned home; it was not started: set its home anew where it stands</source>
+        <translation>das Fluggerät zählt seine Höhen von {0} m unter dem geplanten Startplatz; nicht gestartet: seinen Startplatz dort neu setzen, wo es steht</translation>
+    </message>
+    <message>
         <source>the vehicle does not say whether it has rally points; look before it returns by itself</source>
         <translation>das Fluggerät sagt nicht, ob es Rally-Punkte hat; hinsehen, bevor es von selbst zurückkehrt</translation>
     </message>
@@ -11412,16 +11584,8 @@ Take it over?</source>
         <translation>Start nur mit RTK</translation>
     </message>
     <message>
-        <source>Upload sets parameters</source>
-        <translation>Hochladen setzt Parameter</translation>
-    </message>
-    <message>
         <source>Start waits for RTK, and a warning comes when it is lost in flight.</source>
         <translation>Der Start wartet auf RTK, und geht es im Flug verloren, kommt eine Warnung.</translation>
-    </message>
-    <message>
-        <source>Camera, gimbal and speeds of a real vehicle are set as the plan needs them. Each upload names the parameters and asks first. Without it they are only compared. Those of a simulation are always set.</source>
-        <translation>Kamera, Gimbal und Geschwindigkeiten eines echten Fluggeräts werden gesetzt, wie der Plan sie braucht. Jedes Hochladen nennt die Parameter und fragt vorher. Sonst werden sie nur verglichen. Die einer Simulation werden immer gesetzt.</translation>
     </message>
 </context>
 <context>
