@@ -193,18 +193,15 @@ class ReportMaker(QObject):
         attached = self._attached.get(name)
         if attached is None:
             return text
-        where = escape(name)
-        if not attached.n_bytes:
-            missing = self.tr("The file is missing or not the one that was attached: {0}")
-            return f"{text}<br><i>{escape(missing).format(where)}</i>"
         if attached.picture is not None:
             photo = f"<img src='{escape(name, quote=True)}' {_fitted(attached.picture)}>"
             return f"{text}<p style='margin-top:8px; margin-bottom:8px'>{photo}</p>"
-        if isinstance(entry, Document):
-            return (
-                f"{text}, {QLocale().formattedDataSize(attached.n_bytes, 1, QLocale.DataSizeFormat.DataSizeSIFormat)}"
-            )
-        return f"{text}<br><i>{escape(self.tr('The picture cannot be read: {0}')).format(where)}</i>"
+        if attached.n_bytes and isinstance(entry, Document):
+            size = QLocale().formattedDataSize(attached.n_bytes, 1, QLocale.DataSizeFormat.DataSizeSIFormat)
+            return f"{text}, {escape(size)}"
+        unread = self.tr("The picture cannot be read: {0}")
+        missing = self.tr("The file is missing or not the one that was attached: {0}")
+        return f"{text}<br><i>{escape((unread if attached.n_bytes else missing).format(name))}</i>"
 
 
 def _fitted(picture: bytes) -> str:
