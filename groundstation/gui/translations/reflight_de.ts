@@ -5025,6 +5025,10 @@ Take it over?</source>
         <translation>GlobalId</translation>
     </message>
     <message>
+        <source>The picture cannot be read: {0}</source>
+        <translation>Das Bild lässt sich nicht lesen: {0}</translation>
+    </message>
+    <message>
         <source>The file is missing or not the one that was attached: {0}</source>
         <translation>Die Datei fehlt oder ist nicht die, die angehängt wurde: {0}</translation>
     </message>
