@@ -223,7 +223,7 @@ def _windows(building: CityBuilding) -> Iterator[SourceWindow]:
     for window_id, polygons in building.windows.items():
         pane = pane_of_polygons(polygons)
         if pane is not None:
-            yield SourceWindow(window_id, pane.outline, pane.thickness_m)
+            yield SourceWindow(window_id, pane.outline, pane.thickness_m, pane.is_oriented)
 
 
 def _placement(crs: str | None, points: Array, ground_z: float, options: ImportOptions) -> Placement:

@@ -34,6 +34,11 @@ PANELS_PER_BATCH = 2000
 UNDECIDED = 0.1
 """Sides whose free shares differ by less look alike; then the one away from the building's middle is outside."""
 
+BLIND = 0.1
+"""A side that a file calls outside and that sees less is inside, if the other sees more. In 222 windows of eight real
+buildings 12 were turned so, and each saw nothing at all. Everything more is believed: models without walls or roofs
+leave inside as open as outside, and courts less so."""
+
 
 class Sides(NamedTuple):
     """Corners turned so that their normal points outdoors, shape (m, 4, 3), and how open it is there.
@@ -47,22 +52,29 @@ class Sides(NamedTuple):
         point `OCCLUSION_OFFSET_M` in front of the centroid; shape (m,), 0 to 1.
     inner_share
         The same for the other side, shape (m,).
+    is_stated
+        The file says which side is outside, and is believed, shape (m,).
+    is_turned
+        The file says so, and is not, shape (m,).
     """
 
     corners: Array
     open_share: Array
     inner_share: Array
+    is_stated: NDArray[np.bool_]
+    is_turned: NDArray[np.bool_]
 
     @property
     def is_decided(self) -> NDArray[np.bool_]:
-        """False where both sides are equally open, shape (m,)."""
-        return np.asarray(np.abs(self.open_share - self.inner_share) >= UNDECIDED)
+        """False where both sides are equally open and the file does not say, shape (m,)."""
+        return np.asarray(self.is_stated | (np.abs(self.open_share - self.inner_share) >= UNDECIDED))
 
     @property
     def is_outdoors(self) -> NDArray[np.bool_]:
         """Which panes face the open, shape (m,)."""
         roofless = float(np.percentile(self.inner_share, 90.0)) if len(self.inner_share) else 0.0
-        return np.asarray(self.open_share >= max(MIN_OPEN_SHARE, min(ROOFLESS_FACTOR * roofless, ROOFLESS_LIMIT)))
+        least = max(MIN_OPEN_SHARE, min(ROOFLESS_FACTOR * roofless, ROOFLESS_LIMIT))
+        return np.asarray(self.open_share >= np.where(self.is_stated, MIN_OPEN_SHARE, least))
 
 
 def hemisphere_directions(n: int) -> Array:
@@ -85,19 +97,27 @@ def open_shares(points: Array, normals: Array, sight: LineOfSight, reach_m: floa
     return shares
 
 
-def turn_outwards(corners: Array, thickness_m: Array, middle: Array, sight: LineOfSight) -> Sides:
+def turn_outwards(
+    corners: Array,
+    thickness_m: Array,
+    middle: Array,
+    sight: LineOfSight,
+    is_oriented: NDArray[np.bool_] | None = None,
+) -> Sides:
     """Find the outer side of every quad.
 
     Parameters
     ----------
     corners
-        Quads on the middle planes of their panes, shape (m, 4, 3), either sense of rotation.
+        Quads on the middle planes of their panes, shape (m, 4, 3).
     thickness_m
         Of the panes, shape (m,).
     middle
         Middle of the building, shape (3,).
     sight
         Line of sight among all triangles of the building and its panes.
+    is_oriented
+        Which quads turn counter-clockwise as seen from the side that the file calls outside, shape (m,); else none.
     """
     normals = unit_normals(corners)
     centres = corners.mean(axis=1)
@@ -106,6 +126,9 @@ def turn_outwards(corners: Array, thickness_m: Array, middle: Array, sight: Line
     back = open_shares(centres - face - OCCLUSION_OFFSET_M * normals, -normals, sight)
     is_decided = np.abs(front - back) >= UNDECIDED
     faces_away = np.einsum("mk,mk->m", centres - middle, normals) >= 0.0
-    is_front = np.where(is_decided, front > back, faces_away)
+    oriented = np.zeros(len(corners), bool) if is_oriented is None else is_oriented
+    is_inside = (front < BLIND) & (back >= front + UNDECIDED)
+    is_front = np.where(oriented, ~is_inside, np.where(is_decided, front > back, faces_away))
     turned = np.where(is_front[:, None, None], corners + face[:, None], (corners - face[:, None])[:, ::-1])
-    return Sides(turned, np.where(is_front, front, back), np.where(is_front, back, front))
+    outer, inner = np.where(is_front, front, back), np.where(is_front, back, front)
+    return Sides(turned, outer, inner, oriented & ~is_inside, oriented & is_inside)

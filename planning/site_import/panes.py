@@ -70,6 +70,8 @@ def panes_outdoors(source: SourceModel, monitor: Monitor) -> Panes:
         notes += _counted("windows that lie exactly on others, where both stay", len(twice), twice)
     odd = [windows[i].source_id for i in kept if not fitted[i][1].is_exact]
     notes += _counted("windows that are no quads, for which a rectangle of the same area stands in", len(odd), odd)
+    against = [windows[i].source_id for i in kept if sides.is_turned[i]]
+    notes += _counted("windows that the file has facing into the building, turned around", len(against), against)
     n_undecided = int((~sides.is_decided[kept]).sum())
     notes += _counted("windows open on both sides, taken to face away from the building", n_undecided)
     corners = np.array([start_lower_left(quad) for quad in sides.corners[kept]]).reshape(-1, 4, 3)
@@ -83,7 +85,8 @@ def _sides(windows: list[SourceWindow], corners: Array, building: TriangleMesh, 
     middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
     monitor.report("looking outdoors", 0, 1)
     thickness_m = np.array([window.thickness_m for window in windows])
-    return turn_outwards(corners, thickness_m, middle, line_of_sight(triangles))
+    is_oriented = np.array([window.is_oriented for window in windows])
+    return turn_outwards(corners, thickness_m, middle, line_of_sight(triangles), is_oriented)
 
 
 def _view(corners: Array, open_share: Array, building: TriangleMesh) -> str:

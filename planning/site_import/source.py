@@ -32,14 +32,17 @@ class SourceWindow:
     source_id
         GlobalId, gml:id or the like.
     outline_enu_m
-        Its outline in order, shape (k, 3), k >= 3, on the middle plane of the pane; either sense of rotation.
+        Its outline in order, shape (k, 3), k >= 3, on the middle plane of the pane.
     thickness_m
         Of the pane: on either side, its face is half of this from the outline.
+    is_oriented
+        The outline turns counter-clockwise as seen from the side that the file calls outside; else in either sense.
     """
 
     source_id: str
     outline_enu_m: Array
     thickness_m: float = 0.0
+    is_oriented: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,11 +26,26 @@ PARALLEL = np.cos(np.radians(10.0))
 """Faces turned less than this from the window's own direction face the same way."""
 
 
+ONE_WAY = 0.5
+"""Faces whose areas cancel out to less than this share look both ways."""
+
+
 class Pane(NamedTuple):
-    """Outline on the middle plane, shape (k, 3), and thickness across it."""
+    """A pane.
+
+    Parameters
+    ----------
+    outline
+        On the middle plane, shape (k, 3).
+    thickness_m
+        Across it.
+    is_oriented
+        The outline turns counter-clockwise as seen from the side that the file calls outside.
+    """
 
     outline: Array
     thickness_m: float
+    is_oriented: bool = False
 
 
 def pane_of(triangles: Array, across: Array) -> Pane:
@@ -59,7 +74,13 @@ def pane_of_polygons(polygons: Sequence[Sequence[Array]]) -> Pane | None:
     is_pane = faces_axis & has_no_hole & (areas >= MIN_PANE_SHARE * areas.max())
     chosen = is_pane if areas[is_pane].sum() >= MIN_GLASS_SHARE * areas.max() else areas > 0.0
     triangles = [triangulate(rings) for rings, is_chosen in zip(polygons, chosen, strict=True) if is_chosen]
-    return pane_of(np.concatenate(triangles), axis)
+    pane = pane_of(np.concatenate(triangles), axis)
+    # A body faces both ways: it says nothing about outside.
+    along = vectors[chosen] @ axis
+    if abs(float(along.sum())) < ONE_WAY * float(np.abs(along).sum()):
+        return pane
+    is_turned = float(area_vector(pane.outline) @ axis) * float(along.sum()) < 0.0
+    return Pane(pane.outline[::-1] if is_turned else pane.outline, pane.thickness_m, is_oriented=True)
 
 
 def facing_axis(triangles: Array) -> Array:

@@ -234,6 +234,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "windows left out because another one shows the same pane"),
     QT_TRANSLATE_NOOP("Sentences", "windows that lie exactly on others, where both stay"),
     QT_TRANSLATE_NOOP("Sentences", "windows that are no quads, for which a rectangle of the same area stands in"),
+    QT_TRANSLATE_NOOP("Sentences", "windows that the file has facing into the building, turned around"),
     QT_TRANSLATE_NOOP("Sentences", "windows open on both sides, taken to face away from the building"),
     QT_TRANSLATE_NOOP(
         "Sentences",
