@@ -192,7 +192,16 @@ def left_out_notes(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _ground_surface(building: CityBuilding) -> StatedGround | None:
-    """The ground by the surfaces that the file says stand on it; None without any, or where they differ by a storey."""
+    """The ground by the surfaces that the file says stand on it; None without any, or where they differ by a storey.
+
+    Where there are windows alone, as in a model of panes, it is at the lowest of them.
+    """
+    if not building.faces:
+        lowest = float(building.points()[:, 2].min())
+        note = (
+            f"ground: the file holds windows alone, the lowest at z = {lowest:.2f}, which is taken; check it (--ground)"
+        )
+        return StatedGround(lowest, note)
     rings = [surface[0] for surface in building.ground]
     if not rings:
         return None

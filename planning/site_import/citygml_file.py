@@ -17,6 +17,7 @@ from planning.progress import Monitor
 from planning.site_import.city_model import MIN_RING_POINTS, CityBuilding, Rings, city_source
 from planning.site_import.options import ImportOptions
 from planning.site_import.source import SourceModel
+from planning.step_file import real_name
 
 Array = NDArray[np.float64]
 
@@ -123,7 +124,7 @@ def _building(path: Path, element: Element, number: str) -> CityBuilding:
         raise InputError(f"{path}: nested too deeply for a CityGML file") from error
     building = CityBuilding(
         id=_id(element) or number,
-        name=_name(element) or _id(element),
+        name=real_name(_name(element), _id(element)),
         part_ids=tuple(_id(part) for part in element.iter() if _local(part) == "BuildingPart" and _id(part)),
     )
     for number_of_part, part in enumerate(reading.every()):

@@ -15,6 +15,7 @@ from planning.progress import Monitor
 from planning.site_import.city_model import MIN_RING_POINTS, CityBuilding, Rings, city_source
 from planning.site_import.options import ImportOptions
 from planning.site_import.source import SourceModel
+from planning.step_file import real_name
 
 Array = NDArray[np.float64]
 
@@ -90,7 +91,7 @@ def _building(root: str, objects: dict[str, Any], vertices: Array) -> CityBuildi
     """A building with all its parts, each in its highest level of detail; what is broken is left out."""
     attributes = objects[root].get("attributes")
     name = attributes.get("name") if isinstance(attributes, dict) else None
-    building = CityBuilding(root, str(name or root))
+    building = CityBuilding(root, real_name(name, root))
     waiting, seen = [root], set()
     while waiting:
         name = waiting.pop()

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from planning.errors import InputError
 from planning.site_import.ifc_place import MapParameters, SitePlace, map_parameters, site_place, true_north_rad
 from planning.site_import.ifc_windows import Shape, glazed_plates, joined, plate_pane, skin_panes, window_pane
+from planning.site_import.polygons import area_vector
 from planning.site_import.window_faces import Pane
+from planning.step_file import real_name
 
 Array = NDArray[np.float64]
 
@@ -28,7 +30,8 @@ NOT_IN_MESH = (
 )
 """Elements that are no part of what a drone can meet outside. Spaces, grids, annotations and sites are no elements."""
 
-UNNAMED = ("", "default", "building")
+OUTSIDE_SET, OUTSIDE_NORMAL = "Pset_ReflightPane", ("OutwardX", "OutwardY", "OutwardZ")
+"""Property set of a pane of ours: which way is outside, in the coordinates of its placement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +44,8 @@ class IfcContent:
         Of the building; may be empty.
     schema
         IFC2X3, IFC4 ...
-    pane_ids, outlines, thicknesses_m
-        Of windows and glazed plates; outlines are lists of points.
+    pane_ids, outlines, thicknesses_m, are_oriented
+        Of windows and glazed plates; outlines are lists of points, see `SourceWindow`.
     unit_m
         Metres per length unit of the file.
     site_z_m
@@ -62,6 +65,7 @@ class IfcContent:
     pane_ids: tuple[str, ...]
     outlines: tuple[tuple[tuple[float, float, float], ...], ...]
     thicknesses_m: tuple[float, ...]
+    are_oriented: tuple[bool, ...]
     unit_m: float
     site_z_m: float | None
     site: SitePlace | None
@@ -120,6 +124,8 @@ def _extract(
     elements = _elements(model)
     shapes = {shape.guid: shape for shape in _shapes(model, elements.all, deflection_m, n_threads, report)}
     panes, notes = _panes(elements, shapes)
+    outwards = _outwards(model)
+    panes = {guid: _facing(pane, outwards.get(guid)) for guid, pane in panes.items()}
     sites = model.by_type("IfcSite")
     content = IfcContent(
         name=_name(model),
@@ -127,6 +133,7 @@ def _extract(
         pane_ids=tuple(panes),
         outlines=tuple(tuple((float(x), float(y), float(z)) for x, y, z in pane.outline) for pane in panes.values()),
         thicknesses_m=tuple(pane.thickness_m for pane in panes.values()),
+        are_oriented=tuple(pane.is_oriented for pane in panes.values()),
         unit_m=unit_m,
         site_z_m=float(get_local_placement(sites[0].ObjectPlacement)[2, 3]) * unit_m if sites else None,
         site=site_place(model, unit_m),
@@ -223,5 +230,30 @@ def _axes(element: Any) -> Array:
 
 def _name(model: Any) -> str:
     """Name of the building, where it has a real one."""
-    names = [name for building in model.by_type("IfcBuilding") for name in (building.LongName, building.Name) if name]
-    return next((name.strip() for name in names if name.strip().lower() not in UNNAMED), "")
+    return real_name(
+        *(name for building in model.by_type("IfcBuilding") for name in (building.LongName, building.Name))
+    )
+
+
+def _outwards(model: Any) -> dict[str, Array]:
+    """Directions in which elements say that outside is, by their identifiers, in model coordinates."""
+    found: dict[str, Array] = {}
+    for properties in model.by_type("IfcPropertySet"):
+        if properties.Name != OUTSIDE_SET:
+            continue
+        values = {each.Name: each.NominalValue for each in properties.HasProperties if hasattr(each, "NominalValue")}
+        try:
+            local = np.array([float(values[name].wrappedValue) for name in OUTSIDE_NORMAL])
+        except (KeyError, AttributeError, TypeError, ValueError):
+            continue
+        for element in properties.DefinesOccurrence[0].RelatedObjects if properties.DefinesOccurrence else ():
+            found[element.GlobalId] = local @ _axes(element)
+    return found
+
+
+def _facing(pane: Pane, outwards: Array | None) -> Pane:
+    """A pane whose outline turns as seen from outside, where that is known."""
+    if outwards is None:
+        return pane
+    along = float(area_vector(pane.outline) @ outwards)
+    return Pane(pane.outline if along >= 0.0 else pane.outline[::-1], pane.thickness_m, is_oriented=along != 0.0)

@@ -69,10 +69,13 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
         lambda near, z: place(georeference, near, z, rest, content.north_rad),
     )
     placement = stands.placement
-    panes = zip(content.pane_ids, content.outlines, content.thicknesses_m, strict=True)
+    panes = zip(content.pane_ids, content.outlines, content.thicknesses_m, content.are_oriented, strict=True)
     return SourceModel(
         name=content.name,
-        windows=tuple(SourceWindow(guid, placement.enu(np.array(ring)), thickness) for guid, ring, thickness in panes),
+        windows=tuple(
+            SourceWindow(guid, placement.enu(np.array(ring)), thickness_m, is_oriented)
+            for guid, ring, thickness_m, is_oriented in panes
+        ),
         building=from_corners(stands.vertices_enu_m.reshape(-1, 3, 3)[stands.is_kept]),
         neighbours=empty_mesh(),
         placement=placement,

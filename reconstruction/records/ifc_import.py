@@ -8,6 +8,7 @@ from pathlib import Path
 
 from planning.errors import InputError
 from planning.progress import QUIET, Monitor
+from planning.step_file import real_name
 from reconstruction.records.book import RecordBook
 from reconstruction.records.entries import Attribute, AttributeType, Entry, Inspection
 from reconstruction.records.global_ids import global_id_of
@@ -107,7 +108,7 @@ def entries_of_element(element: Element, name: str, all_sets: bool, notes: list[
         except InputError as error:
             notes.append(f"{name}: {found.set}.{found.property.name}: {error}")
             continue
-        if found.origin != "whole" or attribute.name in FROM_WHOLE:
+        if attribute is not None and (found.origin != "whole" or attribute.name in FROM_WHOLE):
             attributes.setdefault(attribute.name, attribute)
     # A property of ours says the same, and more exactly.
     ours = {found.property.name for found in element.found if found.set == SET_OF[Attribute] and found.origin == "own"}
@@ -149,9 +150,12 @@ def _latest(properties: Mapping[str, Property], global_id: str, name: str, notes
         yield found
 
 
-def _attribute(found: Found, global_id: str) -> Attribute:
+def _attribute(found: Found, global_id: str) -> Attribute | None:
+    """A property as an attribute; None where its value is a placeholder of the program that wrote the file."""
     each = found.property
     named = NAMED.get((found.set, each.name))
+    if named is not None and named[1] == "text" and not real_name(each.value):
+        return None
     if named is not None:
         return Attribute(global_id, named[0], value_as(each.value, named[1]), named[1])
     name = f"{found.set}.{each.name}"[:100].translate(str.maketrans('[]();"', "      ")).strip()
@@ -159,7 +163,8 @@ def _attribute(found: Found, global_id: str) -> Attribute:
 
 
 def _material(element: Element, name: str, notes: list[str]) -> Iterator[Attribute]:
-    found = next((element.materials[origin] for origin in ORIGINS if origin in element.materials), ())
+    named = (tuple(filter(real_name, element.materials.get(origin, ()))) for origin in ORIGINS)
+    found = next(filter(None, named), ())
     try:
         if found:
             yield Attribute(element.global_id, "material", ", ".join(found))

@@ -18,6 +18,7 @@ from planning.geodesy.geoid import undulation_m
 from planning.json_file import check_output, write_atomically
 from planning.mesh import TriangleMesh
 from planning.site import Origin
+from planning.site_import.ifc_content import OUTSIDE_NORMAL, OUTSIDE_SET
 from reconstruction.records.book import RecordBook
 from reconstruction.records.entries import Attribute
 from reconstruction.records.global_ids import global_id_of
@@ -82,7 +83,7 @@ def write_new_ifc(book: RecordBook, out: Path, mesh: TriangleMesh | None = None)
         building.add_mesh(mesh)
     building.relate()
     for row in rows:
-        for wanted in (*sets.get(row.global_id, ()), *_standard_sets(row.global_id, attributes)):
+        for wanted in (*sets.get(row.global_id, ()), *_standard_sets(row.global_id, attributes), *_outside(row)):
             added_set(building.model, building.elements[row.global_id], wanted)
     write_atomically(out, building.model.to_string().encode("ascii", "replace"))
     notes = () if origin is not None else ("the place on earth is not known to the records: IfcSite has none",)
@@ -252,6 +253,20 @@ def _standard_sets(global_id: str, attributes: Mapping[tuple[str, str], Any]) ->
             kind = "date" if name == "warranty_until" else "text"
             found.setdefault(set_name, []).append(Property(property_name, value, kind))  # type: ignore[arg-type]
     return tuple(PropertySet(name, tuple(properties)) for name, properties in found.items())
+
+
+def _outside(row: ObjectRow) -> tuple[PropertySet, ...]:
+    """Which way is outside, as no body of a pane tells it and the building behind may not be in the file."""
+    if row.layer != "element" or row.corners_enu_m is None:
+        return ()
+    corners = np.array(row.corners_enu_m)
+    normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
+    length = float(np.linalg.norm(normal))
+    if not 0.0 < length < np.inf:
+        return ()
+    values = (normal / length).round(9).tolist()
+    properties = (Property(name, value, "number") for name, value in zip(OUTSIDE_NORMAL, values, strict=True))
+    return (PropertySet(OUTSIDE_SET, tuple(properties)),)
 
 
 def _angle(degrees: float) -> tuple[int, int, int, int]:

@@ -18,6 +18,8 @@ from planning.site_import.citygml_file import read_citygml
 from planning.site_import.importer import ImportedSite, import_site
 from planning.site_import.options import ImportOptions
 from planning.site_import.polygons import quad_areas, unit_normals
+from tests.planning.facade_shapes import SHAPES, facades
+from tests.planning.facade_shapes import normal as normal_of
 
 Ring = list[tuple[float, float, float]]
 
@@ -365,6 +367,30 @@ def test_a_broken_hole_leaves_its_face(tmp_path: Path) -> None:
     plain = imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH))), tmp_path)
     site = imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH), extra=wall)), tmp_path)
     assert len(site.model.building.triangles) == len(plain.model.building.triangles) + 2
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_windows_face_where_the_file_says(tmp_path: Path, shape: str) -> None:
+    windows = [
+        PLAIN.window(panel.id, [tuple(corner) for corner in panel.corners_enu_m])
+        for facade in facades(shape)
+        for panel in facade.panels
+    ]
+    walls = PLAIN.surface("WallSurface", 3, openings="".join(windows))
+    site = imported(PLAIN.model(f"<b:Building gml:id='panes'>{walls}</b:Building>"), tmp_path)
+    found = {panel.source_id: normal_of(panel.corners_enu_m) for panel in site.model.site.panels}
+    for facade in facades(shape):
+        for panel in facade.panels:
+            assert found[panel.id] @ normal_of(panel.corners_enu_m) > 0.99
+
+
+def test_windows_that_a_closed_building_has_facing_inwards_are_turned_around(tmp_path: Path) -> None:
+    site = imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH[::-1]))), tmp_path)
+    (panel,) = site.model.site.panels
+    assert normal_of(panel.corners_enu_m)[1] < -0.99
+    assert any(
+        note == "windows that the file has facing into the building, turned around: 1 (w)" for note in site.notes
+    )
 
 
 def test_parts_keep_the_level_of_detail_that_each_has(tmp_path: Path) -> None:

@@ -158,6 +158,10 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "ground: z = {0} of the file, its GroundSurface (--ground names another)"),
     QT_TRANSLATE_NOOP(
         "Sentences",
+        "ground: the file holds windows alone, the lowest at z = {0}, which is taken; check it (--ground)",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
         "ground: the file's GroundSurface lies between z = {0} and {1}; the highest is taken, so that heights"
         " above ground are safe on every side (--ground names another)",
     ),

@@ -13,6 +13,9 @@ from planning.site import Origin
 from planning.site_import.importer import import_site
 from planning.site_import.options import ImportOptions
 from reconstruction.exports.cityjson import STEP_M, write_cityjson
+from reconstruction.objects.gs_scene import GsElement
+from reconstruction.records.global_ids import global_id_of
+from tests.planning.facade_shapes import SHAPES, facades, normal
 from tests.reconstruction.exports.hard_scenes import Interrupted
 from tests.reconstruction.objects.made_scene import ORIGIN, made_scene
 
@@ -57,6 +60,33 @@ def test_imported_again_panels_are_the_same(tmp_path, origin, epsg):
         panel = found[element.global_id]
         place = geodetic_from_enu(site.origin, np.array(panel.corners_enu_m))
         assert apart_m(enu_from_geodetic(origin, *place), element.corners_enu_m) < 1e-3
+
+
+def scene_of(shape):
+    """A model of a shape's panes, without Gaussians."""
+    scene = made_scene(((),), 0, name=shape)
+    template, components, panel = made_scene().components[0], [], 0
+    for facade in facades(shape):
+        elements = []
+        for each in facade.panels:
+            global_id = global_id_of(shape, each.id)
+            elements.append(GsElement(global_id, each.id, panel, each.corners_enu_m, 0, 0))
+            panel += 1
+        wall_id = global_id_of(shape, facade.id)
+        empty = replace(scene.components[0], elements=tuple(elements))
+        components.append(replace(empty, global_id=wall_id, name=facade.id, kind=template.kind))
+    return replace(scene, components=tuple(components))
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_imported_again_panes_face_where_they_did(tmp_path, shape):
+    scene = scene_of(shape)
+    imported = import_site(write_cityjson(scene, tmp_path / "a.json", {}).path, ImportOptions())
+    found = {panel.source_id: panel for panel in imported.model.site.panels}
+    assert found.keys() == {element.global_id for _, element in scene.elements}
+    for _, element in scene.elements:
+        assert normal(found[element.global_id].corners_enu_m) @ normal(element.corners_enu_m) > 0.99
+    assert not any("both sides" in note or "turned around" in note for note in imported.notes)
 
 
 def test_heights_are_above_sea_level_and_vertices_on_a_tenth_of_a_millimetre(tmp_path):

@@ -2,6 +2,7 @@
 
 import contextlib
 import gc
+from dataclasses import replace
 
 import ifcopenshell
 import ifcopenshell.guid
@@ -14,7 +15,7 @@ from hypothesis import strategies as st
 
 from planning.errors import InputError, OperationCancelled
 from planning.geodesy.enu import enu_from_geodetic, geodetic_from_enu
-from planning.scenes import write_scene
+from planning.scenes import SCENES, write_scene
 from planning.site import Origin
 from planning.site_file import read_site
 from planning.site_import.importer import import_site
@@ -29,6 +30,7 @@ from reconstruction.records.ifc_process import extend_copy, read_properties
 from reconstruction.records.ifc_sets import OUR_SETS, property_sets, sets_of
 from reconstruction.records.objects import ObjectRow, site_objects
 from reconstruction.records.step_text import edited
+from tests.planning.facade_shapes import SHAPES, facades, normal
 from tests.reconstruction.records.cases import NASTY, ORIGIN, PANES, contents, entries, model, new_book
 
 SCHEMAS = ("IFC2X3", "IFC4", "IFC4X3")
@@ -360,6 +362,20 @@ def test_new_files_of_all_kinds_of_facades_import_as_the_same_site(tmp_path, nam
 def test_new_files_import_as_the_same_site(new_file):
     path, site, _ = new_file
     check_import(path, site, None)
+
+
+def test_panes_of_new_files_face_where_they_did_with_no_building_behind_them(tmp_path):
+    parts = [facades(shape, (60.0 * k, 0.0), f"{k}") for k, shape in enumerate(SHAPES)]
+    site = replace(SCENES["office"]().site, facades=tuple(facade for part in parts for facade in part))
+    rows = site_objects(site)
+    with new_book(tmp_path, rows) as book:
+        write_new_ifc(book, tmp_path / "new.ifc")
+    imported = import_site(tmp_path / "new.ifc", ImportOptions(ground_z=0.0))
+    found = {panel.source_id: panel for panel in imported.model.site.panels}
+    expected = {row.global_id: row for row in rows if row.layer == "element"}
+    assert found.keys() == expected.keys()
+    assert all(normal(found[key].corners_enu_m) @ normal(row.corners_enu_m) > 0.99 for key, row in expected.items())
+    assert not any("both sides" in note or "turned around" in note for note in imported.notes)
 
 
 def check_import(path, site, origin):
