@@ -1,8 +1,12 @@
-"""STEP files (ISO 10303-21), as IFC models are: whether one is whole, and which of its names are none."""
+"""STEP files (ISO 10303-21), as IFC models are: whether one is whole, what in it is broken, which names are none."""
 
 from __future__ import annotations
 
+import re
+import tomllib
+from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 from planning.errors import InputError
 
@@ -11,51 +15,14 @@ MAX_FILE_BYTES = 4 * 2**30
 TAIL_BYTES = 4096
 """The end mark stands in the last few; some programs write a comment after it."""
 
-NOT_NAMES = frozenset(
-    (
-        *("", "unnamed", "not named", "untitled", "no name", "noname", "name", "undefined", "unknown", "unspecified"),
-        *("not defined", "notdefined", "not specified", "not set", "none", "null", "nil", "n/a", "na", "tbd", "tbc"),
-        *("default", "default name", "default building", "default site", "default project", "standard", "test", "new"),
-        *("building", "building name", "my building", "new building", "the building", "ifcbuilding", "ifc building"),
-        *("project", "project name", "project number", "project status", "project address", "project issue date"),
-        *("my project", "new project", "site", "site name", "my site", "address", "enter address here", "owner"),
-        *("client name", "author", "organization name", "building description"),
-        # German, Spanish, French, Italian, Portuguese, Dutch, Polish, Czech, Russian, Chinese, Japanese.
-        *(
-            "unbenannt",
-            "ohne namen",
-            "kein name",
-            "gebäude",
-            "projekt",
-            "projektname",
-            "projektnummer",
-            "projektstatus",
-        ),
-        *("undefiniert", "nicht definiert", "unbekannt", "vorgabe", "gelände", "grundstück", "liegenschaft"),
-        *("sin nombre", "edificio", "nombre de proyecto", "número de proyecto", "estado de proyecto", "proyecto"),
-        *("por defecto", "predeterminado", "indefinido", "sans nom", "bâtiment", "nom du projet", "numéro du projet"),
-        *("état du projet", "par défaut", "non défini", "défaut", "senza nome", "predefinito", "nome progetto"),
-        *("sem nome", "edifício", "padrão", "naamloos", "gebouw", "standaard", "projectnaam", "bez nazwy", "budynek"),
-        *(
-            "nepojmenováno",
-            "budova",
-            "без имени",
-            "здание",
-            "не определено",
-            "未命名",
-            "建筑",
-            "默认",
-            "项目名称",
-            "無題",
-        ),
-    )
-)
-"""What BIM programs write where nobody has given a name, in lower case."""
-
-COUNTED = frozenset(("unnamed", "untitled", "undefined", "default", "unbenannt", "sin nombre", "sans nom", "未命名"))
-"""Among them those that are none with a number either; "Building 12" is a name."""
-
 START, END = b"ISO-10303-21", b"END-ISO-10303-21"
+DATA, END_OF_SECTION = b"DATA;", b"ENDSEC;"
+
+_TEXT = re.compile(rb"'(?:[^']|'')*'|/\*.*?\*/", re.DOTALL)
+_TEXT_IN_LINE = re.compile(rb"'(?:[^'\r\n]|'')*'|/\*[^\r\n]*?\*/")
+_INSTANCE = re.compile(rb"\s*#\d+\s*=\s*(?:[A-Za-z]\w*\s*)?\([^']*\)\s*")
+_NUMBER = re.compile(rb"\s*#(\d+)")
+_BEYOND = re.compile(rb"\d\.?\d*E\+?(?:\d{4,}|[4-9]\d\d|3[1-9]\d|309)")
 
 
 def check_ends(path: Path) -> None:
@@ -84,14 +51,77 @@ def check_ends(path: Path) -> None:
         raise InputError(f"{path}: the file is cut off (END-ISO-10303-21 is missing); copy or export it again")
 
 
+class Mended(NamedTuple):
+    """Content of a file without its broken instances, and their numbers."""
+
+    content: bytes
+    broken: tuple[str, ...]
+
+
+def mended(path: Path) -> Mended | None:
+    """Content of a file whose instances are not all whole; None where they are.
+
+    IfcOpenShell takes what it can of a broken line and, where a text does not end, of all lines up to the next quote,
+    without a word. Here an instance is broken alone: one without its number, name or brackets, with a text that does
+    not end in its line, or with a number beyond all numbers.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    start, end = content.find(DATA), content.rfind(END_OF_SECTION)
+    if not 0 <= start < end:
+        return None
+    start += len(DATA)
+    # Lines may break anywhere, also in a text; only where that makes no sense, texts are taken to end in their line.
+    if not _broken(content[start:end], _TEXT):
+        return None
+    broken = _broken(content[start:end], _TEXT_IN_LINE)
+    if not broken:
+        return None
+    kept, place, numbers = [content[:start]], start, []
+    for first, last in broken:
+        kept.append(content[place : start + first])
+        number = _NUMBER.match(content[start + first : start + last])
+        numbers.append(f"#{number[1].decode()}" if number else "")
+        place = start + last
+    return Mended(b"".join([*kept, content[place:]]), tuple(numbers))
+
+
+def _broken(data: bytes, text: re.Pattern[bytes]) -> list[tuple[int, int]]:
+    """Where the instances that are not whole begin and end, their semicolon included."""
+    blank = text.sub(lambda found: b" " * len(found[0]), data)
+    found, place = [], 0
+    for instance in blank.split(b";"):
+        last = place + len(instance) + 1
+        is_whole = instance.count(b"(") == instance.count(b")") and _INSTANCE.fullmatch(instance) is not None
+        if instance.strip() and (not is_whole or _BEYOND.search(instance)):
+            found.append((place, min(last, len(data))))
+        place = last
+    return found
+
+
+@cache
+def _placeholders() -> tuple[frozenset[str], frozenset[str]]:
+    """Names that are none, and those that are none with a number either."""
+    content = tomllib.loads((Path(__file__).parent / "data" / "no_names.toml").read_text("utf-8"))
+    return frozenset(content["names"]), frozenset(content["counted"])
+
+
 def real_name(*names: object) -> str:
     """The first of several names that somebody has given, without blanks around it; empty where there is none.
 
     Programs fill in placeholders ("Unnamed", "$", "Default", "Project Number"), also with marks or a number behind.
     """
+    placeholders, counted = _placeholders()
     for name in names:
         text = " ".join(str(name or "").split())
         plain = text.replace("_", " ").strip(" .,:;#<>()[]{}*$?!'\"/\\|+~=-").casefold()
-        if plain not in NOT_NAMES and plain.rstrip("0123456789 #.:-") not in COUNTED:
+        if plain not in placeholders and plain.rstrip("0123456789 #.:-") not in counted:
             return text
     return ""

@@ -18,7 +18,14 @@ from planning.site_import.ground import DECK_M, END_QUANTILES, EVEN_M, StatedGro
 from planning.site_import.options import ImportOptions
 from planning.site_import.placement import Placement, place
 from planning.site_import.polygons import area_vector, triangulate
-from planning.site_import.source import HOW_TO_GET_PANELS, BuildingChoice, SourceModel, SourceWindow
+from planning.site_import.source import (
+    HOW_TO_GET_PANELS,
+    MAX_NAMED,
+    BuildingChoice,
+    SourceModel,
+    SourceWindow,
+    left_out_notes,
+)
 from planning.site_import.window_faces import pane_of_polygons
 
 Array = NDArray[np.float64]
@@ -33,9 +40,6 @@ JOINED_GAP_M = 10.0
 
 MIN_RING_POINTS = 3
 """A ring of fewer encloses nothing."""
-
-MAX_NAMED = 8
-"""Buildings listed in a message."""
 
 
 @dataclass(slots=True, eq=False)
@@ -176,18 +180,6 @@ def city_source(
         choices=tuple(_choice(building) for building in moved),
         terrain=stands.terrain,
         question=stands.question,
-    )
-
-
-def left_out_notes(names: Sequence[str]) -> tuple[str, ...]:
-    """What was left out of a building because it is broken, by identifier, as a note; none where nothing was."""
-    if not names:
-        return ()
-    different = list(dict.fromkeys(name or "without an identifier" for name in names))
-    more = ", ..." if len(different) > MAX_NAMED else ""
-    return (
-        f"left out, because they are broken (such as outlines of fewer than three points) or not read: {len(names)} "
-        f"({', '.join(different[:MAX_NAMED])}{more})",
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,8 +14,9 @@ from planning.errors import InputError
 from planning.site_import.ifc_place import MapParameters, SitePlace, map_parameters, site_place, true_north_rad
 from planning.site_import.ifc_windows import Shape, glazed_plates, joined, plate_pane, skin_panes, window_pane
 from planning.site_import.polygons import area_vector
+from planning.site_import.source import left_out_notes
 from planning.site_import.window_faces import Pane
-from planning.step_file import real_name
+from planning.step_file import mended, real_name
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,9 @@ NOT_IN_MESH = (
     "IfcMechanicalFastener",
 )
 """Elements that are no part of what a drone can meet outside. Spaces, grids, annotations and sites are no elements."""
+
+BROKEN = (RuntimeError, AttributeError, TypeError, ValueError, KeyError, IndexError, np.linalg.LinAlgError)
+"""What IfcOpenShell raises where a reference leads nowhere, in a circle, or to something of another kind."""
 
 OUTSIDE_SET, OUTSIDE_NORMAL = "Pset_ReflightPane", ("OutwardX", "OutwardY", "OutwardZ")
 """Property set of a pane of ours: which way is outside, in the coordinates of its placement."""
@@ -83,7 +87,14 @@ class _Elements(NamedTuple):
     window_of_part: dict[str, str]
 
 
-def extract(path: Path, deflection_m: float, n_threads: int, report: Callable[[int], None]) -> tuple[IfcContent, Array]:
+def extract(
+    path: Path,
+    deflection_m: float,
+    n_threads: int,
+    report: Callable[[int], None],
+    fatal: Sequence[str] = (),
+    announce: Callable[[str], None] | None = None,
+) -> tuple[IfcContent, Array]:
     """Content of an IFC file, and the triangles of all its building elements, shape (t, 3, 3), metres.
 
     Parameters
@@ -94,6 +105,10 @@ def extract(path: Path, deflection_m: float, n_threads: int, report: Callable[[i
         Threads that compute geometry.
     report
         Takes the per cent of the geometry that is done.
+    fatal
+        Identifiers of elements that the geometry kernel dies of; they are left out.
+    announce
+        Takes the identifier of each element before the kernel does, which then takes one after the other.
 
     Raises
     ------
@@ -102,31 +117,43 @@ def extract(path: Path, deflection_m: float, n_threads: int, report: Callable[[i
     """
     import ifcopenshell
 
+    better = mended(path)
     try:
-        model = ifcopenshell.open(str(path))
+        model = ifcopenshell.open(str(path)) if better is None else _model_of(better.content)
     except Exception as error:  # the parser raises whatever goes wrong in it
         raise InputError(
             f"{path}: this IFC file cannot be read ({error}); IFC 2x3, IFC 4 and IFC 4.3 are read"
         ) from error
     try:
-        return _extract(model, deflection_m, n_threads, report)
-    except (RuntimeError, AttributeError, TypeError, ValueError, KeyError, IndexError) as error:
+        shapes = _one_by_one(announce) if announce is not None else _shapes(n_threads, report)
+        return _extract(model, deflection_m, shapes, fatal, () if better is None else better.broken)
+    except BROKEN as error:
         raise InputError(f"{path}: this IFC file is broken ({type(error).__name__}: {error})") from error
 
 
+def _model_of(content: bytes) -> Any:
+    import ifcopenshell
+
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")
+    return ifcopenshell.file.from_string(text)
+
+
 def _extract(
-    model: Any, deflection_m: float, n_threads: int, report: Callable[[int], None]
+    model: Any, deflection_m: float, shapes_of: Shaping, fatal: Sequence[str], broken: Sequence[str]
 ) -> tuple[IfcContent, Array]:
-    from ifcopenshell.util.placement import get_local_placement
     from ifcopenshell.util.unit import calculate_unit_scale
 
     unit_m = float(calculate_unit_scale(model))
     elements = _elements(model)
-    shapes = {shape.guid: shape for shape in _shapes(model, elements.all, deflection_m, n_threads, report)}
-    panes, notes = _panes(elements, shapes)
+    tried = [element for element in elements.all if element.GlobalId not in fatal]
+    shapes = {shape.guid: shape for shape in shapes_of(model, tried, deflection_m)}
+    panes, notes, left_out = _panes(elements, shapes)
     outwards = _outwards(model)
     panes = {guid: _facing(pane, outwards.get(guid)) for guid, pane in panes.items()}
-    sites = model.by_type("IfcSite")
+    left_out += [e.GlobalId for e in elements.all if e.GlobalId not in shapes and _has_body(e)]
     content = IfcContent(
         name=_name(model),
         schema=model.schema,
@@ -135,13 +162,31 @@ def _extract(
         thicknesses_m=tuple(pane.thickness_m for pane in panes.values()),
         are_oriented=tuple(pane.is_oriented for pane in panes.values()),
         unit_m=unit_m,
-        site_z_m=float(get_local_placement(sites[0].ObjectPlacement)[2, 3]) * unit_m if sites else None,
+        site_z_m=_site_z_m(model, unit_m),
         site=site_place(model, unit_m),
         map=map_parameters(model),
         north_rad=true_north_rad(model),
-        notes=tuple(notes),
+        notes=(*notes, *left_out_notes([*broken, *dict.fromkeys(left_out)])),
     )
     return content, np.concatenate([np.zeros((0, 3, 3)), *(shape.triangles for shape in shapes.values())])
+
+
+def _has_body(element: Any) -> bool:
+    """Whether an element has a shape of its own that should have become triangles."""
+    representation = element.Representation
+    return representation is not None and any(
+        each.RepresentationIdentifier == "Body" and each.Items for each in representation.Representations or ()
+    )
+
+
+def _site_z_m(model: Any, unit_m: float) -> float | None:
+    from ifcopenshell.util.placement import get_local_placement
+
+    sites = model.by_type("IfcSite")
+    try:
+        return float(get_local_placement(sites[0].ObjectPlacement)[2, 3]) * unit_m if sites else None
+    except BROKEN:
+        return None
 
 
 def _elements(model: Any) -> _Elements:
@@ -166,48 +211,93 @@ def _elements(model: Any) -> _Elements:
     )
 
 
-def _shapes(
-    model: Any, elements: list[Any], deflection_m: float, n_threads: int, report: Callable[[int], None]
-) -> Iterator[Shape]:
-    """Triangles of all elements that have any.
+Shaping = Callable[[Any, list[Any], float], Iterator[Shape]]
+"""Triangles of all elements of a model that have any, with a deflection in metres."""
 
-    The geometry kernel is Open Cascade: Manifold is ten times faster, but it cuts 2 of the 796 elements of a real
-    office wrongly and leaves pieces of wall in the air.
-    """
+
+def _settings(deflection_m: float) -> Any:
     import ifcopenshell.geom
 
     settings = ifcopenshell.geom.settings()
     settings.set("use-world-coords", True)
     settings.set("mesher-linear-deflection", deflection_m)
     settings.set("apply-default-materials", False)  # they make every window transparent, frames included
-    iterator = ifcopenshell.geom.iterator(settings, model, n_threads, include=elements)
-    if not elements or not iterator.initialize():
-        return
-    while True:
-        report(iterator.progress())
-        shape = iterator.get()
-        vertices = np.array(shape.geometry.verts, np.float64).reshape(-1, 3)
-        faces = np.array(shape.geometry.faces, np.int64).reshape(-1, 3)
-        # The last entry is that of faces without a style (number -1).
-        styles = np.array([*(style.transparency for style in shape.geometry.materials), np.nan], np.float64)
-        numbers = np.array(shape.geometry.material_ids, np.int64)
-        if len(faces) and np.isfinite(vertices).all():
-            yield Shape(shape.guid, shape.type, vertices[faces], styles[numbers])
-        if not iterator.next():
+    return settings
+
+
+def _shapes(n_threads: int, report: Callable[[int], None]) -> Shaping:
+    """All elements at once.
+
+    The geometry kernel is Open Cascade: Manifold is ten times faster, but it cuts 2 of the 796 elements of a real
+    office wrongly and leaves pieces of wall in the air.
+    """
+
+    def shapes(model: Any, elements: list[Any], deflection_m: float) -> Iterator[Shape]:
+        import ifcopenshell.geom
+
+        iterator = ifcopenshell.geom.iterator(_settings(deflection_m), model, n_threads, include=elements)
+        if not elements or not iterator.initialize():
             return
+        while True:
+            report(iterator.progress())
+            shape = _shape(iterator.get())
+            if shape is not None:
+                yield shape
+            if not iterator.next():
+                return
+
+    return shapes
 
 
-def _panes(elements: _Elements, shapes: dict[str, Shape]) -> tuple[dict[str, Pane], list[str]]:
-    """Panes of windows and of glazed plates by their identifiers, and what was left out."""
+def _one_by_one(announce: Callable[[str], None]) -> Shaping:
+    """One element after the other, each announced before, so that the last one is known if the kernel dies of it."""
+
+    def shapes(_model: Any, elements: list[Any], deflection_m: float) -> Iterator[Shape]:
+        import ifcopenshell.geom
+
+        settings = _settings(deflection_m)
+        for element in elements:
+            if element.Representation is None:
+                continue
+            announce(element.GlobalId)
+            try:
+                shape = _shape(ifcopenshell.geom.create_shape(settings, element))
+            except RuntimeError:  # it has no geometry that can be made
+                continue
+            if shape is not None:
+                yield shape
+
+    return shapes
+
+
+def _shape(made: Any) -> Shape | None:
+    """Triangles of an element; None without any."""
+    vertices = np.array(made.geometry.verts, np.float64).reshape(-1, 3)
+    faces = np.array(made.geometry.faces, np.int64).reshape(-1, 3)
+    if not len(faces) or not np.isfinite(vertices).all():
+        return None
+    # The last entry is that of faces without a style (number -1).
+    styles = np.array([*(style.transparency for style in made.geometry.materials), np.nan], np.float64)
+    numbers = np.array(made.geometry.material_ids, np.int64)
+    return Shape(made.guid, made.type, vertices[faces], styles[numbers])
+
+
+def _panes(elements: _Elements, shapes: dict[str, Shape]) -> tuple[dict[str, Pane], list[str], list[str]]:
+    """Panes of windows and of glazed plates by their identifiers, notes, and the identifiers of broken windows."""
     panes: dict[str, Pane] = {}
+    broken: list[str] = []
     parts: dict[str, list[Shape]] = {}
     for part, window in elements.window_of_part.items():
         if part in shapes:
             parts.setdefault(window, []).append(shapes[part])
     for guid, window in elements.windows.items():
         shape = shapes.get(guid) or (joined(guid, parts[guid]) if guid in parts else None)
-        if shape is not None:
+        if shape is None:
+            continue
+        try:
             panes[guid] = window_pane(shape, _axes(window))
+        except BROKEN:
+            broken.append(guid)
     n_windows = len(panes)
     plates = {guid: element for guid, element in elements.plates.items() if guid in shapes}
     glazed = glazed_plates(plates, shapes)
@@ -218,7 +308,7 @@ def _panes(elements: _Elements, shapes: dict[str, Shape]) -> tuple[dict[str, Pan
     notes = [f"windows: {n_windows}; plates: {len(plates)}, of which glazed: {len(glazed)}"]
     if n_windows < len(elements.windows):
         notes.append(f"windows left out because they have no geometry: {len(elements.windows) - n_windows}")
-    return panes, notes
+    return panes, notes, broken
 
 
 def _axes(element: Any) -> Array:

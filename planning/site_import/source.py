@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,22 @@ HOW_TO_GET_PANELS = (
     "--without-panels, and find them in photos with 'panels'"
 )
 """What to do about a file without windows."""
+
+
+MAX_NAMED = 8
+"""Identifiers listed in a note."""
+
+
+def left_out_notes(names: Sequence[str]) -> tuple[str, ...]:
+    """What was left out of a file because it is broken, by identifier, as a note; none where nothing was."""
+    if not names:
+        return ()
+    different = list(dict.fromkeys(name or "without an identifier" for name in names))
+    more = ", ..." if len(different) > MAX_NAMED else ""
+    return (
+        f"left out, because they are broken (such as outlines of fewer than three points) or not read: {len(names)} "
+        f"({', '.join(different[:MAX_NAMED])}{more})",
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
