@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from planning.site_import.ifc_georeference import ifc_georeference
 from planning.site_import.importer import ImportedSite, assemble, import_site
 from planning.site_import.options import ImportOptions, PanelGrid
 from planning.site_import.polygons import quad_areas, unit_normals
+from planning.step_file import mended
 
 Point = tuple[float, float, float]
 
@@ -691,6 +693,67 @@ def test_a_file_that_kills_the_geometry_kernel_is_refused_and_we_live_on(tmp_pat
     path.write_text(text.replace(site_placement, site_placement.replace("($,", f"({number},")))  # goes in circles
     with pytest.raises(InputError, match="the geometry kernel crashed"):
         read_ifc(path, HERE, QUIET)
+
+
+def test_an_element_that_kills_the_geometry_kernel_is_left_out_and_told(tmp_path: Path) -> None:
+    building = south_window(Building())
+    path = building.save(tmp_path)
+    whole = read_ifc(path, HERE, QUIET)
+    wall = building.file.by_type("IfcWall")[0]
+    number = f"#{wall.ObjectPlacement.id()}"
+    line = next(line for line in path.read_text().splitlines() if line.startswith(f"{number}="))
+    circle = re.sub(r"IFCLOCALPLACEMENT\([^,]*,", f"IFCLOCALPLACEMENT({number},", line)
+    path.write_text(path.read_text().replace(line, circle))
+    source = read_ifc(path, HERE, QUIET)
+    assert len(source.windows) == len(whole.windows) == 1
+    assert 0 < len(source.building.triangles) < len(whole.building.triangles)
+    assert any(note.endswith(f"not read: 1 ({wall.GlobalId})") for note in source.notes)
+
+
+DAMAGES = {
+    "garbage": lambda line: line.split("=")[0] + "= @@@ nonsense;",
+    "no bracket": lambda line: line.replace("(", "", 1),
+    "text without end": lambda line: line.replace(");", "'x);"),
+    "too large a number": lambda line: re.sub(r"-?\d+\.\d*", "1.E400", line, count=1),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_broken_line_is_left_out_and_told_and_takes_no_other_with_it(tmp_path: Path, damage: str) -> None:
+    path = south_window(Building()).save(tmp_path)
+    lines = path.read_text().splitlines()
+    place = [k for k, line in enumerate(lines) if re.match(r"#\d+=IFCCARTESIANPOINT\(\(-?\d+\.", line)][-1]
+    number = lines[place].split("=")[0]
+    lines[place] = DAMAGES[damage](lines[place])
+    path.write_text("\n".join(lines))
+    found = mended(path)
+    assert found is not None
+    assert found.broken == (number,)
+    assert found.content.decode().splitlines() == [line for line in lines if not line.startswith(f"{number}=")]
+    source = read_ifc(path, HERE, QUIET)
+    assert len(source.windows) == 1
+    assert any(f" {number}" in note.replace("(", " ") and "left out" in note for note in source.notes)
+
+
+@pytest.mark.parametrize("text", ["Halle 'A'", "a;b);(", "ends /* here", "(((", "line\nbreak"])
+def test_texts_may_hold_anything(tmp_path: Path, text: str) -> None:
+    building = south_window(Building())
+    building.building.LongName = text
+    assert mended(building.save(tmp_path)) is None
+
+
+@pytest.mark.parametrize("name", ["Unnamed", "Default", "$", "Project Number"])
+def test_placeholders_do_not_name_the_site(tmp_path: Path, name: str) -> None:
+    building = south_window(Building())
+    building.building.LongName, building.building.Name = name, name
+    assert contents(building, tmp_path)[0].name == ""
+    building.building.Name = "Haus 7"
+    assert contents(building, tmp_path)[0].name == "Haus 7"
+
+
+@pytest.mark.parametrize("name", ["office_a", "curtain_wall_small"])
+def test_real_files_are_whole(shared_data: Path, name: str) -> None:
+    assert mended(shared_data / "bim" / f"{name}.ifc") is None
 
 
 def test_references_to_something_else_are_refused(tmp_path: Path) -> None:
