@@ -8201,6 +8201,10 @@ Take it over?</source>
         <translation>es gibt keine solche Datei</translation>
     </message>
     <message>
+        <source>ground: the file holds windows alone, the lowest at z = {0}, which is taken; check it (--ground)</source>
+        <translation>Boden: die Datei enthält nur Fenster, das tiefste bei z = {0}, was gilt; bitte prüfen (--ground)</translation>
+    </message>
+    <message>
         <source>facades, by plane or smoothly curved surface: {0}, the one with most glass first (A: {1} panels, {2} m2)</source>
         <translation>Fassaden, nach Ebene oder sanft gekrümmter Fläche: {0}, die mit dem meisten Glas zuerst (A: {1} Scheiben, {2} m2)</translation>
     </message>
@@ -8283,6 +8287,10 @@ Take it over?</source>
     <message>
         <source>windows that are no quads, for which a rectangle of the same area stands in</source>
         <translation>Fenster, die keine Vierecke sind; ein Rechteck gleicher Fläche steht für sie</translation>
+    </message>
+    <message>
+        <source>windows that the file has facing into the building, turned around</source>
+        <translation>Fenster, die in der Datei ins Gebäude zeigen, umgedreht</translation>
     </message>
     <message>
         <source>windows open on both sides, taken to face away from the building</source>
