@@ -18,6 +18,9 @@ N_CANDIDATES = 20_000
 DEFAULT_VIEWS = 560
 """For methods that need a number of views when none is given: the paper's for its planar case."""
 
+LARGEST_SEED = 2**63 - 1
+"""What 64-bit integers of files and other programs hold."""
+
 DEFAULT_SHARE = 0.99
 """Share of the reachable sections that is covered when no number of views is given."""
 
@@ -92,7 +95,7 @@ class PlanRequest:
             raise ValueError(f"coverage: expected more than 0 and at most 1, got {self.share}")
         if self.n_batteries is not None and not 1 <= self.n_batteries <= 100:
             raise ValueError(f"batteries: expected 1 to 100, got {self.n_batteries}")
-        if not 0 <= self.seed < 2**32:
-            raise ValueError(f"seed: expected 0 to {2**32 - 1}, got {self.seed}")
+        if not 0 <= self.seed <= LARGEST_SEED:
+            raise ValueError(f"seed: expected 0 to {LARGEST_SEED}, got {self.seed}")
         if not self.time_budget_s > 0.0:
             raise ValueError(f"time budget: expected more than 0 s, got {self.time_budget_s}")

@@ -27,6 +27,7 @@ from planning.prepare import Prepared, prepare
 from planning.progress import QUIET, Monitor, QualityPoint, Stop, TimeLimit, Trace, any_of, never
 from planning.reach_kernel import REACHABLE, UNREACHABLE
 from planning.reachability import MAX_CELLS
+from planning.request import LARGEST_SEED
 from planning.site import SiteModel
 from planning.timing import usable_battery_s
 
@@ -97,8 +98,8 @@ class TopUpRequest:
         least = 1 if self.battery is None else 0
         if self.n_batteries is not None and not least <= self.n_batteries <= 100:
             raise ValueError(f"batteries: expected {least} to 100, got {self.n_batteries}")
-        if not 0 <= self.seed < 2**32:
-            raise ValueError(f"seed: expected 0 to {2**32 - 1}, got {self.seed}")
+        if not 0 <= self.seed <= LARGEST_SEED:
+            raise ValueError(f"seed: expected 0 to {LARGEST_SEED}, got {self.seed}")
         if not self.time_budget_s > 0.0:
             raise ValueError(f"time budget: expected more than 0 s, got {self.time_budget_s}")
 

@@ -9,12 +9,10 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from planning.errors import InputError
+from planning.request import LARGEST_SEED
 
 if TYPE_CHECKING:
     from planning.effects import Wish
-
-LARGEST_SEED = 2**32 - 1
-"""PyVRP's generator takes 32 bits."""
 
 OPTIONS = {
     "views": "--views",

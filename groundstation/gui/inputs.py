@@ -1,34 +1,119 @@
-"""Input boxes for quantities: `value()` and `setValue()` are metric, what stands in them is in the user's units."""
+"""Input boxes: numbers, quantities in the user's units, and lists to choose from.
+
+`value()` gives back exactly what `setValue()` was given until the user edits it, however it is rounded for display, and
+though the user could not have typed it: a form must not change what it only shows. The mouse wheel scrolls what is
+around, and changes a box only after a click into it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QLocale, QSignalBlocker, Signal
-from PySide6.QtGui import QWheelEvent
-from PySide6.QtWidgets import QDoubleSpinBox, QWidget
+from PySide6.QtCore import QEvent, QLocale, QObject, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QValidator
+from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QHBoxLayout, QWidget
 
 from groundstation.services.units import Unit, UnitSystem, length_unit, speed_unit
 
 SAME = 1e-9
 """Part of a value below which a box that rounds for display still holds the value it was given."""
 
+PERCENT = Unit("%", 100.0, 1)
+
+N_DIGITS_SHOWN = 9
+"""Width of a box for whole numbers; longer ones scroll in it."""
+
+
+class _CalmWheel(QObject):
+    """Keeps the wheel from widgets without the focus."""
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Leave the wheel to what is around."""
+        if event.type() == QEvent.Type.Wheel and isinstance(watched, QWidget) and not watched.hasFocus():
+            event.ignore()
+            return True
+        return False
+
+
+def calm(widget: QWidget) -> None:
+    """Let the wheel change a widget only after a click into it; over others it scrolls the form."""
+    widget.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    widget.installEventFilter(_CalmWheel(widget))
+
+
+class ChoiceBox(QComboBox):
+    """A list to choose from, each entry with its value."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        calm(self)
+
+    def show_value(self, value: object, text: str = "") -> None:
+        """Choose the entry with a value; where there is none, such as one from a file, it gets one."""
+        if self.findData(value) < 0:
+            self.addItem(text or str(value), value)
+        self.setCurrentIndex(self.findData(value))
+
 
 class NumberBox(QDoubleSpinBox):
-    """A number with a fixed unit. The mouse wheel scrolls the form, and changes a box only when it has the focus."""
+    """A number with a fixed unit."""
 
     def __init__(
         self, low: float, high: float, step: float, suffix: str = "", decimals: int = 1, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
+        self._held: tuple[float, float] | None = None
+        self._coming: float | None = None
+        self._typed = low, high
         self.setRange(low, high)
         self.setDecimals(decimals)
         self.setSingleStep(step)
         self.setSuffix(suffix)
         self.setAccelerated(True)
         self.setKeyboardTracking(False)
+        calm(self)
         # As all texts of the window have it; in a German locale the point would group thousands, and 3.5 become 35.
         self.setLocale(QLocale.c())
+
+    def value(self) -> float:
+        """What was set, or what the user made of it."""
+        if self._coming is not None:
+            return self._coming
+        shown = super().value()
+        return self._held[0] if self._held is not None and self._held[1] == shown else shown
+
+    def setValue(self, value: float) -> None:  # noqa: N802
+        """Show a value; as long as it stands, the range holds it though it could not be typed."""
+        self._coming = value
+        try:
+            self._hold(value)
+            super().setValue(value)
+        finally:
+            self._coming = None
+        self._held = value, super().value()
+
+    def setRange(self, low: float, high: float) -> None:  # noqa: N802
+        """What can be typed; a value that was set stays."""
+        self._typed = low, high
+        if self._held is None:
+            super().setRange(low, high)
+        else:
+            self._hold(self.value())
+
+    def _hold(self, value: float) -> None:
+        low, high = self._typed
+        super().setRange(min(low, value), max(high, value))
+
+    def setDecimals(self, decimals: int) -> None:  # noqa: N802
+        """How many are shown; the value stays."""
+        is_held = self._held is not None and self._held[1] == super().value()
+        value = self.value()
+        super().setDecimals(decimals)
+        self._held = (value, super().value()) if is_held else None
+
+    def forget(self) -> None:
+        """Hold only what is shown, as if it had been typed."""
+        self._held = None
 
     def validate(self, text: str, position: int) -> object:
         """Take a comma for the decimal point too."""
@@ -38,12 +123,79 @@ class NumberBox(QDoubleSpinBox):
         """Take a comma for the decimal point too."""
         return super().valueFromText(text.replace(",", "."))
 
-    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802
-        """Leave the wheel to the form around."""
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
+
+class WholeBox(QAbstractSpinBox):
+    """A whole number of any size: those of Qt end at 2 147 483 647.
+
+    Signals
+    -------
+    valueChanged(int)
+        The user took another number: by Enter, by leaving the box, or by a step.
+    """
+
+    valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, low: int, high: int, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._typed, self._value = (low, high), low
+        self.setAccelerated(True)
+        calm(self)
+        self.setMinimumWidth(self.fontMetrics().horizontalAdvance("0") * N_DIGITS_SHOWN)
+        self.editingFinished.connect(self._finish)
+        self._show()
+
+    def value(self) -> int:
+        """The number."""
+        return self._value
+
+    def setValue(self, value: int) -> None:  # noqa: N802
+        """Show a number; as long as it stands, it counts as one that can be typed."""
+        self._take(value)
+
+    def minimum(self) -> int:
+        """The least that can be typed."""
+        return min(self._typed[0], self._value)
+
+    def maximum(self) -> int:
+        """The most that can be typed."""
+        return max(self._typed[1], self._value)
+
+    def validate(self, text: str, position: int) -> tuple[QValidator.State, str, int]:
+        """Digits, a sign where there are negative numbers, and no more than the most."""
+        low, high = self.minimum(), self.maximum()
+        digits = text.strip().removeprefix("-") if low < 0 else text.strip()
+        if not digits:
+            return QValidator.State.Intermediate, text, position
+        if not (digits.isascii() and digits.isdigit()) or int(digits) > max(high, -low):
+            return QValidator.State.Invalid, text, position
+        is_good = low <= int(text) <= high
+        return QValidator.State.Acceptable if is_good else QValidator.State.Intermediate, text, position
+
+    def stepBy(self, steps: int) -> None:  # noqa: N802
+        """By arrow, key or wheel."""
+        self._take(min(max(self._value + steps, self.minimum()), self.maximum()))
+        self.selectAll()
+
+    def stepEnabled(self) -> QAbstractSpinBox.StepEnabledFlag:  # noqa: N802
+        """Whether there is a number above and below."""
+        flag = QAbstractSpinBox.StepEnabledFlag
+        up = flag.StepUpEnabled if self._value < self.maximum() else flag.StepNone
+        return up | (flag.StepDownEnabled if self._value > self.minimum() else flag.StepNone)
+
+    def _finish(self) -> None:
+        state, _, _ = self.validate(self.text(), 0)
+        if state == QValidator.State.Acceptable:
+            self._take(int(self.text()))
+        self._show()
+
+    def _take(self, value: int) -> None:
+        changed, self._value = value != self._value, value
+        self._show()
+        if changed:
+            self.valueChanged.emit(value)
+
+    def _show(self) -> None:
+        self.lineEdit().setText(str(self._value))
 
 
 class QuantityBox(QWidget):
@@ -65,8 +217,6 @@ class QuantityBox(QWidget):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
-        from PySide6.QtWidgets import QHBoxLayout
-
         self._unit_of, self._low, self._high, self._step, self._decimals = unit_of, low, high, step, decimals
         self._value = min(max(0.0, low), high)
         self._box = NumberBox(low, high, step)
@@ -83,8 +233,8 @@ class QuantityBox(QWidget):
         return self._value
 
     def setValue(self, value: float) -> None:  # noqa: N802
-        """Show a metric value; values outside the range go to its nearest end."""
-        self._value = min(max(value, self._low), self._high)
+        """Show a metric value; as long as it stands, the range holds it though it could not be typed."""
+        self._value = value
         self._show()
 
     def set_units(self, system: UnitSystem) -> None:
@@ -92,6 +242,7 @@ class QuantityBox(QWidget):
         self._unit = self._unit_of(system)
         with QSignalBlocker(self._box):
             self._box.setDecimals(self._unit.decimals if self._decimals is None else self._decimals)
+            self._box.forget()
             self._box.setRange(self._unit.shown(self._low), self._unit.shown(self._high))
             self._box.setSingleStep(self._step)
             self._box.setSuffix(f" {self._unit.symbol}")
@@ -107,10 +258,18 @@ class QuantityBox(QWidget):
 
     def _edited(self, shown: float) -> None:
         # At an end of the range the rounded number would lie outside it.
-        value = min(max(self._unit.metric(shown), self._low), self._high)
+        low, high = min(self._low, self._value), max(self._high, self._value)
+        value = min(max(self._unit.metric(shown), low), high)
         if abs(value - self._value) > SAME * max(1.0, abs(self._value)):
             self._value = value
             self.valueChanged.emit(value)
+
+
+class PercentBox(QuantityBox):
+    """A ratio, shown in percent."""
+
+    def __init__(self, low: float, high: float, step: float, decimals: int = 1, parent: QWidget | None = None) -> None:
+        super().__init__(lambda _system: PERCENT, low, high, 100.0 * step, decimals=decimals, parent=parent)
 
 
 class LengthBox(QuantityBox):

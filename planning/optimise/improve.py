@@ -89,8 +89,10 @@ class Exchange:
         """Swap until the weight is `enough`, `patience` slices bring nothing, or `stop`."""
         idle = 0
         while idle < patience and self.value() < enough and not stop():
+            # Numba's generator takes 32 bits.
+            seed = (self.seed + self._clock) % 2**32
             grown = kernel.exchange_steps(
-                self.state, self.chosen, self._rests_until, self._clock, STEPS_PER_SLICE, self.seed + self._clock
+                self.state, self.chosen, self._rests_until, self._clock, STEPS_PER_SLICE, seed
             )
             self._clock += STEPS_PER_SLICE
             idle = 0 if grown > 1e-9 else idle + 1

@@ -226,5 +226,6 @@ def _run(
     initial = None if routes is None else pyvrp.Solution(data, routes)
     search = pyvrp.IteratedLocalSearchParams(callbacks=_Observer(record))
     params = pyvrp.SolveParams(ils=search)
-    result = pyvrp.solve(data, is_over, seed, collect_stats=False, params=params, initial_solution=initial)
+    # PyVRP's generator takes 32 bits.
+    result = pyvrp.solve(data, is_over, seed % 2**32, collect_stats=False, params=params, initial_solution=initial)
     return result.best

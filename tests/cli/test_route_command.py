@@ -32,8 +32,8 @@ def test_text_compares_with_the_nearest_neighbour(reflight, berlin):
     [
         (["--time-budget", 0], "--time-budget: expected a positive number of seconds, got 0"),
         (["--time-budget", -1], "got -1"),
-        (["--seed", -1], "--seed: expected 0 to 4294967295"),
-        (["--seed", 2**32, "--method", "pyvrp"], "--seed: expected 0 to 4294967295"),
+        (["--seed", -1], "--seed: expected 0 to 9223372036854775807"),
+        (["--seed", 2**63, "--method", "pyvrp"], "--seed: expected 0 to 9223372036854775807"),
     ],
 )
 def test_wrong_values_are_refused(reflight, berlin, options, message):

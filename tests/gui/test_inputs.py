@@ -5,6 +5,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from groundstation.services.units import FOOT_M, UnitSystem
+from tests.gui.driving import turn_until
 
 
 @pytest.fixture
@@ -38,37 +39,154 @@ def test_an_edit_in_feet_is_announced_in_metres(length_box):
     assert length_box.box().suffix() == " ft"
 
 
-def test_values_outside_the_range_go_to_its_end_in_both_units(application):
+def test_a_value_that_cannot_be_typed_is_shown_and_kept_until_it_is_edited(application):
     from groundstation.gui.inputs import LengthBox
 
     box = LengthBox(0.0, 200.0, system=UnitSystem.IMPERIAL)
-    box.setValue(1e9)
-    assert box.value() == 200.0
+    box.setValue(250.0)
+    assert box.value() == 250.0
+    assert box.box().text() == "820.2 ft"
+    box.set_units(UnitSystem.METRIC)
+    assert (box.value(), box.box().text()) == (250.0, "250.0 m")
+    box.setValue(10.0)
+    assert box.box().maximum() == 200.0, "with the value goes the room for it"
     box.box().setValue(box.box().maximum())
-    assert box.value() <= 200.0
+    assert box.value() == 200.0
 
 
-def test_the_wheel_scrolls_the_form_unless_the_box_has_the_focus(application):
-    from PySide6.QtCore import QPoint, QPointF, Qt
-    from PySide6.QtGui import QWheelEvent
-
+@given(st.floats(-1e7, 1e7), st.integers(0, 3), st.floats(-10.0, 0.0), st.floats(1.0, 10.0))
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_number_comes_back_exactly_also_while_it_is_announced(application, value, decimals, low, high):
     from groundstation.gui.inputs import NumberBox
 
-    box = NumberBox(0.0, 10.0, 1.0)
-    box.setValue(5.0)
-    event = QWheelEvent(
-        QPointF(5, 5),
-        QPointF(5, 5),
-        QPoint(0, 0),
-        QPoint(0, 120),
-        Qt.MouseButton.NoButton,
-        Qt.KeyboardModifier.NoModifier,
-        Qt.ScrollPhase.NoScrollPhase,
-        False,
+    box = NumberBox(low, high, 1.0, decimals=decimals)
+    heard = []
+    box.valueChanged.connect(lambda _shown: heard.append(box.value()))
+    box.setValue(value)
+    assert box.value() == value
+    assert heard in ([], [value])
+    box.setDecimals(4)
+    assert box.value() == value
+    box.setRange(low, high)
+    assert box.value() == value
+    box.stepUp()
+    assert box.value() != value or box.value() >= high
+
+
+@given(st.integers(0, 2**63 - 1))
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_whole_numbers_of_64_bits_are_shown_typed_and_given_back(application, value):
+    from PySide6.QtCore import Qt
+    from PySide6.QtTest import QTest
+
+    from groundstation.gui.inputs import WholeBox
+
+    box, heard = WholeBox(0, 2**63 - 1), []
+    box.valueChanged.connect(heard.append)
+    box.setValue(value)
+    assert (box.value(), box.text()) == (value, str(value))
+    box.selectAll()
+    QTest.keyClicks(box, str(value // 3))
+    QTest.keyClick(box, Qt.Key.Key_Return)
+    assert box.value() == value // 3
+    box.stepBy(1)
+    assert box.value() == value // 3 + 1
+    QTest.keyClicks(box, "x-")
+    QTest.keyClick(box, Qt.Key.Key_Return)
+    assert box.value() == value // 3 + 1
+    assert set(heard) <= {value, value // 3, value // 3 + 1}
+
+
+def test_whole_numbers_outside_of_what_is_allowed_are_not_taken(application):
+    from PySide6.QtCore import Qt
+    from PySide6.QtTest import QTest
+
+    from groundstation.gui.inputs import WholeBox
+
+    box = WholeBox(1, 100)
+    box.setValue(50)
+    for typed in ("0", "", "101", "7.5"):
+        box.selectAll()
+        QTest.keyClick(box, Qt.Key.Key_Backspace)
+        QTest.keyClicks(box, typed)
+        QTest.keyClick(box, Qt.Key.Key_Return)
+        assert 1 <= box.value() <= 100, typed
+    box.stepBy(1000)
+    assert box.value() == 100
+    box.setValue(300)
+    assert box.value() == 300
+    box.setValue(5)
+    assert box.maximum() == 100
+
+
+def boxes_that_turn():
+    """Every kind of box that a wheel could change."""
+    from PySide6.QtWidgets import QDateTimeEdit, QSlider
+
+    from groundstation.gui.inputs import ChoiceBox, LengthBox, NumberBox, WholeBox, calm
+
+    choice, length, slider, when = ChoiceBox(), LengthBox(0.0, 10.0), QSlider(), QDateTimeEdit()
+    choice.addItems(["a", "b", "c"])
+    choice.setCurrentIndex(1)
+    slider.setValue(50)
+    for box in (slider, when):
+        calm(box)
+    number, whole = NumberBox(0.0, 10.0, 1.0), WholeBox(0, 10)
+    number.setValue(5.0)
+    whole.setValue(5)
+    length.setValue(5.0)
+    return (
+        (number, number.value),
+        (whole, whole.value),
+        (length.box(), length.value),
+        (choice, choice.currentIndex),
+        (slider, slider.value),
+        (when, when.dateTime),
     )
-    box.wheelEvent(event)
-    assert box.value() == 5.0
-    assert not event.isAccepted()
+
+
+def turn_the_wheel(application, box):
+    """As the system tells it: whoever takes the focus by the wheel gets it."""
+    from PySide6.QtCore import QPoint, QPointF
+    from PySide6.QtTest import QTest
+
+    window = box.window()
+    QTest.wheelEvent(window.windowHandle(), QPointF(box.mapTo(window, box.rect().center())), QPoint(0, 120))
+    application.processEvents()
+
+
+def test_the_wheel_scrolls_the_form_unless_a_box_has_the_focus(application):
+    from PySide6.QtCore import Qt
+    from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
+
+    class Form(QWidget):
+        turns = 0
+
+        def wheelEvent(self, event):  # noqa: N802
+            self.turns += 1
+            event.accept()
+
+    form = Form()
+    layout, boxes = QVBoxLayout(form), boxes_that_turn()
+    first = QPushButton("first")
+    layout.addWidget(first)
+    for box, _ in boxes:
+        layout.addWidget(box)
+        assert not (box.focusPolicy() & Qt.FocusPolicy.WheelFocus & ~Qt.FocusPolicy.StrongFocus), type(box)
+    form.show()
+    form.activateWindow()
+    first.setFocus()
+    turn_until(application, first.hasFocus)
+    for box, value in boxes:
+        before, turns = value(), form.turns
+        turn_the_wheel(application, box)
+        assert value() == before, type(box)
+        assert form.turns == turns + 1, "the form scrolls"
+        box.setFocus()
+        turn_until(application, box.hasFocus)
+        turn_the_wheel(application, box)
+        assert value() != before, type(box)
+    form.close()
 
 
 @pytest.mark.parametrize("language", ["en_US", "de_DE", "fr_FR"])

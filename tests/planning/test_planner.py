@@ -9,6 +9,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,10 +19,10 @@ from planning.checks import check_plan
 from planning.errors import InfeasibleError, InputError, OperationCancelled
 from planning.findings import Severity, is_flyable
 from planning.plan import Constraints, FlightRules, Plan
-from planning.plan_file import plan_to_json
+from planning.plan_file import plan_to_json, read_plan, write_plan
 from planning.planner import Planned, plan_flight, share_out_anew
 from planning.progress import StopRequest, Trace
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import LARGEST_SEED, GreedyParameters, PlanRequest
 from planning.scenes import SCENES
 from planning.site import SiteModel
 from tests.planning.plan_cases import (
@@ -361,3 +362,13 @@ def test_plans_of_whole_sites_keep_the_contract(scene: str, goal: dict[str, int]
     # Lines of sight that graze an edge are decided in float32 there and in float64 here.
     assert abs(len(seen) - plan.coverage.covered) <= (3 if plan.constraints.occlusion == "on" else 0)
     assert is_flyable(check_plan(plan, model))
+
+
+@pytest.mark.parametrize("method", ["greedy", "pso", "noto", "orbit"])
+def test_every_method_takes_a_seed_of_63_bits(method: str, tmp_path: Path) -> None:
+    """Generators of other libraries take 32 bits only."""
+    wanted = PlanRequest(method=method, n_views=6, seed=LARGEST_SEED, time_budget_s=2.0)
+    plan = plan_flight(kiosk(), wanted).plan
+    assert plan.seed == LARGEST_SEED
+    write_plan(tmp_path / "plan.json", plan)
+    assert read_plan(tmp_path / "plan.json").seed == LARGEST_SEED

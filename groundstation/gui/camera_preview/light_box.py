@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QDate, QDateTime, QLocale, QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QDateTimeEdit, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import NumberBox
+from groundstation.gui.inputs import ChoiceBox, NumberBox, calm
 from groundstation.services.sun import sun_place_deg
 from planning.site import Origin
 from reconstruction.scenes.look import Look
@@ -31,7 +31,7 @@ class LightBox(QWidget):
         super().__init__(parent)
         self._value = Look()
         self._origin: Origin | None = None
-        self._by = QComboBox()
+        self._by = ChoiceBox()
         self._by.addItems([self.tr("Sun by direction"), self.tr("Sun by date and time")])
         self._by.setToolTip(self.tr("Say where the sun stands, or when the photo is taken"))
         self._heading = NumberBox(0.0, 360.0, 5.0, "°", 0)
@@ -42,6 +42,7 @@ class LightBox(QWidget):
         self._elevation.setAccessibleName(self.tr("Elevation of the sun"))
         self._elevation.setToolTip(self.tr("How high the sun stands above the horizon"))
         self._when = QDateTimeEdit(QDateTime.currentDateTime())
+        calm(self._when)
         self._when.setDisplayFormat("yyyy-MM-dd HH:mm")
         self._when.setLocale(QLocale.c())
         self._when.setDateRange(*DATES)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QElapsedTimer, QEvent, Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QImage, QShortcut, QShowEvent
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
 from groundstation.gui.camera_preview.flight import CameraFlight, CameraPose, camera_flight
 from groundstation.gui.camera_preview.panel_lines import panel_lines
@@ -26,6 +26,7 @@ from groundstation.gui.camera_preview.photo_scene import (
     panel_outlines,
 )
 from groundstation.gui.camera_preview.seen_panels import SiteSight, covered_by_view, site_sight
+from groundstation.gui.inputs import ChoiceBox, calm
 from groundstation.gui.own_words import own_words
 from groundstation.gui.scrolling import scrolled
 from groundstation.gui.theme import colours
@@ -112,8 +113,9 @@ class CameraPreview(QWidget):
         self._update_controls()
 
     def _controls(self) -> QHBoxLayout:
-        self._sorties, self._play, self._speed = QComboBox(), QPushButton(self.tr("Play")), QComboBox()
+        self._sorties, self._play, self._speed = ChoiceBox(), QPushButton(self.tr("Play")), ChoiceBox()
         self._slider, self._clock_text = QSlider(Qt.Orientation.Horizontal), QLabel()
+        calm(self._slider)
         self._play.setCheckable(True)
         space = QShortcut(Qt.Key.Key_Space, self, context=Qt.ShortcutContext.WidgetWithChildrenShortcut)
         space.activated.connect(self._play.toggle)

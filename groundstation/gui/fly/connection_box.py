@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QLineEdit, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QLabel, QLineEdit, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.fly.signing_box import SigningBox
-from groundstation.gui.inputs import NumberBox
+from groundstation.gui.inputs import ChoiceBox, NumberBox
 from groundstation.gui.tab_order import set_enabled
 from groundstation.services.live_choice import USUAL_ADDRESS, ConnectionChoice, LinkKind
 from missions.mavlink.autopilots import Autopilot
@@ -37,7 +37,7 @@ class ConnectionBox(QWidget):
         self._value = ConnectionChoice()
         self._addresses = dict(USUAL_ADDRESS)
         self._is_connected = False
-        self.kind, self.autopilot, self.address = QComboBox(), QComboBox(), QLineEdit()
+        self.kind, self.autopilot, self.address = ChoiceBox(), ChoiceBox(), QLineEdit()
         self.signing = SigningBox()
         self.speed_up = NumberBox(1.0, MAX_SPEED_UP, 1.0, " x", 0)
         self.button = QPushButton()
@@ -108,7 +108,7 @@ class ConnectionBox(QWidget):
         boxes = (self.kind, self.autopilot, self.speed_up, self.address)
         blockers = [QSignalBlocker(box) for box in boxes]
         self.kind.setCurrentIndex(self.kind.findData(value.kind))
-        self.autopilot.setCurrentIndex(self.autopilot.findData(value.autopilot))
+        self.autopilot.show_value(value.autopilot, value.autopilot.value)
         self.speed_up.setValue(value.speed_up)
         self.address.setText(value.address or self._addresses[value.kind])
         del blockers

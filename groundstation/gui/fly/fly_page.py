@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QCloseEvent
-from PySide6.QtWidgets import QComboBox, QLabel, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QTabWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons
@@ -21,6 +21,7 @@ from groundstation.gui.fly.report_view import ReportView
 from groundstation.gui.fly.settings_page import SettingsPage
 from groundstation.gui.fly.simulation_page import SimulationPage
 from groundstation.gui.fly.warnings_view import FlightNotes, WarningsView
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.main_window import MainWindow
 from groundstation.gui.mission.findings_list import FindingsList
 from groundstation.gui.scrolling import scrolled
@@ -44,7 +45,7 @@ class FlyPage(QObject):
         self._workspace, self._stage = workspace, stage
         self.desk, self.questions = FlyDesk.of(workspace), FlightQuestions()
         self._words = FlightWords(workspace, self.desk, self)
-        self.connection, self.sortie = ConnectionBox(), QComboBox()
+        self.connection, self.sortie = ConnectionBox(), ChoiceBox()
         self.buttons, self.checks = FlightButtons(), PreflightList()
         self.readouts, self.warnings = ReadoutsView(), WarningsView()
         self.simulation, self.settings, self.strip = SimulationPage(), SettingsPage(), PhotoStrip()

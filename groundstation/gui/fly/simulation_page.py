@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QLabel, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import NumberBox, SpeedBox
+from groundstation.gui.inputs import ChoiceBox, NumberBox, SpeedBox
 from groundstation.gui.plan.effects_panel import EffectsPanel
 from groundstation.services.effects import EffectChoice
 from groundstation.services.units import UnitSystem
@@ -32,7 +32,7 @@ class SimulationPage(QWidget):
         self._conditions = Conditions()
         self._wishes: dict[str, Wish] = {}
         self.wind, self.wind_from = SpeedBox(0.0, MAX_WIND_M_S), NumberBox(0.0, 360.0, 10.0, "\u00b0", 0)
-        self.fix, self.effects = QComboBox(), EffectsPanel()
+        self.fix, self.effects = ChoiceBox(), EffectsPanel()
         for kind, text in (
             ("rtk-fixed", self.tr("RTK fixed")),
             ("rtk-float", self.tr("RTK float")),

@@ -9,7 +9,6 @@ from pathlib import Path
 from PySide6.QtCore import QDate, QLocale
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QHBoxLayout,
     QLabel,
@@ -20,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.own_words import finding_in_own_words
 from groundstation.gui.questions import choose_new_file
 from groundstation.gui.workspace import Workspace
@@ -60,7 +60,7 @@ class BriefDialog(QDialog):
         found = flight_brief(site_model, plan, findings, today, title)
         told = tuple(finding_in_own_words(finding, self._units) for finding in found.findings)
         self._brief = replace(found, findings=told)
-        self._page, self._paper = QTextBrowser(), QComboBox()
+        self._page, self._paper = QTextBrowser(), ChoiceBox()
         # Paper is white in every theme.
         self._page.setStyleSheet("QTextBrowser { background: #ffffff; color: #000000; }")
         self._paper.addItem(self.tr("A4"), False)

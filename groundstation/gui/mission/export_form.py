@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QFormLayout, QWidget
 
-from groundstation.gui.inputs import LengthBox
+from groundstation.gui.inputs import ChoiceBox, LengthBox
 from groundstation.services.mission_files import MAVLINK_FORMATS
 from groundstation.services.units import UnitSystem
 from missions.dji.write import MIN_RTH_HEIGHT_M, LinkLoss
@@ -28,7 +28,7 @@ class ExportForm(QWidget):
 
     def __init__(self, units: UnitSystem, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._format, self._heights, self._autopilot, self._link_loss = (QComboBox() for _ in range(4))
+        self._format, self._heights, self._autopilot, self._link_loss = (ChoiceBox() for _ in range(4))
         self._return_auto = QCheckBox(self.tr("above everything on the site"))
         self._return_auto.setChecked(True)
         self._return = LengthBox(MIN_RTH_HEIGHT_M, MAX_RETURN_HEIGHT_M, 5.0, units)

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.mission.map_paint import sortie_colour
 from groundstation.gui.theme import colours
 from groundstation.services.document import Item, ItemKind
@@ -38,7 +39,7 @@ class ProfileChart(QWidget):
         self._limits: HeightLimits | None = None
         self._selection: Item | None = None
         self._units = UnitSystem.METRIC
-        self._sortie, self._over, self._hover = QComboBox(), QComboBox(), QLabel()
+        self._sortie, self._over, self._hover = ChoiceBox(), ChoiceBox(), QLabel()
         self._over.addItem(self.tr("over time"), TIME)
         self._over.addItem(self.tr("over distance"), DISTANCE)
         self._hover.setProperty("role", "muted")

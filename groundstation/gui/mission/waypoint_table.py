@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.mission.waypoint_model import PositionShown, WaypointFilter, WaypointModel
 from groundstation.services.document import Item
 from groundstation.services.units import UnitSystem
@@ -43,7 +44,7 @@ class WaypointTable(QWidget):
         self._filter.setSourceModel(self._model)
         self._view = QTableView()
         self._is_being_told = False
-        self._sortie, self._position, self._height = QComboBox(), QComboBox(), QComboBox()
+        self._sortie, self._position, self._height = ChoiceBox(), ChoiceBox(), ChoiceBox()
         self._photos_only = QCheckBox(self.tr("Photos only"))
         self._photos_only.setToolTip(self.tr("Leave out where the path only turns"))
         for box in (self._sortie, self._position, self._height):

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import get_args
 
 from PySide6.QtCore import QCoreApplication
-from PySide6.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFormLayout, QLabel, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.services.model_export import (
     OF_ALL_PARTS,
     WITH_PRESETS,
@@ -34,7 +35,7 @@ class ExportDialog(QDialog):
     def __init__(self, facades: Sequence[str], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Export the model"))
-        self.format, self.part, self.colours, self.preset = (QComboBox() for _ in range(4))
+        self.format, self.part, self.colours, self.preset = (ChoiceBox() for _ in range(4))
         self.about = QLabel()
         self.about.setWordWrap(True)
         self.about.setProperty("role", "muted")

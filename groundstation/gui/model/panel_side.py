@@ -7,8 +7,9 @@ from datetime import date
 
 from PySide6.QtCore import QAbstractListModel, QModelIndex, QPersistentModelIndex, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QIcon, QPixmap
-from PySide6.QtWidgets import QComboBox, QGridLayout, QLabel, QLineEdit, QListView, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QListView, QPushButton, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.services.panel_colours import Colouring, Computed, LegendLine
 from groundstation.services.scene_card import PanelRow
 
@@ -76,7 +77,7 @@ class PanelSide(QWidget):
         self.open, self.title = QPushButton(self.tr("Open a model ...")), QLabel()
         self.export = QPushButton(self.tr("Export ..."))
         self.export.setToolTip(self.tr("Write the model for other programs"))
-        self.search, self.list, self.colour = QLineEdit(), QListView(), QComboBox()
+        self.search, self.list, self.colour = QLineEdit(), QListView(), ChoiceBox()
         self.rows = _Rows(self)
         self._is_told = False
         self._lines: list[tuple[QLabel, QLabel]] = []

@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.model.record_words import choice_words, field_words, kind_words
 from groundstation.gui.questions import choose_file
 from planning.errors import GroundStationError
@@ -127,7 +128,7 @@ class RecordDialog(QDialog):
     def _box(self, name: str) -> QWidget:
         before = getattr(self._entry, name, None)
         if name in CHOICES:
-            box = QComboBox()
+            box = ChoiceBox()
             for choice in CHOICES[name]:
                 box.addItem(choice_words(choice), choice)
             box.setCurrentIndex(max(0, box.findData(str(before))))
@@ -138,7 +139,7 @@ class RecordDialog(QDialog):
             text.setTabChangesFocus(True)
             return text
         if name == "name" and self._kind is Attribute:
-            names = QComboBox()
+            names = ChoiceBox()
             names.setEditable(True)
             names.addItems(list(STANDARD))
             names.setCurrentText(str(before or ""))
@@ -200,4 +201,7 @@ def _number(text: str) -> Any:
 
 
 def _text(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    short = f"{value:g}"
+    return short if float(short) == value else repr(value)

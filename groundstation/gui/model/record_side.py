@@ -8,7 +8,6 @@ from typing import Any
 from PySide6.QtCore import QCoreApplication, QLocale, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QFormLayout,
     QGridLayout,
@@ -21,6 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.model.record_dialog import RecordDialog
 from groundstation.gui.model.record_words import choice_words, field_words, kind_words
 from groundstation.services.scene_card import Level, Subject
@@ -60,7 +60,7 @@ class RecordSide(QWidget):
         super().__init__(parent)
         self._words = words
         self._subject: Subject | None = None
-        self.level = QComboBox()
+        self.level = ChoiceBox()
         self.title, self.facade, self.size, self.global_id = (QLabel() for _ in range(4))
         self.tree, self.kinds = QTreeWidget(), QMenu(self)
         self._groups: dict[type[Any], QTreeWidgetItem] = {}

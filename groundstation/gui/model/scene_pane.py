@@ -11,6 +11,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import ChoiceBox, calm
 from groundstation.gui.model.model_desk import ModelDesk
 from groundstation.gui.model.picture_places import places_in
 from groundstation.gui.reconstruct.led_camera import USUAL_DISTANCE_M, LedCamera
@@ -52,10 +53,11 @@ class ScenePane(QWidget):
     def __init__(self, workspace: Workspace, desk: ModelDesk, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._workspace, self._desk = workspace, desk
-        self.view, self.layer, self.compare = ModelView(), QComboBox(), QComboBox()
+        self.view, self.layer, self.compare = ModelView(), ChoiceBox(), ChoiceBox()
         self.home, self.measure = QPushButton(self.tr("Facade")), QPushButton(self.tr("Measure"))
         self.front, self.save = QPushButton(self.tr("Panel")), QPushButton(self.tr("Save ..."))
-        self.axis, self.cut, self.turn_over = QComboBox(), QSlider(Qt.Orientation.Horizontal), QCheckBox()
+        self.axis, self.cut, self.turn_over = ChoiceBox(), QSlider(Qt.Orientation.Horizontal), QCheckBox()
+        calm(self.cut)
         self.cut_at = QLabel()
         self.looks = Looks(desk.look, self._size_px, self)
         self.led = LedCamera(self.view, self)

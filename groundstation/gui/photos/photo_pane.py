@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QButtonGroup,
-    QComboBox,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -16,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.photos.coverage_scene import CoverageScene
 from groundstation.gui.photos.grid_view import GridView
 from groundstation.gui.photos.photo_store import LargePicture, PhotoStore
@@ -45,7 +45,7 @@ class PhotoPane(QWidget):
         self._store = store
         self._card: PhotoCard | None = None
         self._draft: PanelDraft | None = None
-        self.view, self.scene, self.facade, self._name = GridView(), CoverageScene(), QComboBox(), QLabel()
+        self.view, self.scene, self.facade, self._name = GridView(), CoverageScene(), ChoiceBox(), QLabel()
         self.photo, self.rectified = QPushButton(self.tr("Photo")), QPushButton(self.tr("Rectified"))
         self.coverage = QPushButton(self.tr("Coverage in 3-D"))
         self.coverage.setToolTip(self.tr("The panels coloured by what the photos show of them; a click tells which"))

@@ -5,14 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QWidget
+from PySide6.QtWidgets import QWidget
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.questions import choose_file
 from planning.catalogue import Profile, profile, profiles
 from planning.errors import GroundStationError
 
 
-class AircraftBox(QComboBox):
+class AircraftBox(ChoiceBox):
     """`value()`, `setValue()` and `valueChanged` of a profile's identifier: its name in the catalogue, or its file.
 
     Signals

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.theme import colours
 from groundstation.services.units import UnitSystem, length_unit
 from planning.insight.clearance import RouteClearance
@@ -34,7 +35,7 @@ class ClearanceChart(QWidget):
         self._units = UnitSystem.METRIC
         self._found: RouteClearance | None = None
         self._limit_m = 0.0
-        self._sortie = QComboBox()
+        self._sortie = ChoiceBox()
         self._words = QLabel()
         self._words.setWordWrap(True)
         self._plot = pg.PlotWidget()

@@ -7,7 +7,6 @@ from PySide6.QtCore import QSignalBlocker, Qt
 from PySide6.QtGui import QColor, QFont
 from PySide6.QtWidgets import (
     QAbstractItemView,
-    QComboBox,
     QDialog,
     QHBoxLayout,
     QLabel,
@@ -18,6 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.theme import colours
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, ValueKind
@@ -43,8 +43,8 @@ class CompareWindow(QDialog):
         self.resize(1200, 680)
         self._workspace, self._site, self._entries = workspace, site, entries
         self._comparison: Comparison | None = None
-        self._choices, self._scenes = (QComboBox(), QComboBox()), (SceneView(self), SceneView(self))
-        self._paint = QComboBox()
+        self._choices, self._scenes = (ChoiceBox(), ChoiceBox()), (SceneView(self), SceneView(self))
+        self._paint = ChoiceBox()
         self._paint.addItems([self.tr("coverage"), self.tr("difference in coverage"), self.tr("pixel size")])
         self._words = QLabel()
         self._words.setWordWrap(True)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.own_words import own_words
 from groundstation.services.effects import EffectChoice
 from groundstation.services.units import UnitSystem
@@ -82,7 +83,7 @@ class _EffectCard(QFrame):
         self._size.setProperty("role", "muted")
         for label in (self._words, self._size):
             label.setWordWrap(True)
-        self.wish = QComboBox()
+        self.wish = ChoiceBox()
         for wish, text in zip(WISHES, (self.tr("auto"), self.tr("on"), self.tr("off")), strict=True):
             self.wish.addItem(text, wish)
         self.wish.currentIndexChanged.connect(lambda _index: self.wishChanged.emit(str(self.wish.currentData())))

@@ -5,7 +5,9 @@ from __future__ import annotations
 from enum import StrEnum
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
+
+from groundstation.gui.inputs import ChoiceBox
 
 
 class PanelPaint(StrEnum):
@@ -36,7 +38,7 @@ class PaintBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._panels, self._routes = QComboBox(), QComboBox()
+        self._panels, self._routes = ChoiceBox(), ChoiceBox()
         for paint, text in (
             (PanelPaint.FACADE, self.tr("facade")),
             (PanelPaint.SHARE, self.tr("coverage")),

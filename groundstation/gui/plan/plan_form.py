@@ -10,13 +10,12 @@ from PySide6.QtWidgets import (
     QComboBox,
     QFormLayout,
     QLabel,
-    QSpinBox,
     QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
-from groundstation.gui.inputs import LengthBox, NumberBox, QuantityBox, SpeedBox
+from groundstation.gui.inputs import ChoiceBox, LengthBox, NumberBox, PercentBox, QuantityBox, SpeedBox, WholeBox
 from groundstation.gui.own_words import own_words
 from groundstation.gui.plan.aircraft_box import AircraftBox
 from groundstation.gui.plan.method_names import method_name
@@ -24,7 +23,7 @@ from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.catalogue import profile
 from planning.errors import GroundStationError
 from planning.methods import METHODS
-from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, PlanRequest
+from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, LARGEST_SEED, PlanRequest
 
 COVERAGE, VIEWS, BATTERIES = range(3)
 
@@ -51,6 +50,7 @@ class PlanForm(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._value = PlanRequest()
+        self._shown_gsd: tuple[str, float] | None = None
         self._units = UnitSystem.METRIC
         self._make_boxes()
         self._wrong = QLabel()
@@ -76,31 +76,31 @@ class PlanForm(QWidget):
 
     def _make_boxes(self) -> None:
         self.aircraft = AircraftBox()
-        self._method = QComboBox()
+        self._method = ChoiceBox()
         for method in METHODS:
             self._method.addItem(method_name(method), method)
-        self._goal = QComboBox()
+        self._goal = ChoiceBox()
         self._goal.addItems([self.tr("coverage wanted"), self.tr("number of views"), self.tr("batteries at hand")])
-        self._coverage = NumberBox(10.0, 100.0, 0.5, " %")
-        self._views = _whole(1, 20_000)
-        self._batteries = _whole(1, 20)
+        self._coverage = PercentBox(0.1, 1.0, 0.005)
+        self._views = WholeBox(1, 20_000)
+        self._batteries = WholeBox(1, 100)
         self._distance = LengthBox(0.0, 200.0)
         self._budget = NumberBox(1.0, 3600.0, 5.0, " s")
         self._wind = SpeedBox(0.0, 20.0)
         self._is_gsd_limited = QCheckBox(self.tr("Limit the pixel size"))
         self._gsd = QuantityBox(sampling_unit, *COARSEST_GSD_M, 0.5)
-        self._step = QComboBox()
+        self._step = ChoiceBox()
         for step in SECTION_STEPS_DEG:
-            self._step.addItem(f"{step}°", float(step))
+            self._step.addItem(_degrees(step), float(step))
         self._whole_panel = QCheckBox(self.tr("Count whole panels only"))
         self._whole_panel.setToolTip(self.tr("A view counts only when all four corners are in the picture"))
         self._solid_angle = QCheckBox(self.tr("Weight sections by solid angle"))
-        self._reserve = NumberBox(0.0, 90.0, 5.0, " %", 0)
+        self._reserve = PercentBox(0.0, 0.9, 0.05, 0)
         self._settle = NumberBox(0.0, 30.0, 0.5, " s")
-        self._precision = QComboBox()
+        self._precision = ChoiceBox()
         self._precision.addItem(self.tr("single (fast)"), "f32")
         self._precision.addItem(self.tr("double (slower)"), "f64")
-        self._seed = _whole(0, 2**31 - 1)
+        self._seed = WholeBox(0, LARGEST_SEED)
 
     def _first_rows(self) -> tuple[tuple[str, QWidget], ...]:
         return (
@@ -172,22 +172,22 @@ class PlanForm(QWidget):
         blockers = [QSignalBlocker(box) for box in self.findChildren(QWidget)]
         self._value = request
         wrong = self._show_aircraft(request)
-        self._method.setCurrentIndex(self._method.findData(request.method))
+        self._method.show_value(request.method, method_name(request.method))
         goal = VIEWS if request.n_views is not None else BATTERIES if request.n_batteries is not None else COVERAGE
         self._goal.setCurrentIndex(goal)
-        self._coverage.setValue(100.0 * (DEFAULT_SHARE if request.share is None else request.share))
+        self._coverage.setValue(DEFAULT_SHARE if request.share is None else request.share)
         self._views.setValue(DEFAULT_VIEWS if request.n_views is None else request.n_views)
         self._batteries.setValue(1 if request.n_batteries is None else request.n_batteries)
         constraints, rules = request.constraints, request.rules
         self._distance.setValue(constraints.min_distance_m)
-        self._step.setCurrentIndex(max(0, self._step.findData(constraints.section_step_deg)))
+        self._step.show_value(constraints.section_step_deg, _degrees(constraints.section_step_deg))
         self._whole_panel.setChecked(constraints.whole_panel)
         self._is_gsd_limited.setChecked(constraints.max_distance_m is not None)
         self._wind.setValue(rules.wind_m_s)
-        self._reserve.setValue(100.0 * rules.battery_reserve)
+        self._reserve.setValue(rules.battery_reserve)
         self._settle.setValue(rules.settle_s)
         self._solid_angle.setChecked(request.greedy.solid_angle_weights)
-        self._precision.setCurrentIndex(self._precision.findData(request.precision))
+        self._precision.show_value(request.precision)
         self._seed.setValue(request.seed)
         self._budget.setValue(request.time_budget_s)
         del blockers
@@ -203,6 +203,7 @@ class PlanForm(QWidget):
         except GroundStationError as error:
             return own_words(str(error), self._units)
         self._gsd.setValue(profile(request.profile_id).camera.gsd_m(furthest_m))
+        self._shown_gsd = request.profile_id, self._gsd.value()
         return ""
 
     def problem(self) -> str:
@@ -230,12 +231,15 @@ class PlanForm(QWidget):
     def _request(self) -> PlanRequest:
         """What the boxes say."""
         goal, before = self._goal.currentIndex(), self._value
+        share = self._coverage.value()
+        has_goal = any(value is not None for value in (before.share, before.n_views, before.n_batteries))
         profile_id = self.aircraft.value()
         return replace(
             before,
             profile_id=profile_id,
             method=str(self._method.currentData()),
-            share=self._coverage.value() / 100.0 if goal == COVERAGE else None,
+            # What was asked for without a goal is still so while the one that is offered stands.
+            share=share if goal == COVERAGE and (has_goal or share != DEFAULT_SHARE) else None,
             n_views=self._views.value() if goal == VIEWS else None,
             n_batteries=self._batteries.value() if goal == BATTERIES else None,
             constraints=replace(
@@ -248,7 +252,7 @@ class PlanForm(QWidget):
             rules=replace(
                 before.rules,
                 wind_m_s=self._wind.value(),
-                battery_reserve=self._reserve.value() / 100.0,
+                battery_reserve=self._reserve.value(),
                 settle_s=self._settle.value(),
             ),
             greedy=replace(before.greedy, solid_angle_weights=self._solid_angle.isChecked()),
@@ -260,6 +264,9 @@ class PlanForm(QWidget):
     def _furthest_m(self) -> float | None:
         if not self._is_gsd_limited.isChecked():
             return None
+        asked_m = self._value.constraints.max_distance_m
+        if asked_m is not None and self._shown_gsd == (self.aircraft.value(), self._gsd.value()):
+            return asked_m  # as it was: there and back it would be rounded
         return profile(self.aircraft.value()).camera.distance_for_gsd_m(self._gsd.value())
 
     def _edited(self) -> None:
@@ -283,8 +290,5 @@ class PlanForm(QWidget):
         self._gsd.setEnabled(self._is_gsd_limited.isChecked())
 
 
-def _whole(low: int, high: int) -> QSpinBox:
-    spin = QSpinBox()
-    spin.setRange(low, high)
-    spin.setKeyboardTracking(False)
-    return spin
+def _degrees(step_deg: float) -> str:
+    return f"{step_deg:.4g}°"

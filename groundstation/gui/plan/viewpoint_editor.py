@@ -119,9 +119,8 @@ class ViewpointEditor(QWidget):
         if before is None:
             return
         x, y, z = (box.value() for box in self._position)
-        # Boxes round for display; an angle that was not touched stays as it was.
         heading, pitch = (
-            old if abs(box.value() - old) <= 0.5 * 10.0 ** -box.decimals() else round(box.value(), ANGLE_DECIMALS)
+            old if box.value() == old else round(box.value(), ANGLE_DECIMALS)
             for box, old in ((self._heading, before.heading_deg), (self._pitch, before.gimbal_pitch_deg))
         )
         edited = replace(

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QFormLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import ChoiceBox, NumberBox
 from groundstation.gui.own_words import own_words
 from groundstation.services.reconstruct_choices import (
     LONGEST_MIN,
@@ -35,8 +36,8 @@ class ChoiceForm(QWidget):
         super().__init__(parent)
         self._value = TrainChoice()
         self._methods = {row.name: row for row in method_rows()}
-        self.method, self.time, self.device = QComboBox(), QComboBox(), QComboBox()
-        self.minutes = QDoubleSpinBox()
+        self.method, self.time, self.device = ChoiceBox(), ChoiceBox(), ChoiceBox()
+        self.minutes = NumberBox(1.0, float(LONGEST_MIN), 5.0, self.tr(" min"), 0)
         self.about = QLabel()
         self._make()
         self._fill()
@@ -54,8 +55,8 @@ class ChoiceForm(QWidget):
         """Show another choice."""
         self._value = value
         blockers = [QSignalBlocker(each) for each in (self.method, self.time, self.device, self.minutes)]
-        self.method.setCurrentIndex(self.method.findData(value.method))
-        self.time.setCurrentIndex(self.time.findData(value.preset if value.minutes is None else OWN))
+        self.method.show_value(value.method)
+        self.time.show_value(value.preset if value.minutes is None else OWN)
         if value.minutes is not None:
             self.minutes.setValue(value.minutes)
         self.device.setCurrentIndex(int(value.on_cuda and self.device.count() > 1))
@@ -76,10 +77,7 @@ class ChoiceForm(QWidget):
         self._value = replace(self._value, light=light)
 
     def _make(self) -> None:
-        self.minutes.setRange(1.0, float(LONGEST_MIN))
-        self.minutes.setDecimals(0)
         self.minutes.setValue(30.0)
-        self.minutes.setSuffix(self.tr(" min"))
         for box in (self.method, self.time, self.device):
             box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
             box.setMinimumContentsLength(10)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.plan.effects_panel import EffectsPanel
 from groundstation.gui.reconstruct.names import light_name
 from groundstation.services.effects import EffectChoice
@@ -29,7 +30,7 @@ class LightPage(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.light, self.ask, self.words = QComboBox(), QPushButton(self.tr("Ask the scene")), QLabel()
+        self.light, self.ask, self.words = ChoiceBox(), QPushButton(self.tr("Ask the scene")), QLabel()
         self.effects = EffectsPanel()
         self.ask.setToolTip(
             self.tr("Try the cheap models on the photos for some seconds, and say which one is worth it")

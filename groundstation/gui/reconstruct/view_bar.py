@@ -7,6 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QWidget
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.reconstruct.names import layer_names
 from groundstation.services.reconstruct_places import ModelCard
 from reconstruction.modelling.layer_names import PICTURE
@@ -31,7 +32,7 @@ class ViewBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.model, self.layer, self.compare = QComboBox(), QComboBox(), QComboBox()
+        self.model, self.layer, self.compare = ChoiceBox(), ChoiceBox(), ChoiceBox()
         self.home = QPushButton(self.tr("To the photo"))
         for name, text in layer_names().items():
             self.layer.addItem(text, name)

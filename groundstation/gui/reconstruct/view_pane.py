@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSlider, QVBoxLayout, QWidget
 
+from groundstation.gui.inputs import calm
 from groundstation.gui.reconstruct.error_strip import ErrorStrip
 from groundstation.gui.reconstruct.led_camera import LedCamera
 from groundstation.gui.reconstruct.looks import Looks, View
@@ -35,6 +36,7 @@ class ViewPane(QWidget):
         self.pictures = SmallPictures(self)
         self.bar, self.view, self.strip = ViewBar(), ModelView(), ErrorStrip(self.pictures)
         self.line, self.worst = QSlider(Qt.Orientation.Horizontal), QPushButton(self.tr("Worst first"))
+        calm(self.line)
         self.looks = Looks(desk.look, self._size_px, self)
         self._photo: PosedPhoto | None = None
         self.led = LedCamera(self.view, self)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLabel, QPushButton, QSpinBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import LengthBox
+from groundstation.gui.inputs import LengthBox, WholeBox
 from groundstation.gui.site.value_boxes import ErrorLine, PointBox, muted
 from groundstation.services.units import UnitSystem, length_unit
 from planning.scenes import Rectangle
@@ -192,8 +192,5 @@ def rectangle_size_m(rectangle: Rectangle) -> tuple[float, float]:
     return float(np.linalg.norm(right - low)), float(np.linalg.norm(up - low))
 
 
-def _count_box() -> QSpinBox:
-    box = QSpinBox()
-    box.setRange(1, MAX_COUNT)
-    box.setKeyboardTracking(False)
-    return box
+def _count_box() -> WholeBox:
+    return WholeBox(1, MAX_COUNT)

@@ -11,7 +11,7 @@ from PySide6.QtCore import QLocale, Signal
 from PySide6.QtGui import QDoubleValidator
 from PySide6.QtWidgets import QComboBox, QFormLayout, QWidget
 
-from groundstation.gui.inputs import LengthBox
+from groundstation.gui.inputs import ChoiceBox, LengthBox
 from groundstation.gui.site.origin_box import OriginBox
 from groundstation.gui.site.site_tree_model import size_text
 from groundstation.gui.site.value_boxes import NameBox
@@ -143,7 +143,7 @@ class ImportForm(QWidget):
         self._rest = options
         self._name.setValue(options.name or "")
         self._crs.setValue(options.crs or "")
-        self._ground.setValue("" if options.ground_z is None else f"{options.ground_z:g}")
+        self._ground.setValue("" if options.ground_z is None else repr(float(options.ground_z)))
         self._margin.setValue(options.airspace_margin_m)
         self._has_origin = options.origin is not None
         if options.origin is not None:
@@ -155,9 +155,10 @@ class ImportForm(QWidget):
             (self._building, options.building or ""),
             (self._axis_order, options.axis_order),
             (self._heights, options.height_reference),
-            (self._place, place),
         ):
-            box.setCurrentIndex(max(0, box.findData(wanted)))
+            box.show_value(wanted)
+        # A mesh says nothing itself.
+        self._place.setCurrentIndex(max(0, self._place.findData(place)))
         self._show_place()
 
     def set_choices(self, choices: tuple[BuildingChoice, ...]) -> None:
@@ -206,7 +207,7 @@ def _number(text: str) -> float | None:
 
 def _combo(entries: Iterable[tuple[str, str]]) -> QComboBox:
     """Box to choose from (value, text) pairs."""
-    box = QComboBox()
+    box = ChoiceBox()
     for value, text in entries:
         box.addItem(text, value)
     return box
