@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from groundstation.cli import commands
+from groundstation.cli.options import new_folder
 from planning.errors import GroundStationError, OperationCancelled
 
 EXIT_DONE, EXIT_FAILED, EXIT_USAGE = 0, 1, 2
@@ -76,7 +77,9 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     window = parser.add_argument_group("the window")
     window.add_argument("--open", type=Path, metavar="PATH", help="project folder or site file to begin with")
-    window.add_argument("--screenshots", type=Path, metavar="DIR", help="save pictures of every tab and state, and end")
+    window.add_argument(
+        "--screenshots", type=new_folder, metavar="DIR", help="save pictures of every tab and state, and end"
+    )
     window.add_argument("--site", type=Path, dest="pictured_site", metavar="SITE", help="site file for --screenshots")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND")
     for module in pkgutil.iter_modules(commands.__path__):

@@ -6,9 +6,11 @@ import argparse
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from planning.errors import InputError
+from planning.folders import PLAIN_ENDINGS, check_ending, check_folder_name
 from planning.request import LARGEST_SEED
 
 if TYPE_CHECKING:
@@ -56,6 +58,32 @@ def number(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"expected a number, got '{text}'")
     return value
+
+
+def json_file(text: str) -> Path:
+    """Where a JSON file is to be written; for argparse's `type`.
+
+    Raises
+    ------
+    InputError
+        The name says that something else is in the file.
+    """
+    path = Path(text)
+    check_ending(path, (".json",), (*PLAIN_ENDINGS, ".plan"))
+    return path
+
+
+def new_folder(text: str) -> Path:
+    """Where a folder is to be written; for argparse's `type`.
+
+    Raises
+    ------
+    InputError
+        The name says that it is a file.
+    """
+    path = Path(text)
+    check_folder_name(path)
+    return path
 
 
 def add_profile_argument(parser: Any) -> None:

@@ -7,16 +7,18 @@ dialogs with a text that is empty where none was chosen: whoever asks gets a boo
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from enum import Enum, auto
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtWidgets import QDialog, QFileDialog, QInputDialog, QMessageBox, QWidget
 
+from planning.folders import FILE_ENDING
+
 _Button = QMessageBox.StandardButton
 
-_ENDING = re.compile(r"\.[A-Za-z][A-Za-z0-9]{0,9}")
+_ENDING = re.compile(r"\.[a-z][a-z0-9]{0,9}")
 """What counts as the ending of a file's name."""
 
 
@@ -57,10 +59,13 @@ def choose_files(parent: QWidget, title: str, kinds: str, folder: Path) -> tuple
     return tuple(Path(name) for name in names)
 
 
-def choose_new_file(parent: QWidget, title: str, proposed: Path, kinds: str, ending: str) -> Path | None:
+def choose_new_file(
+    parent: QWidget, title: str, proposed: Path, kinds: str, ending: str, others: Collection[str] = ()
+) -> Path | None:
     """Where a file is to be written; for one that is there already, the user was asked.
 
-    A name gets the `ending` (".city.json") where it has none, before it is looked whether such a file is there.
+    A name gets the `ending` (".city.json") where it has none, or one that says something else is in the file and is
+    none of `others`, before it is looked whether such a file is there.
     """
     dialog = QFileDialog(parent, title, str(proposed.parent) if proposed.is_absolute() else "", kinds)
     dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
@@ -70,7 +75,11 @@ def choose_new_file(parent: QWidget, title: str, proposed: Path, kinds: str, end
     is_chosen = dialog.exec() == QDialog.DialogCode.Accepted
     chosen = Path(dialog.selectedFiles()[0]) if is_chosen else None
     dialog.deleteLater()
-    if chosen is None or _ENDING.fullmatch(chosen.suffix):
+    if chosen is None:
+        return None
+    found = chosen.suffix.lower()
+    fits = chosen.name.lower().endswith(ending) or found in others or not FILE_ENDING.fullmatch(found)
+    if fits and _ENDING.fullmatch(found):
         return chosen
     # Qt takes "No. 12" for a name with an ending.
     whole = chosen.with_name(chosen.name + ending)

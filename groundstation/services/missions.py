@@ -22,6 +22,7 @@ from missions.model import FileFormat
 from planning.catalogue import DEFAULT_PROFILE
 from planning.errors import InputError
 from planning.findings import Finding, Severity
+from planning.folders import check_ending
 from planning.json_file import check_output
 from planning.plan import Constraints, Plan
 from planning.plan_file import write_plan
@@ -90,6 +91,7 @@ def export_plan(
     sources = [path for path in (plan_path, site_path) if path is not None]
     check_not_index(out)
     check_output(out, sources)
+    check_ending(out, SUFFIXES[file_format])
     site_model = find_site(plan, plan_path, site_path)
     findings = list(_name_findings(out, file_format))
     origin, home = plan.origin, plan.home_enu_m

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from planning.errors import InputError
+from planning.folders import check_ending, check_folder_name
+from planning.json_file import check_output
 from planning.progress import QUIET, Monitor, Stop, Trace
 
 if TYPE_CHECKING:
@@ -49,6 +51,12 @@ ENDINGS: Mapping[ModelFormat, str] = {
     ModelFormat.IFC: ".ifc",
 }
 """Of files by format; what is not here is a folder."""
+
+OTHER_ENDINGS: Mapping[ModelFormat, tuple[str, ...]] = {
+    ModelFormat.USD: (".usda", ".usd"),
+    ModelFormat.CITYJSON: (".json",),
+}
+"""That files of a format may have as well."""
 
 WITH_PRESETS = frozenset({ModelFormat.SPZ, ModelFormat.SPZ_4, ModelFormat.SOG, ModelFormat.TILES})
 """Formats whose size a preset decides."""
@@ -113,6 +121,21 @@ def with_ending(path: Path, kind: ModelFormat) -> Path:
     return path if path.suffix or not ending else path.with_name(path.name + ending)
 
 
+def check_name(out: Path, kind: ModelFormat) -> None:
+    """Refuse a name that says that something else is in the file, or that a folder is one.
+
+    Raises
+    ------
+    InputError
+        It does, or the file could not be written.
+    """
+    if kind not in ENDINGS:
+        check_folder_name(out)
+        return
+    check_ending(out, (ENDINGS[kind], *OTHER_ENDINGS.get(kind, ())))
+    check_output(out)
+
+
 def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor = QUIET) -> WrittenModel:
     """Write a model, with the records that lie beside it where the format has a place for them.
 
@@ -121,6 +144,7 @@ def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor 
     InputError
         The folder holds no model, or a file cannot be read or written.
     """
+    check_name(out, wanted.format)
     if wanted.format is ModelFormat.IFC:
         return _ifc(folder, out)
     whole, trained = _read(folder, monitor)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.services.model_wish import DEFAULT_PRESET, TrainWish
 from planning.errors import InputError
-from planning.folders import make_folder
+from planning.folders import check_ending, make_folder
 from planning.json_file import check_output, write_atomically
 from planning.progress import QUIET, Monitor, Stop, Trace, never
 
@@ -220,6 +220,7 @@ def preview_to(path: Path) -> Callable[[Preview], None]:
         The file cannot be written.
     """
     check_output(path)
+    check_ending(path, (".png",))
 
     def write(preview: Preview) -> None:
         from reconstruction.modelling.render import png_of

@@ -125,6 +125,13 @@ def test_a_name_that_other_programs_do_not_look_for_is_told(reflight, pane, tmp_
     assert done.err == "warning: m.zip: other programs look for dji-kmz files with names that end in .kmz\n"
 
 
+@pytest.mark.parametrize(("file_format", "name"), [("dji-kmz", "m.kml"), ("csv", "m.xlsx"), ("mavlink-plan", "m.kmz")])
+def test_a_name_of_another_kind_of_file_is_refused(reflight, pane, tmp_path, file_format, name):
+    error = reflight("export", pane / "plan.json", "--format", file_format, "-o", tmp_path / name).error
+    assert f"not written: the name ends in .{name[2:]}, and what would be in the file is ." in error
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("out", "message"),
     [
@@ -144,10 +151,10 @@ def test_an_export_never_replaces_what_it_is_made_from(reflight, pane, tmp_path,
 
 
 def test_the_file_of_a_later_sortie_never_replaces_the_plan(reflight, sorties, tmp_path):
-    plan = tmp_path / "m-2.json"
+    plan = tmp_path / "m-2.bin"
     shutil.copy(sorties / "plan.json", plan)
     before = plan.read_bytes()
-    assert "would replace" in reflight("export", plan, "--format", "dji-kmz", "-o", tmp_path / "m.json").error
+    assert "would replace" in reflight("export", plan, "--format", "dji-kmz", "-o", tmp_path / "m.bin").error
     assert plan.read_bytes() == before
     assert list(tmp_path.iterdir()) == [plan]
 

@@ -1,5 +1,6 @@
 """The frame around all commands: exit statuses, one line for an error, streams that break, Ctrl-C."""
 
+import argparse
 import os
 import signal
 import subprocess
@@ -9,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.cli.main import WindowWish, main
-from planning.errors import OperationCancelled
+from groundstation.cli.main import WindowWish, build_parser, main
+from groundstation.cli.options import new_folder
+from planning.errors import InputError, OperationCancelled
 from planning.scenes import write_scene
 from tests.cli.conftest import ROOT
 
@@ -74,6 +76,40 @@ def failing_with(error, monkeypatch):
         raise error
 
     monkeypatch.setattr("groundstation.services.planning.check_files", fail)
+
+
+def outputs(parser, path=()):
+    """Every option of a command that says where something is written."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name, command in action.choices.items():
+                yield from outputs(command, (*path, name))
+        elif "--out" in action.option_strings:
+            yield " ".join(path), action
+
+
+CHECKED_BY_FORMAT = {"brief", "export", "records export"}
+"""Where what is written depends on more than the command; they have tests of their own."""
+
+
+def test_no_output_has_a_name_that_says_something_else_is_in_it(tmp_path):
+    found = {name: action for name, action in outputs(build_parser()) if name not in CHECKED_BY_FORMAT}
+    assert len(found) > 18
+    (tmp_path / "tower.json").mkdir()
+    for name, action in found.items():
+        for ending in (".xlsx", ".pdf", ".png", ".kmz"):
+            with pytest.raises(InputError, match=f"not written: the name ends in {ending}"):
+                action.type(str(tmp_path / f"tower{ending}"))
+        # What tells nothing wrong is taken as it is; a folder that there is may be called as its owner likes.
+        for good in ("tower", "tower.model", "tower.json" if action.type is new_folder else "a.site.json", "No. 12"):
+            assert action.type(str(tmp_path / good)) == tmp_path / good, name
+
+
+@pytest.mark.parametrize("command", ["segment", "train"])
+def test_a_contradictory_name_is_one_line_before_anything_is_read(reflight, tmp_path, command):
+    error = reflight(command, tmp_path / "missing", "-o", tmp_path / "result.pdf").error
+    assert "result.pdf: not written: the name ends in .pdf" in error
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_fault_of_the_program_is_one_line_that_says_where_the_traceback_is(reflight, monkeypatch):

@@ -64,6 +64,15 @@ def test_a_new_ifc_file_and_what_it_lacks(reflight, folder, tmp_path):
     assert "expected a name ending in .ifc" in error
 
 
+@pytest.mark.parametrize("name", ["x.xlsx", "x.csv", "x.pdf", "X.JSON"])
+def test_tables_are_not_written_into_a_folder_that_is_called_as_a_file_is(reflight, folder, tmp_path, name):
+    error = reflight("records", folder, "export", "-o", tmp_path / name).error
+    assert f"{name}: not written: there is no export into a file of this ending; name a folder" in error
+    assert not (tmp_path / name).exists()
+    (tmp_path / name).mkdir()
+    assert reflight("records", folder, "export", "-o", tmp_path / name).status == 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

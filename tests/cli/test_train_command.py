@@ -352,4 +352,13 @@ def test_exports_of_models_are_refused_in_words(reflight, glass, tmp_path):
     done = reflight("export", glass / "model", "--format", "kml", "-o", tmp_path / "a.kml")
     assert done.status == 1
     assert "a.kml" not in [path.name for path in tmp_path.iterdir()]
+    contradictions = {"spz": "a.ply", "mesh": "a.obj", "gltf": "a.gltf", "usd": "a.usdz", "cityjson": "a.gml"}
+    contradictions |= {"ifc": "a.json", "web": "a.html", "3d-tiles": "a.json", "ply": "a.spz", "sog": "a.zip.glb"}
+    for name, out in contradictions.items():
+        error = reflight("export", glass / "model", "--format", name, "-o", tmp_path / out).error
+        assert "not written: the name ends in ." in error, name
+    assert (
+        "there is no folder" in reflight("export", glass / "model", "--format", "ply", "-o", tmp_path / "b/a.ply").error
+    )
+    assert list(tmp_path.iterdir()) == []
     assert reflight("export", glass / "model", "--format", "nothing", "-o", tmp_path / "a").status == 2

@@ -7,6 +7,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import new_folder
+
 SCENES = ("office", "library", "court", "canyon", "roof", "tower", "single-panel")
 
 
@@ -18,7 +20,7 @@ def add_parser(subparsers: Any) -> None:
         description="Do the main job on a site that the program makes itself: plan, check, export, simulate.",
     )
     parser.set_defaults(run=run)
-    parser.add_argument("--out", type=Path, default=Path("demo-out"), metavar="DIR", help="default: demo-out")
+    parser.add_argument("--out", type=new_folder, default=Path("demo-out"), metavar="DIR", help="default: demo-out")
     parser.add_argument("--scene", default=SCENES[0], choices=SCENES, help="the site (default office)")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from groundstation.cli.options import add_profile_argument, in_words_of_options, number
+from groundstation.cli.options import add_profile_argument, in_words_of_options, json_file, number
 
 
 def add_parser(subparsers: Any) -> None:
@@ -21,7 +21,7 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add("file", type=Path, nargs="+", metavar="FILE", help="mission file")
     add("--site", type=Path, required=True, metavar="SITE", help="site file the mission is flown at")
-    add("-o", "--out", type=Path, required=True, metavar="PLAN", help="plan file to write")
+    add("-o", "--out", type=json_file, required=True, metavar="PLAN", help="plan file to write")
     add_profile_argument(parser)
     add("--min-distance", type=number, default=10.0, metavar="M", help="for the reachable bound (default 10 m)")
     add("--step", type=number, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import new_folder
+
 EPILOG = """examples:
   organise tower.model -o tower.gsscene
   organise tower.model -o tower.gsscene --site tower.json
@@ -25,7 +27,7 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
     add = parser.add_argument
     add("model", type=Path, metavar="MODEL", help="folder of a model")
-    add("-o", "--out", type=Path, required=True, metavar="SCENE", help="folder to write")
+    add("-o", "--out", type=new_folder, required=True, metavar="SCENE", help="folder to write")
     add("--site", type=Path, metavar="SITE", help="site file that knows the building model's GlobalIds of panels")
     add("--json", action="store_true", help="print one JSON object instead of text")
 

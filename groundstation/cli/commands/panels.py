@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.commands.site import add_flight, add_place_and_content, import_options
+from groundstation.cli.options import json_file
 from groundstation.cli.pose_options import add_pose_arguments, print_refined, refine_wish
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add("photos", type=Path, metavar="PHOTOS", help="folder of photos, as they come from the camera's card")
     add("model", type=Path, metavar="MODEL", help="coarse model: a mesh, a building model, or a site file")
-    add("-o", "--out", type=Path, required=True, metavar="SITE", help="site file to write")
+    add("-o", "--out", type=json_file, required=True, metavar="SITE", help="site file to write")
     add("--name", help="name of the site (default: the building's, else the file's)")
     add_pose_arguments(parser)
     add("--curvature", choices=("auto", "on", "off"), default="auto", help="take facades for cylinders (default auto)")

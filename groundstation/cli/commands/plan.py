@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import add_profile_argument, in_words_of_options, number
+from groundstation.cli.options import add_profile_argument, in_words_of_options, json_file, number
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
     add = parser.add_argument
     add("site", type=Path, metavar="SITE", help="site file")
-    add("-o", "--out", type=Path, required=True, metavar="PLAN", help="plan file to write")
+    add("-o", "--out", type=json_file, required=True, metavar="PLAN", help="plan file to write")
     add("--json", action="store_true", help="print one JSON object instead of text")
     add("--keep", type=Path, metavar="PLAN", help="keep the locked viewpoints of this plan (method greedy only)")
     add_request_arguments(parser)

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import new_folder
 from groundstation.cli.pose_options import add_pose_arguments, refine_wish
 
 EPILOG = """Writes images/, sparse/0 and points.ply as COLMAP and splatting programs read them, transforms.json for
@@ -30,7 +31,7 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add("photos", type=Path, metavar="PHOTOS", help="folder of photos, as they come from the camera's card")
     add("site", type=Path, metavar="SITE", help="site file with its panels")
-    add("-o", "--out", type=Path, required=True, metavar="FOLDER", help="new folder for the data set")
+    add("-o", "--out", type=new_folder, required=True, metavar="FOLDER", help="new folder for the data set")
     add_pose_arguments(parser)
     add("--normal-step", type=int, default=2, metavar="N", help="photo pixels per pixel of normal maps (default 2)")
     add("--points", type=int, default=100_000, metavar="N", help="points that reconstruction starts from")

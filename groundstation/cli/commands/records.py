@@ -9,6 +9,7 @@ from typing import Any
 
 from groundstation.cli.lists import count
 from planning.errors import InputError
+from planning.folders import FILE_ENDING
 
 EPILOG = """examples:
   records tower.gsscene make
@@ -273,6 +274,8 @@ def run_export(options: argparse.Namespace) -> int:
     from groundstation.services.facility_records import export_ifc, export_tables, open_records
 
     is_ifc = options.out.suffix.lower() == ".ifc"
+    if not is_ifc:
+        check_tables_name(options.out)
     if not is_ifc and (options.into is not None or options.site is not None):
         raise InputError(f"{options.out}: --into and --site are for IFC; expected a name ending in .ifc")
     with open_records(options.folder) as book:
@@ -282,6 +285,21 @@ def run_export(options: argparse.Namespace) -> int:
             done = export_tables(book, options.out, options.semicolon)
     names = [str(path) for path in done.files]
     return _say(options, "\n".join(names), done.notes, files=names)
+
+
+def check_tables_name(out: Path) -> None:
+    """Refuse to make a folder that is called as a file is.
+
+    Raises
+    ------
+    InputError
+        Its name ends in .xlsx, .csv or the like.
+    """
+    if FILE_ENDING.fullmatch(out.suffix.lower()) and not out.is_dir():
+        raise InputError(
+            f"{out}: not written: there is no export into a file of this ending; name a folder, which gets a CSV table "
+            "for each kind of records (any spreadsheet opens them), or a name ending in .ifc"
+        )
 
 
 def _fields(texts: list[str]) -> dict[str, str]:

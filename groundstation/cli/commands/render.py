@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.lists import count, words
+from groundstation.cli.options import new_folder
 from planning.errors import InputError
 from reconstruction.modelling.layer_names import LAYERS
 
@@ -36,7 +37,7 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add("model", type=Path, metavar="MODEL", help="folder of a model")
     add("--views", type=Path, required=True, metavar="DATASET|PLAN", help="where its cameras are")
-    add("-o", "--out", type=Path, required=True, metavar="DIR", help="folder for the pictures")
+    add("-o", "--out", type=new_folder, required=True, metavar="DIR", help="folder for the pictures")
     add("--layers", type=words, default=(), metavar="LIST", help="such as diffuse,reflection (default: none)")
     add("--width", type=int, metavar="PX", help="of the pictures (default: as the views have it)")
     add("--frames", type=count, metavar="N", help="so many along the way through the views, instead of them")

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from groundstation.cli.options import json_file
+
 if TYPE_CHECKING:
     from groundstation.services.flight_report import ReportedFlight
 
@@ -48,7 +50,7 @@ def add_parser(subparsers: Any) -> None:
         help="flight log (.tlog, .BIN, .log, .ulg); once for each, in the order of flight",
     )
     source.add_argument("--photos", type=Path, metavar="DIR", help="folder of the photos that were taken")
-    add("-o", "--out", type=Path, metavar="FLIGHT", help="flight file to write (default: none)")
+    add("-o", "--out", type=json_file, metavar="FLIGHT", help="flight file to write (default: none)")
     add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="what heights count from")
     add("--json", action="store_true", help="print one JSON object instead of text")
 

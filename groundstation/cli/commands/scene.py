@@ -6,7 +6,14 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import add_profile_argument, checked_seed, effect_wishes, in_words_of_options, number
+from groundstation.cli.options import (
+    add_profile_argument,
+    checked_seed,
+    effect_wishes,
+    in_words_of_options,
+    new_folder,
+    number,
+)
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -56,7 +63,7 @@ def add_parser(subparsers: Any) -> None:
     render.set_defaults(run=run_render)
     add = render.add_argument
     add("scene", metavar="SITE|NAME", help="site file, or name of a bundled scene ('scene list')")
-    add("-o", "--out", type=Path, required=True, metavar="DIR", help="folder for the photos")
+    add("-o", "--out", type=new_folder, required=True, metavar="DIR", help="folder for the photos")
     add("--plan", type=Path, metavar="PLAN", help="plan file")
     add("--flight", type=Path, metavar="FLIGHT", help="flight file, of 'simulate' or 'report'")
     add("--views", type=int, metavar="N", help="number of views to plan (default 24)")

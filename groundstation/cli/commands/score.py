@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli import score_model
 from groundstation.cli.commands.segment import add_parameter_arguments
+from groundstation.cli.options import new_folder
 
 if TYPE_CHECKING:
     from groundstation.services.segmentation import ScoreRequest
@@ -68,7 +69,7 @@ def add_parser(subparsers: Any) -> None:
     add_set_arguments(panels)
     add("--masks", type=Path, metavar="DIR", help="score these masks of another method instead")
     add("--save-photos", type=Path, metavar="DIR", help="also write the photos of the set into a folder")
-    add("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
+    add("-o", "--out", type=new_folder, required=True, metavar="DIR", help="folder to write into")
     add_parameter_arguments(panels)
     add("--json", action="store_true", help="print one JSON object instead of text")
     _take_models(parser)

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import json_file
+
 EPILOG = """Writes reflight-panels/1 (docs/file-formats.md): corners of every panel in pixels of the photo, by
 facade, row and column, and how sure each is.
 
@@ -26,7 +28,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.set_defaults(run=run)
     parser.add_argument("image", type=Path, metavar="IMAGE", help="photo: JPEG, PNG, TIFF or BMP")
-    parser.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="panels file to write")
+    parser.add_argument("-o", "--out", type=json_file, required=True, metavar="FILE", help="panels file to write")
     parser.add_argument("--rectified", action="store_true", help="the photo is fronto-parallel: search it as it is")
     add_parameter_arguments(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")

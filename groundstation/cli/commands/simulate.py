@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import checked_seed, number
+from groundstation.cli.options import checked_seed, json_file, number
 from groundstation.cli.options import effect_wishes as wishes_of_effects
 from planning.errors import InputError
 
@@ -56,7 +56,7 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add("plan", type=Path, metavar="PLAN", help="plan file")
     add("site", type=Path, metavar="SITE", help="site file")
-    add("-o", "--out", type=Path, required=True, metavar="FLIGHT", help="flight file to write")
+    add("-o", "--out", type=json_file, required=True, metavar="FLIGHT", help="flight file to write")
     add("--link", default="sim", metavar="URL", help="sim (default), or the url of a vehicle")
     add("--autopilot", choices=("ardupilot", "px4"), help="which one is simulated, or expected (default: by profile)")
     add("--wind", type=number, metavar="M_S", help="mean wind (default: what the plan expects)")

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import number
+from groundstation.cli.options import json_file, number
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def add_parser(subparsers: Any) -> None:
     command._negative_number_matcher = re.compile(r"-[\d.]")
     add = command.add_argument
     add("file", type=Path, metavar="FILE", help="the model: .ifc, .gml, .xml, .json, .obj, .ply, .glb or .stl")
-    add("-o", "--out", type=Path, required=True, metavar="SITE", help="site file to write; its meshes go beside it")
+    add("-o", "--out", type=json_file, required=True, metavar="SITE", help="site file to write; meshes go beside it")
     add("--name", help="name of the site (default: the building's, else the file's)")
     add("--json", action="store_true", help="print one JSON object instead of text")
     add_place_and_content(command)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import checked_seed, in_words_of_options, number
+from groundstation.cli.options import checked_seed, in_words_of_options, json_file, number
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def add_parser(subparsers: Any) -> None:
     add("flight", type=Path, metavar="FLIGHT", help="flight file, or a log (.tlog, .BIN, .ulg)")
     add("plan", type=Path, metavar="PLAN", help="plan file that was flown")
     add("site", type=Path, metavar="SITE", help="site file, as the site is now")
-    add("-o", "--out", type=Path, required=True, metavar="PLAN", help="plan file to write")
+    add("-o", "--out", type=json_file, required=True, metavar="PLAN", help="plan file to write")
     add("--battery", type=number, metavar="CHARGE", help="charge of the battery on board, 0 to 1 (default: changed)")
     add("--batteries", type=int, metavar="N", help="full batteries that may be used (default: none beside --battery)")
     add(

@@ -14,7 +14,7 @@ from groundstation.cli.commands.score import add_set_arguments
 from groundstation.cli.commands.score import request_of as score_request_of
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.lists import above_zero, count, counts, numbers, wholes, words
-from groundstation.cli.options import checked_seed
+from groundstation.cli.options import checked_seed, new_folder
 from planning.errors import InputError
 
 if TYPE_CHECKING:
@@ -187,7 +187,7 @@ def _add_train(kinds: Any) -> None:
 
 
 def _add_output(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument("-o", "--out", type=new_folder, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.lists import above_zero, count
+from groundstation.cli.options import new_folder
 from planning.errors import InputError, OperationCancelled
 from reconstruction.modelling.methods import DEFAULT_METHOD, METHODS
 from reconstruction.modelling.preset_names import LIGHTS, PRESETS
@@ -62,7 +63,7 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
     add = parser.add_argument
     add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
-    add("-o", "--out", type=Path, required=True, metavar="MODEL", help="folder for the model")
+    add("-o", "--out", type=new_folder, required=True, metavar="MODEL", help="folder for the model")
     add("--method", choices=tuple(METHODS), metavar="METHOD", help=f"one of those below (default {DEFAULT_METHOD})")
     add("--preset", choices=tuple(PRESETS), help="how long one can wait (default 10min)")
     add("--iterations", type=count, metavar="N", help="steps, whatever time they take, instead of the preset's")

@@ -21,6 +21,7 @@ from groundstation.services.mission_files import (
     write_export,
 )
 from planning.findings import Severity
+from planning.folders import PLAIN_ENDINGS
 from planning.plan import Plan
 from planning.site import SiteModel
 
@@ -166,7 +167,8 @@ class ExportDialog(QDialog):
         suffix = SUFFIXES[file_format][0]
         proposed = self._folder / f"{self._plan.site}{suffix}"
         kinds = self.tr("Mission files (*{0})").format(suffix)
-        path = choose_new_file(self, self.tr("Write mission files"), proposed, kinds, suffix)
+        others = (*SUFFIXES[file_format][1:], *PLAIN_ENDINGS)
+        path = choose_new_file(self, self.tr("Write mission files"), proposed, kinds, suffix, others)
         if path is None or self._prepared is None:
             return
         if self._may_replace(path):

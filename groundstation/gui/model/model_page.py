@@ -18,13 +18,16 @@ from groundstation.gui.model.scene_pane import ScenePane
 from groundstation.gui.questions import Questions, choose_new_file
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
-from groundstation.services.model_export import ENDINGS, ModelFormat, with_ending
+from groundstation.services.model_export import ENDINGS, OTHER_ENDINGS, ModelFormat, with_ending
 from groundstation.services.scene_card import PanelRow
 from groundstation.services.units import UnitSystem
 from planning.findings import Severity
 
 SIDE_PX, DETAIL_PX, LEAST_PX = 230, 330, 200
 """Widths beside the view, at 1280 pixels."""
+
+PICTURES = (".jpg", ".jpeg", ".webp")
+"""Endings of pictures that can be saved, besides the usual one."""
 
 SEARCH_MS = 200
 """After the last letter."""
@@ -115,7 +118,7 @@ class ModelPage(QObject):
 
     def _save_picture(self) -> None:
         title, kinds = self.tr("Save the picture"), self.tr("Pictures (*.png)")
-        path = choose_new_file(self._stage.window(), title, self._proposed(".png"), kinds, ".png")
+        path = choose_new_file(self._stage.window(), title, self._proposed(".png"), kinds, ".png", PICTURES)
         if path is not None:
             self.save_picture(path)
 
@@ -143,7 +146,9 @@ class ModelPage(QObject):
         title, ending = self.tr("Export the model"), ENDINGS.get(kind)
         if ending is None:
             return self.questions.new_folder(self._stage.window(), title)
-        found = choose_new_file(self._stage.window(), title, Path(f"{name}{ending}"), f"*{ending}", ending)
+        others = OTHER_ENDINGS.get(kind, ())
+        kinds = " ".join(f"*{each}" for each in (ending, *others))
+        found = choose_new_file(self._stage.window(), title, Path(f"{name}{ending}"), kinds, ending, others)
         return None if found is None else with_ending(found, kind)
 
     def _make_report(self) -> None:

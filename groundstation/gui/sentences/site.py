@@ -20,6 +20,14 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "no such setting; known are: {0}"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: there is no folder '{0}'; make it first"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: this is a folder; name a file in it"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "not written: the name ends in {0}, and what would be in the file is {1}; name it so, or choose another format",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "would replace a {0} file by what is {1}; name another file"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "not written: the name ends in {0} as files do, and this is written as a folder; name one"
+    ),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written: the file is write-protected; name another one"),
     QT_TRANSLATE_NOOP(
         "Sentences", "cannot be written: the folder '{0}' is write-protected; name a file in another one"
