@@ -7589,6 +7589,18 @@ Take it over?</source>
         <translation>nicht zu schreiben: Das ist ein Ordner; eine Datei darin nennen</translation>
     </message>
     <message>
+        <source>not written: the name ends in {0}, and what would be in the file is {1}; name it so, or choose another format</source>
+        <translation>nicht geschrieben: Der Name endet auf {0}, und in der Datei wäre {1}; nennen Sie sie so, oder wählen Sie ein anderes Format</translation>
+    </message>
+    <message>
+        <source>would replace a {0} file by what is {1}; name another file</source>
+        <translation>würde eine {0}-Datei durch {1} ersetzen; nennen Sie eine andere Datei</translation>
+    </message>
+    <message>
+        <source>not written: the name ends in {0} as files do, and this is written as a folder; name one</source>
+        <translation>nicht geschrieben: Der Name endet auf {0} wie bei Dateien, und geschrieben wird ein Ordner; nennen Sie einen</translation>
+    </message>
+    <message>
         <source>cannot be written: the file is write-protected; name another one</source>
         <translation>nicht zu schreiben: Die Datei ist schreibgeschützt; eine andere nennen</translation>
     </message>
