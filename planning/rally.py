@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from planning.findings import Finding, Severity
 from planning.frames import Vec3
 from planning.site import RallyPoint, SiteModel
-from planning.space import SAFETY_MARGIN_M, TAKEOFF_CLIMB_M, FreeSpace
+from planning.space import SAFETY_MARGIN_M, FreeSpace
 
 Array = NDArray[np.float64]
 
@@ -54,9 +54,8 @@ def _findings(point: RallyPoint, model: SiteModel, space: FreeSpace) -> Iterator
         return Finding(Severity.ERROR, "rally-point", f"rally point '{point.id}' {text}", place, value, limit, unit)
 
     foot = np.array(point.position_enu_m)
-    top = np.array([*foot[:2], max(foot[2] + TAKEOFF_CLIMB_M, space.low_enu_m[2] + SAFETY_MARGIN_M)])
-    inside = (foot[:2] > space.low_enu_m[:2]).all() and (foot[:2] < space.high_enu_m[:2]).all()
-    if not inside or top[2] >= space.high_enu_m[2]:
+    top = space.column_top_above(foot)
+    if not space.has_airspace_above(foot):
         yield error("is not below or inside the airspace; move it, or widen the airspace")
         return
     # As with home: on the ground it lies on the bottom face of the building it is in.

@@ -56,18 +56,34 @@ class FreeSpace:
     @property
     def column_top_enu_m(self) -> Array:
         """Where sideways flight may begin: in the airspace, `TAKEOFF_CLIMB_M` or more above home; shape (3,)."""
-        lowest = max(self.home_enu_m[2] + TAKEOFF_CLIMB_M, self.low_enu_m[2] + SAFETY_MARGIN_M)
-        return np.array([*self.home_enu_m[:2], lowest])
+        return self.column_top_above(self.home_enu_m)
+
+    def column_top_above(self, foot_enu_m: Array) -> Array:
+        """Where sideways flight may begin above a place to take off from or land at, both shape (3,)."""
+        lowest = max(foot_enu_m[2] + TAKEOFF_CLIMB_M, self.low_enu_m[2] + SAFETY_MARGIN_M)
+        return np.array([*foot_enu_m[:2], lowest])
+
+    def has_airspace_above(self, foot_enu_m: Array) -> bool:
+        """Whether the airspace lies above a place to take off from or land at, shape (3,); its borders belong to it."""
+        foot = np.asarray(foot_enu_m)
+        inside = (foot[:2] >= self.low_enu_m[:2]).all() and (foot[:2] <= self.high_enu_m[:2]).all()
+        return bool(inside and self.column_top_above(foot)[2] < self.high_enu_m[2])
 
     def is_allowed(self, points_enu_m: Array, margin_m: float = SAFETY_MARGIN_M) -> NDArray[np.bool_]:
         """Whether viewpoints may lie at points of shape (n, 3)."""
         points = np.asarray(points_enu_m, np.float64).reshape(-1, 3)
         low, high = self.low_enu_m + margin_m, self.high_enu_m - margin_m
         allowed = np.asarray(np.all((points >= low) & (points <= high), axis=1))
-        for solids, distance in self._kept_distances(margin_m):
-            asked = np.flatnonzero(allowed)
-            allowed[asked] = solids.clearance_m(points[asked], 2.0 * distance) >= distance
+        allowed[allowed] = self.keeps_distances(points[allowed], margin_m)
         return allowed
+
+    def keeps_distances(self, points_enu_m: Array, margin_m: float = SAFETY_MARGIN_M) -> NDArray[np.bool_]:
+        """Whether points, shape (n, 3), keep every distance, wherever the airspace ends."""
+        kept = np.ones(len(points_enu_m), np.bool_)
+        for solids, distance in self._kept_distances(margin_m):
+            asked = np.flatnonzero(kept)
+            kept[asked] = solids.clearance_m(points_enu_m[asked], 2.0 * distance) >= distance
+        return kept
 
     def legs_clear(self, a_enu_m: Array, b_enu_m: Array) -> NDArray[np.bool_]:
         """Whether straight legs between allowed points, shape (n, 3), keep every distance on their whole length."""
@@ -114,8 +130,7 @@ def free_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
 
 def _check_home(space: FreeSpace) -> None:
     home, top = space.home_enu_m, space.column_top_enu_m
-    inside = (home[:2] > space.low_enu_m[:2]).all() and (home[:2] < space.high_enu_m[:2]).all()
-    if not inside or top[2] >= space.high_enu_m[2]:
+    if not space.has_airspace_above(home):
         raise InfeasibleError(
             f"home_enu_m: home {_text(home)} is not below or inside the airspace box {_text(space.low_enu_m)} to "
             f"{_text(space.high_enu_m)}; move home or widen the airspace"

@@ -207,7 +207,8 @@ def _home(state: VehicleState, orders: SortieOrders, now_s: float) -> PreflightC
     away_m = math.dist((x, y), orders.home_enu_m[:2])
     low, high = orders.site.airspace.min_enu_m, orders.site.airspace.max_enu_m
     place = f"{orders.home.lat_deg:.7f}, {orders.home.lon_deg:.7f}"
-    if not (low[0] <= x <= high[0] and low[1] <= y <= high[1]):
+    # A home on the border is inside; an aircraft on it stands a little to either side.
+    if away_m > HOME_M and not (low[0] <= x <= high[0] and low[1] <= y <= high[1]):
         text = f"the aircraft stands {away_m:.0f} m from the planned home, outside the airspace; put it at {place}"
         return PreflightCheck("home", Verdict.BAD, text, away_m, HOME_M, "m")
     if away_m > HOME_M:

@@ -68,6 +68,8 @@ class Ways:
         ends = ends.reshape(-1, 2, 3)
         is_clear = space.legs_clear(ends[:, 0], ends[:, 1])
         is_allowed = space.is_allowed(ends.reshape(-1, 3), LEG_MARGIN_M).reshape(-1, 2)
+        # Home may stand on the border of the airspace, where viewpoints may not; it was checked when it was prepared.
+        is_allowed |= np.array([[place is HOME for place in pair] for pair in pairs], np.bool_).reshape(-1, 2)
         found = []
         for (start, end), straight, clear, allowed in zip(pairs, ends, is_clear, is_allowed, strict=True):
             if clear and start is not HOME and end is not HOME:

@@ -101,7 +101,7 @@ def _column(space: FreeSpace) -> Array:
     top = space.high_enu_m[2] - 2 * SAFETY_MARGIN_M
     heights = np.arange(low[2], max(top, low[2]) + 1e-9, COLUMN_SPACING_M)
     points = np.stack([np.full(len(heights), low[0]), np.full(len(heights), low[1]), heights], axis=1)
-    clear = space.is_allowed(points)
+    clear = space.keeps_distances(points)  # home may stand on the border of the airspace, where viewpoints may not
     clear[1:] &= space.legs_clear(points[:-1], points[1:])
     return points[: max(1, int(np.argmin(clear)) if not clear.all() else len(points))]
 

@@ -82,6 +82,11 @@ def test_a_rally_point_where_no_aircraft_may_fly_is_an_error(place, words):
     assert finding.place == "rally/rally-1"
 
 
+def test_a_rally_point_on_the_border_of_the_airspace_is_inside_it():
+    for place in ((HIGH[0], LOW[1], 0.0), (HIGH[0], 0.0, 0.0), (0.0, LOW[1], 0.0)):
+        assert [finding.severity for finding in found(with_rally(place))] == [Severity.OK]
+
+
 def test_the_landing_column_keeps_the_distance_that_flights_keep():
     """Moved away from the facade, a point becomes good just where the distance is reached."""
     model = kiosk()

@@ -1,11 +1,17 @@
 """Allowed positions and legs, and homes that cannot be."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from planning.checks import check_plan
 from planning.errors import InfeasibleError
+from planning.findings import is_flyable
+from planning.planner import plan_flight
+from planning.request import GreedyParameters, PlanRequest
+from planning.routing.roadmap import COLUMN_SPACING_M
 from planning.scenes import SCENES
 from planning.site import Airspace, NoFlyZone
 from planning.space import LEG_MARGIN_M, SAFETY_MARGIN_M, free_space
@@ -59,6 +65,27 @@ def test_leg_through_the_building_is_not_clear_and_leg_along_the_facade_is():
 )
 def test_impossible_homes_are_refused_with_what_was_measured(home, message):
     with pytest.raises(InfeasibleError, match=message):
+        free_space(office_with(home_enu_m=home), 10.0)
+
+
+LOW_CORNER, HIGH_CORNER = (-60.0, -70.0, 3.0), (60.0, 50.0, 75.0)
+
+
+@pytest.mark.parametrize("home", [(-60.0, -45.0, 0.0), (0.0, -70.0, 0.0), (60.0, 50.0, 0.0), (-60.0, -70.0, 72.9)])
+def test_home_on_the_border_of_the_airspace_is_inside_it(home):
+    model = office_with(home_enu_m=home)
+    assert model.site.airspace.min_enu_m == LOW_CORNER
+    assert model.site.airspace.max_enu_m == HIGH_CORNER
+    planned = plan_flight(model, PlanRequest(n_views=6, greedy=GreedyParameters(400, improve=False, certify=False)))
+    assert is_flyable(check_plan(planned.plan, model))
+    space = planned.prepared.problem.space
+    n_column = planned.prepared.problem.roadmap.n_column
+    assert n_column == max(1, math.ceil((HIGH_CORNER[2] - space.column_top_enu_m[2]) / COLUMN_SPACING_M)), "all the way"
+
+
+@pytest.mark.parametrize("home", [(-60.001, -45.0, 0.0), (0.0, 50.001, 0.0), (0.0, -45.0, 73.0)])
+def test_home_just_outside_the_airspace_or_without_room_for_the_climb_is_refused(home):
+    with pytest.raises(InfeasibleError, match="not below or inside the airspace"):
         free_space(office_with(home_enu_m=home), 10.0)
 
 

@@ -63,6 +63,13 @@ def test_nothing_is_missing_on_a_vehicle_that_is_ready(orders):
     assert is_ready(checks(ready_state(orders), orders))
 
 
+def test_an_aircraft_beside_a_home_on_the_border_of_the_airspace_is_ready(orders):
+    airspace = orders.site.airspace
+    border = replace(airspace, max_enu_m=(orders.home_enu_m[0] + 0.2, *airspace.max_enu_m[1:]))
+    on_border = replace(orders, site=replace(orders.site, airspace=border))
+    assert is_ready(checks(ready_state(orders), on_border)), "it stands 0.3 m outside, beside home"
+
+
 def test_before_the_first_heartbeat_everything_is_waited_for(orders):
     found = {check.code: check.verdict for check in checks(VehicleState(), orders, OnBoard())}
     assert found.pop("wind") is Verdict.OK

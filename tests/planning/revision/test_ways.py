@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from planning.plan import FlightRules
 from planning.revision.ways import HOME, Ways
 from planning.routing.legs import build_leg_table
 from planning.routing.roadmap import build_roadmap, leg_length
+from planning.scenes import SCENES
 from planning.space import free_space
 from tests.planning.plan_cases import dense_points, distances, inside_zone, kiosk, solid_triangles
 from tests.planning.revision.cases import prepared
@@ -48,6 +50,14 @@ def test_ways_keep_every_distance_and_are_those_of_a_table_of_the_same_places() 
     backwards = ways.between([(places[b], places[a]) for a, b in pairs])
     length, back = (np.array([leg_length(np.diff(way, axis=0)).sum() for way in part]) for part in (found, backwards))
     np.testing.assert_allclose(length, back, rtol=0.05)
+
+
+def test_the_way_from_a_home_on_the_border_of_the_airspace_leads_around_the_building() -> None:
+    office = SCENES["office"]()
+    border = replace(office, site=replace(office.site, home_enu_m=(0.0, -70.0, 0.0)))
+    ways = Ways.over(build_roadmap(free_space(border, DISTANCE_M)), M3E, FlightRules())
+    (way,) = ways.between([(HOME, (0.0, 30.0, 20.0))])
+    assert distances(dense_points(np.array(way), 0.5), solid_triangles(border)).min() >= DISTANCE_M
 
 
 def test_ways_to_places_that_are_not_allowed_or_not_reached_are_straight() -> None:
