@@ -85,11 +85,15 @@ class Aircraft:
     max_wind_m_s: float = 10.0
     max_waypoints: int = 65535
     min_photo_interval_s: float = 0.7
+    min_waypoint_spacing_m: float = 0.5
+    """DJI's firmware refuses waypoints closer together; kept for aircraft that are not known, too. 0: no such rule."""
 
     def __post_init__(self) -> None:
+        if not (math.isfinite(self.min_waypoint_spacing_m) and self.min_waypoint_spacing_m >= 0.0):
+            raise ValueError(f"min_waypoint_spacing_m: expected 0 or more, got {self.min_waypoint_spacing_m}")
         for field in self.__slots__:
             value = getattr(self, field)
-            if field == "name" or (field == "max_jerk_m_s3" and value is None):
+            if field in ("name", "min_waypoint_spacing_m") or (field == "max_jerk_m_s3" and value is None):
                 continue
             if not (math.isfinite(value) and value > 0):
                 raise ValueError(f"{field}: expected a positive number, got {value}")

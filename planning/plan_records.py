@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from planning.frames import wrap_heading_rad
 from planning.optimise.problem import ViewProblem, take
-from planning.plan import ANGLE_DECIMALS, POSITION_DECIMALS, Sortie, Viewpoint, ViewpointArrays
+from planning.plan import ANGLE_DECIMALS, Sortie, Viewpoint, ViewpointArrays
+from planning.positions import rounded
 from planning.routing.flights import Flight
 from planning.space import LEG_MARGIN_M
 
@@ -19,23 +19,19 @@ def as_written(problem: ViewProblem, views: ViewpointArrays, n_fixed: int = 0) -
 
     The first `n_fixed` views stay as they are.
     """
-    low, high = np.array(problem.model.camera.gimbal_pitch_deg)
-    positions = views.positions_enu_m.round(POSITION_DECIMALS)
-    heading_deg = np.degrees(wrap_heading_rad(views.heading_rad)).round(ANGLE_DECIMALS)
-    heading_deg = np.where(heading_deg <= -180.0, 180.0, heading_deg)
-    pitch_deg = np.clip(np.degrees(views.pitch_rad).round(ANGLE_DECIMALS), low, high)
-    is_fixed = np.arange(len(heading_deg)) < n_fixed
-    _, first = np.unique(np.column_stack([positions, heading_deg, pitch_deg]), axis=0, return_index=True)
-    rounded = ViewpointArrays(
-        np.where(is_fixed[:, None], views.positions_enu_m, positions),
-        np.where(is_fixed, views.heading_rad, np.radians(heading_deg)),
-        np.where(is_fixed, views.pitch_rad, np.radians(pitch_deg)),
-    )
+    written = rounded(views, problem.model.camera)
+    is_fixed = np.arange(len(views.heading_rad)) < n_fixed
+    _, first = np.unique(np.column_stack(written), axis=0, return_index=True)
     kept = is_fixed.copy()
     kept[first] = True
     asked = np.flatnonzero(kept & ~is_fixed)
-    kept[asked] = problem.flyable(positions[asked], LEG_MARGIN_M)
-    return take(rounded, kept)
+    kept[asked] = problem.flyable(written.positions_enu_m[asked], LEG_MARGIN_M)
+    both = ViewpointArrays(
+        np.where(is_fixed[:, None], views.positions_enu_m, written.positions_enu_m),
+        np.where(is_fixed, views.heading_rad, written.heading_rad),
+        np.where(is_fixed, views.pitch_rad, written.pitch_rad),
+    )
+    return take(both, kept)
 
 
 def plan_records(

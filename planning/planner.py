@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from planning.catalogue import Profile, profile
+from planning.coverage.model import exact_coverage
 from planning.errors import InputError
 from planning.evaluate import DepthCount, coverage, depth
 from planning.findings import Finding
@@ -21,7 +22,7 @@ from planning.optimise.budget import best_flights, views_within_budget, with_few
 from planning.optimise.greedy import greedy
 from planning.optimise.locked import locked_views
 from planning.optimise.problem import Goal, Optimiser, ViewProblem, nothing_to_see
-from planning.optimise.restore import with_lost_restored
+from planning.optimise.shortfall import OpenSection, open_sections
 from planning.optimise.spacing import merge_close_views
 from planning.plan import (
     HistoryPoint,
@@ -61,6 +62,8 @@ class Planned:
         Sections that count as reachable although no viewpoint that sees them was found.
     depth
         Sections covered once, twice and so on.
+    open_sections
+        Why sections that may be seen are not, where a share was wanted and is not reached.
     seconds
         Wall time by stage, in order.
     prepared
@@ -74,6 +77,7 @@ class Planned:
     depth: tuple[DepthCount, ...]
     seconds: dict[str, float] = field(hash=False)
     prepared: Prepared = field(repr=False, compare=False)
+    open_sections: tuple[OpenSection, ...] = ()
 
 
 def plan_flight(
@@ -119,17 +123,14 @@ def plan_flight(
     if request.greedy.solid_angle_weights:
         bound = None
     n_locked = len(request.locked)
-    written = as_written(problem, views, n_locked)
-    views = merged = merge_close_views(problem, written, n_fixed=n_locked)
-    if request.n_batteries is not None:  # else the number of views is what was asked for
-        views = with_lost_restored(problem, written, merged)
+    views = as_written(problem, views, n_locked)
+    spacing_m = chosen_profile.aircraft.min_waypoint_spacing_m
+    if request.method != "greedy" and spacing_m > 0.0:  # greedy keeps it while it chooses
+        views = merge_close_views(problem, views, spacing_m)
     if len(views.heading_rad) == 0:
         raise nothing_to_see()
     watch.lap("views")
     flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
-    if views is not merged and len(flights) > (request.n_batteries or 0):  # what was restored does not fit in
-        views = merged
-        flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
     while request.n_batteries is not None and len(flights) > request.n_batteries:
         flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked)
         if len(flights) > request.n_batteries:  # all of them have locked views
@@ -147,7 +148,17 @@ def plan_flight(
         depth(problem.model, plan.viewpoints),
         watch.seconds,
         prepared,
+        _open_sections(problem, plan, request),
     )
+
+
+def _open_sections(problem: ViewProblem, plan: Plan, request: PlanRequest) -> tuple[OpenSection, ...]:
+    wanted = (request.share or 0.0) * plan.coverage.reachable_upper_bound
+    if plan.coverage.covered >= wanted:
+        return ()
+    views = viewpoint_arrays(plan.viewpoints)
+    covered = exact_coverage(problem.model, views) > 0
+    return open_sections(problem, covered, views.positions_enu_m, plan.aircraft.min_waypoint_spacing_m)
 
 
 def _prepared(
@@ -191,7 +202,7 @@ def _choose(
             monitor=monitor,
             locked=locked,
         )
-    optimiser = _optimiser(request, locked)
+    optimiser = _optimiser(request, locked, chosen_profile.aircraft.min_waypoint_spacing_m)
     found = optimiser(problem, _goal(request), seed=request.seed, stop=stop, trace=trace, monitor=monitor)
     return found.views, found.bound
 
@@ -204,9 +215,9 @@ def _check_method(request: PlanRequest) -> None:
         raise InputError(f"method '{request.method}' cannot keep locked viewpoints; 'greedy' can, or unlock them")
 
 
-def _optimiser(request: PlanRequest, locked: ViewpointArrays) -> Optimiser:
+def _optimiser(request: PlanRequest, locked: ViewpointArrays, spacing_m: float) -> Optimiser:
     if request.method == "greedy":
-        return partial(greedy, parameters=request.greedy, locked=locked)
+        return partial(greedy, parameters=request.greedy, locked=locked, spacing_m=spacing_m)
     return method_named(request.method)
 
 

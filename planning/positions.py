@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.coverage.sections import PanelFrames
-from planning.frames import aim, camera_axes
-from planning.plan import Camera, ViewpointArrays
+from planning.frames import aim, camera_axes, wrap_heading_rad
+from planning.plan import ANGLE_DECIMALS, POSITION_DECIMALS, Camera, ViewpointArrays
 from planning.space import SAFETY_MARGIN_M, FreeSpace
 
 Array = NDArray[np.float64]
@@ -51,6 +51,17 @@ def aimed_views(positions_enu_m: Array, targets_enu_m: Array, camera: Camera) ->
     heading, pitch = aim(targets_enu_m - positions_enu_m)
     low, high = np.radians(camera.gimbal_pitch_deg)
     return ViewpointArrays(positions_enu_m, heading, np.clip(pitch, low, high))
+
+
+def rounded(views: ViewpointArrays, camera: Camera) -> ViewpointArrays:
+    """Views as a plan file holds them: decimals, headings in (-180, 180] degrees, pitches within the gimbal's range."""
+    low, high = camera.gimbal_pitch_deg
+    heading_deg = np.degrees(wrap_heading_rad(views.heading_rad)).round(ANGLE_DECIMALS)
+    heading_deg = np.where(heading_deg <= -180.0, 180.0, heading_deg)
+    pitch_deg = np.clip(np.degrees(views.pitch_rad).round(ANGLE_DECIMALS), low, high)
+    return ViewpointArrays(
+        views.positions_enu_m.round(POSITION_DECIMALS), np.radians(heading_deg), np.radians(pitch_deg)
+    )
 
 
 def sobol(n: int, rng: np.random.Generator) -> Array:

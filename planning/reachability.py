@@ -152,7 +152,7 @@ def _search_spread_positions(
             return
         points = positions[start:end]
         panel, section, point = _open_pairs(model, points, verdicts)
-        kept = _keeps_margins(model, points[point], panel, section)
+        kept = keeps_margins(model, points[point], panel, section)
         panel, section, point = panel[kept], section[kept], point[kept]
         if model.sight is not None:
             free = model.sight(points[point], model.targets_enu_m[panel])
@@ -174,7 +174,7 @@ def _open_pairs(
     return panel[still_open], section[still_open], point[still_open]
 
 
-def _keeps_margins(
+def keeps_margins(
     model: CoverageModel, points: Array, panel: NDArray[np.int64], section: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
     """Whether points lie well inside their sections, the range and the gimbal's reach; arrays of k pairs."""

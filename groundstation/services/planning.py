@@ -16,7 +16,8 @@ from planning.checks import check_plan
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.json_file import check_output
-from planning.plan import Plan, Viewpoint
+from planning.optimise.shortfall import WhyOpen
+from planning.plan import Viewpoint
 from planning.plan_file import write_plan
 from planning.planner import Planned, plan_flight
 from planning.prepare import Prepared
@@ -78,7 +79,7 @@ def plan_document_site(
     if prepared is not None and (prepared.is_cut_short or prepared.unfit_for(*wanted)):
         prepared = None
     planned = plan_flight(site_model, request, prepared=prepared, stop=stop, trace=trace, monitor=monitor)
-    return replace(planned, findings=(*planned.findings, *_shortfalls(request, planned.plan)))
+    return replace(planned, findings=(*planned.findings, *_shortfalls(request, planned)))
 
 
 def reunited(planned: Planned, site_model: SiteModel, prepared: Prepared | None) -> Planned:
@@ -108,7 +109,8 @@ def locked_viewpoints(plan_path: Path) -> tuple[Viewpoint, ...]:
     return locked
 
 
-def _shortfalls(request: PlanRequest, plan: Plan) -> Iterator[Finding]:
+def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
+    plan = planned.plan
     n_views = len(plan.viewpoints)
     if request.n_views is not None and n_views < request.n_views:
         text = (
@@ -124,12 +126,32 @@ def _shortfalls(request: PlanRequest, plan: Plan) -> Iterator[Finding]:
         return
     share = plan.coverage.covered / max(plan.coverage.reachable_upper_bound, 1)
     if share < request.share:
-        advice = "allow it more time" if request.method == "greedy" else "the method flies a pattern of its own"
-        text = (
-            f"covers {100.0 * share:.2f} % of what is possible at most, {100.0 * request.share:g} % were asked for; "
-            f"{advice}"
-        )
+        text = f"covers {100.0 * share:.2f} % of what is possible at most, {100.0 * request.share:g} % were asked for"
+        if request.method != "greedy":
+            text += "; the method flies a pattern of its own"
         yield Finding(Severity.WARNING, "less-coverage", text, "", share, request.share)
+        if request.method == "greedy":
+            yield from why_open(planned)
+
+
+def why_open(planned: Planned) -> Iterator[Finding]:
+    """Which sections stay open, by what keeps them from being covered."""
+    plan, panels = planned.plan, planned.prepared.site_model.site.panels
+    time_helps = "allow it more time" if planned.prepared.is_cut_short else "more time does not help"
+    texts = {
+        WhyOpen.UNDECIDED: "have no place from which they are known to be seen, and no proof that there is none, so "
+        f"that they count as possible; {time_helps}",
+        WhyOpen.CUT_OFF: "are only seen from places to which no way from home was found that keeps "
+        f"{plan.constraints.min_distance_m:g} m from everything; move home, or lower the minimum distance",
+        WhyOpen.SPACING: f"are only seen from places less than {plan.aircraft.min_waypoint_spacing_m:g} m from other "
+        f"viewpoints, which {plan.aircraft.name} refuses; more time does not help",
+        WhyOpen.SEARCH: "can be covered; allow it more time",
+    }
+    for why, text in texts.items():
+        on = [panels[each.panel].id for each in planned.open_sections if each.why is why]
+        if on:
+            message = f"{len(on)} sections (on {len(set(on))} panels, the first is '{on[0]}') {text}"
+            yield Finding(Severity.WARNING, f"open-{why}", message, on[0], float(len(on)), 0.0, "sections")
 
 
 def check_files(plan_path: Path, site_path: Path, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
@@ -139,7 +161,7 @@ def check_files(plan_path: Path, site_path: Path, monitor: Monitor = QUIET) -> t
 
 def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
     """What `plan --json` prints."""
-    plan = planned.plan
+    plan, panels = planned.plan, planned.prepared.site_model.site.panels
     return {
         "views": len(plan.viewpoints),
         "covered": plan.coverage.covered,
@@ -154,6 +176,10 @@ def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
         "length_m": round(sum(sortie.length_m for sortie in plan.sorties), 1),
         "depth": msgspec.to_builtins(planned.depth),
         "effects": msgspec.to_builtins(plan.effects),
+        "open": [
+            {"panel": panels[each.panel].id, "section": each.section, "why": each.why.value}
+            for each in planned.open_sections
+        ],
         "findings": [finding_summary(finding) for finding in planned.findings],
         "seconds": round(seconds, 3),
         "seconds_by_stage": {stage: round(value, 3) for stage, value in planned.seconds.items()},

@@ -11,7 +11,6 @@ from planning.checks.measures import Gaps, legs_of
 from planning.findings import Finding, Severity
 from planning.plan import Sortie, viewpoint_arrays
 from planning.rally import rally_findings
-from planning.routing.legs import MIN_SPACING_M
 from planning.sortie_timing import SAME_PLACE_M
 
 MAX_ALTITUDE_M = 120.0
@@ -116,10 +115,10 @@ def leg_lengths(case: Case) -> Iterator[Finding]:
         if len(flown) == 0:
             continue
         shortest, longest = float(flown.min()), float(flown.max())
-        advice = f"{int((flown < MIN_SPACING_M).sum())} legs are shorter than DJI firmware likes"
-        kept = shortest >= MIN_SPACING_M
-        judged = "shortest leg", shortest, MIN_SPACING_M, "m", place, advice, Severity.WARNING
-        yield judge(kept, "leg-spacing", *judged, least=True)
+        least_m = case.plan.aircraft.min_waypoint_spacing_m
+        advice = f"{int((flown < least_m).sum())} legs are shorter than DJI firmware likes"
+        judged = "shortest leg", shortest, least_m, "m", place, advice, Severity.WARNING
+        yield judge(shortest >= least_m, "leg-spacing", *judged, least=True)
         severity = Severity.ERROR if longest > MAX_LEG_M else Severity.WARNING
         kept, advice = longest <= LONG_LEG_M, "autopilots refuse it"
         yield judge(kept, "leg-spacing", "longest leg", longest, LONG_LEG_M, "m", place, advice, severity)

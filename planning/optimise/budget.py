@@ -16,10 +16,11 @@ from planning.coverage.model import CoverageModel, Elements
 from planning.errors import InfeasibleError
 from planning.optimise import cover_kernel as kernel
 from planning.optimise.candidates import Pool, candidate_pool, join_pools, keep
-from planning.optimise.greedy import element_weights
+from planning.optimise.greedy import Choice, element_weights
 from planning.optimise.improve import cover_state
 from planning.optimise.locked import NONE_LOCKED, covered_by
 from planning.optimise.problem import ViewProblem, take
+from planning.optimise.spacing import ANYWHERE, Apart, apart_of, rounding_spacing_m
 from planning.plan import Aircraft, FlightRules, ViewpointArrays
 from planning.progress import Monitor, Stop, Trace
 from planning.request import GreedyParameters
@@ -104,8 +105,11 @@ def views_within_budget(
     monitor.report("trying viewpoints", 0, 1)
     weights = element_weights(problem.model, parameters.solid_angle_weights)
     n_locked = len(locked.heading_rad)
-    free = candidate_pool(problem, seed, parameters.n_candidates)
-    free = shortlist(free, weights, covered_by(problem.model, locked), max(0, MAX_CANDIDATES - n_locked))
+    n_free, covered = max(0, MAX_CANDIDATES - n_locked), covered_by(problem.model, locked)
+    spacing_m = rounding_spacing_m(aircraft.min_waypoint_spacing_m)
+    choice = Choice(problem, weights, covered, locked, spacing_m, seed, stop, Trace(trace.clock), monitor)
+    free, _, _ = choice.greedily(candidate_pool(problem, seed, parameters.n_candidates), n_free, np.inf)
+    free = shortlist(free, weights, covered, n_free, apart=apart_of(free.views, locked, spacing_m))
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
     gain = CoverGain(pool.elements, weights)
@@ -191,9 +195,10 @@ def shortlist(
     covered: NDArray[np.int32] | None,
     n_most: int,
     depths: Sequence[int] = CHOICE_DEPTHS,
+    apart: Apart = ANYWHERE,
 ) -> Pool:
     """The candidates that greedy takes first, for several depths, beside what is `covered` all the same."""
-    state = cover_state(pool.elements, weights, covered)
+    state = cover_state(pool.elements, weights, covered, apart)
     chosen = np.zeros(min(n_most, len(state.gains)), np.int64)
     n_chosen = 0
     for depth in depths:

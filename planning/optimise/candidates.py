@@ -11,8 +11,9 @@ from planning.coverage.model import Elements
 from planning.coverage.sections import PanelFrames
 from planning.optimise.problem import ViewProblem, concatenate, nothing_to_see, take
 from planning.plan import ViewpointArrays
-from planning.positions import aimed_views, spread_positions
+from planning.positions import aimed_views, rounded, spread_positions
 from planning.reach_kernel import REACHABLE
+from planning.reachability import keeps_margins
 from planning.request import N_CANDIDATES
 
 Array = NDArray[np.float64]
@@ -24,6 +25,16 @@ MAX_ENTRIES = 60_000_000
 WITNESS_COVERS_WANTED = 3
 """Sections that fewer spread candidates cover get a candidate of their own."""
 
+FEWEST_AROUND, MOST_AROUND, MAX_AROUND = 4, 24, 4000
+"""Places tried around each of these candidates, and for all together, at a time. Where sections are seen from a narrow
+strip only, one place that several share is found in place of one for each, and these may be too close together."""
+
+AROUND_M = (0.02, 4.0)
+"""How far they are moved at first."""
+
+N_STRETCHES, STRETCH = 4, 1.5
+"""How often further places are tried on lines through known ones, and how far (of the distance between these)."""
+
 
 class Pool(NamedTuple):
     """Candidate views and the elements each covers."""
@@ -33,7 +44,9 @@ class Pool(NamedTuple):
 
 
 def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDIDATES) -> Pool:
-    """Views to choose from; all can be flown to from home.
+    """Views to choose from, rounded as plan files hold them, so that what is chosen is what is flown.
+
+    All can be flown to from home.
 
     Raises
     ------
@@ -48,7 +61,7 @@ def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDID
         spread = take(spread, kept)
         spread_elements = problem.model.elements(spread)
     times_covered = np.bincount(spread_elements.items, minlength=problem.model.n_elements)
-    witnesses = witness_candidates(problem, times_covered < WITNESS_COVERS_WANTED)
+    witnesses = witness_candidates(problem, times_covered < WITNESS_COVERS_WANTED, rng)
     pool = join_pools(Pool(spread, spread_elements), Pool(witnesses, problem.model.elements(witnesses)))
     useful = np.diff(pool.elements.starts) > 0
     if not useful.any():
@@ -60,7 +73,8 @@ def spread_candidates(problem: ViewProblem, n: int, rng: np.random.Generator) ->
     """About `n` flyable views from spread positions, each aimed at a panel that faces it."""
     positions = spread_positions(problem.space, problem.model.frames, 2 * n, rng)[:n]
     positions = positions[problem.flyable(positions)]
-    return aimed_views(positions, facing_targets(problem.model.frames, positions, rng), problem.model.camera)
+    camera, targets = problem.model.camera, facing_targets(problem.model.frames, positions, rng)
+    return rounded(aimed_views(positions, targets, camera), camera)
 
 
 def facing_targets(frames: PanelFrames, positions_enu_m: Array, rng: np.random.Generator, n_tries: int = 8) -> Array:
@@ -74,14 +88,60 @@ def facing_targets(frames: PanelFrames, positions_enu_m: Array, rng: np.random.G
     return frames.centroids[target]
 
 
-def witness_candidates(problem: ViewProblem, wanted: NDArray[np.bool_]) -> ViewpointArrays:
-    """Flyable witness views of the reachable elements where `wanted`, aimed at their panels."""
+def witness_candidates(problem: ViewProblem, wanted: NDArray[np.bool_], rng: np.random.Generator) -> ViewpointArrays:
+    """Flyable views of the reachable elements where `wanted`, at their witnesses and around, aimed at their panels."""
     reachability = problem.reachability
     element = np.flatnonzero((reachability.verdicts.reshape(-1) == REACHABLE) & wanted)
     positions = reachability.witnesses_enu_m.reshape(-1, 3)[element]
-    panel = element // problem.model.grid.n_sections
+    positions, number = places_around(problem, element, positions, rng, MAX_AROUND // 4)
     flyable = problem.flyable(positions)
-    return aimed_views(positions[flyable], problem.model.frames.centroids[panel[flyable]], problem.model.camera)
+    panel = element[number[flyable]] // problem.model.grid.n_sections
+    camera, targets = problem.model.camera, problem.model.frames.centroids[panel]
+    return rounded(aimed_views(positions[flyable], targets, camera), camera)
+
+
+def places_around(
+    problem: ViewProblem,
+    elements: NDArray[np.int64],
+    seen_from_enu_m: Array,
+    rng: np.random.Generator,
+    n_most: int = MAX_AROUND,
+) -> tuple[Array, NDArray[np.int64]]:
+    """Places from which elements are seen, if nothing is between: those given, and further allowed ones around them.
+
+    Parameters
+    ----------
+    seen_from_enu_m
+        A place for each of the elements, shape (k, 3).
+    n_most
+        Places tried at a time, about.
+
+    Returns
+    -------
+    places, number
+        Shape (n, 3), and of the element that each is for, shape (n,).
+    """
+    n_each = min(MOST_AROUND, max(FEWEST_AROUND, n_most // max(1, len(elements))))
+    panel, section = np.divmod(elements, problem.model.grid.n_sections)
+    places, number = seen_from_enu_m, np.arange(len(elements))
+    for is_first in (True, *(N_STRETCHES * (False,))):
+        of = np.repeat(np.arange(len(elements)), n_each)
+        if is_first:
+            low, high = np.log(AROUND_M)
+            scale = np.exp(rng.uniform(low, high, (len(of), 1)))
+            tried = seen_from_enu_m[of] + rng.normal(size=(len(of), 3)) * scale / np.sqrt(3.0)
+        else:
+            # Along lines through two known places: these places fill strips and wedges that are much thinner than long.
+            known = np.bincount(number, minlength=len(elements))
+            start = np.concatenate([[0], np.cumsum(known)[:-1]])
+            a, b = (places[start[of] + (rng.random(len(of)) * known[of]).astype(np.int64)] for _ in range(2))
+            tried = a + rng.normal(size=(len(of), 1)) * STRETCH * (b - a)
+        kept = keeps_margins(problem.model, tried, panel[of], section[of])
+        kept[kept] = problem.space.is_allowed(tried[kept])
+        places, number = np.concatenate([places, tried[kept]]), np.concatenate([number, of[kept]])
+        order = np.argsort(number, kind="stable")
+        places, number = places[order], number[order]
+    return places, number
 
 
 def join_pools(first: Pool, second: Pool) -> Pool:

@@ -22,7 +22,6 @@ from planning.positions import aimed_views, spread_positions
 from planning.progress import QUIET, Monitor
 from planning.reach_kernel import REACHABLE
 from planning.routing.flights import FlightTimes, flight_times
-from planning.routing.legs import MIN_SPACING_M
 
 Array = NDArray[np.float64]
 
@@ -138,7 +137,7 @@ def _well_apart(wanted: Wanted, first: Pool, further: Pool) -> Pool:
     n_first = len(first.views.heading_rad)
     for i in range(n_first, len(positions)):
         away_m = np.linalg.norm(positions[:i] - positions[i], axis=1)
-        if away_m.min(initial=np.inf) < MIN_SPACING_M:
+        if away_m.min(initial=np.inf) < wanted.aircraft.min_waypoint_spacing_m:
             positions[i] = positions[np.argmin(away_m)]
     moved = wanted.pool(further.views._replace(positions_enu_m=positions[n_first:]))
     is_lost = np.zeros(len(wanted.elements), np.bool_)

@@ -196,7 +196,8 @@ class _Search:
         if not groups:
             return _Part(NONE_LOCKED, ())
         covered = np.where(wanted.mask(), 0, 1).astype(np.int32)
-        views = merge_close_views(wanted.problem, concatenate(list(groups)), covered=covered)
+        spacing_m = wanted.aircraft.min_waypoint_spacing_m
+        views = merge_close_views(wanted.problem, concatenate(list(groups)), spacing_m, covered=covered)
         ends = np.cumsum([len(group.heading_rad) for group in groups])
         sorties = tuple(
             tuple(range(end - len(group.heading_rad), end)) for end, group in zip(ends, groups, strict=True)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import kernel
+from planning.jit import inline, kernel
 
 FOREVER = 2**62
 
@@ -34,6 +34,12 @@ class CoverState(NamedTuple):
         How much f grows when a candidate is added, exact.
     depth
         k, shape (1,).
+    positions
+        Where each candidate stands, shape (n, 3); any shape where `spacing` is 0.
+    taken
+        Places of views that are there in any case, shape (k, 3).
+    spacing
+        Two chosen candidates stand at one place or at least this far apart, and so from what is taken; 0: no matter.
     """
 
     starts: NDArray[np.int64]
@@ -44,6 +50,9 @@ class CoverState(NamedTuple):
     counts: NDArray[np.int32]
     gains: NDArray[np.float64]
     depth: NDArray[np.int64]
+    positions: NDArray[np.float64]
+    taken: NDArray[np.float64]
+    spacing: float
 
 
 @kernel
@@ -117,20 +126,45 @@ def objective(state: CoverState) -> float:
     return total
 
 
+@inline
+def _is_close(places: NDArray[np.float64], i: int, point: NDArray[np.float64], spacing: float) -> bool:
+    """Whether place i is another one than `point`, and closer to it than `spacing`."""
+    dx, dy, dz = places[i, 0] - point[0], places[i, 1] - point[1], places[i, 2] - point[2]
+    return bool(0.0 < dx * dx + dy * dy + dz * dz < spacing * spacing)
+
+
+@kernel
+def is_too_close(state: CoverState, candidate: int, chosen: NDArray[np.int64], n_chosen: int, but: int) -> bool:
+    """Whether a candidate is too close to what is taken or to a chosen one; number `but` of these does not count."""
+    if state.spacing <= 0.0:
+        return False
+    point = state.positions[candidate]
+    for i in range(len(state.taken)):
+        if _is_close(state.taken, i, point, state.spacing):
+            return True
+    for place in range(n_chosen):
+        if place != but and _is_close(state.positions, chosen[place], point, state.spacing):
+            return True
+    return False
+
+
 @kernel
 def greedy_steps(state: CoverState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int, enough: float) -> int:
     """Add the candidate of the largest gain until `n_wanted` are chosen, f reaches `enough` or no gain is left.
 
     `chosen` takes the candidates' numbers; returns how many there are now. Beyond depth 1 a candidate that is chosen
     could still gain by being chosen again; its gain is set to minus infinity, since a second photo from the same place
-    is no second view.
+    is no second view. So is that of a candidate too close to one that is chosen or taken.
     """
     f = objective(state)
     while n_chosen < n_wanted and f < enough:
-        best = np.argmax(state.gains)
+        best = int(np.argmax(state.gains))
         gain = state.gains[best]
         if gain <= 1e-9:
             break
+        if is_too_close(state, best, chosen, n_chosen, -1):
+            state.gains[best] = -np.inf
+            continue
         add_elements(state, state.items[state.starts[best] : state.starts[best + 1]])
         if state.depth[0] > 1:
             state.gains[best] = -np.inf
@@ -148,7 +182,8 @@ def exchange_steps(
 
     Each step drops a chosen candidate (the one of least loss among a few drawn at random), adds the best other one, and
     undoes both when that makes f smaller. Candidates rest until step `tabu` (counted from `clock`): dropped ones for a
-    while, so that steps of equal value do not go in circles, chosen ones for ever, so that none is chosen twice.
+    while, so that steps of equal value do not go in circles, chosen ones for ever, so that none is chosen twice. None
+    is taken that stands too close to another.
     """
     np.random.seed(seed)  # noqa: NPY002  (Numba's own generator, per thread)
     grown = 0.0
@@ -166,7 +201,7 @@ def exchange_steps(
         tabu[dropped] = step + 1 + n // 4 + np.random.randint(n + 1)  # noqa: NPY002
         best, gain = -1, -1.0
         for c in range(len(state.gains)):
-            if state.gains[c] > gain and tabu[c] <= step:
+            if state.gains[c] > gain and tabu[c] <= step and not is_too_close(state, c, chosen, n, worst):
                 best, gain = c, state.gains[c]
         if best < 0 or gain < least - 1e-9:
             best, gain = dropped, least
@@ -175,3 +210,104 @@ def exchange_steps(
         tabu[best] = FOREVER
         grown += gain - least
     return grown
+
+
+@kernel
+def eject_steps(
+    state: CoverState,
+    chosen: NDArray[np.int64],
+    n_chosen: int,
+    open_elements: NDArray[np.int64],
+    rests_until: NDArray[np.int64],
+    n_steps: int,
+    seed: int,
+) -> int:
+    """Put candidates in whose places are too near to chosen ones, which go for it; returns how many are chosen then.
+
+    Each step takes one of `open_elements` that is still open and a candidate that covers it, takes out what is chosen
+    too close to that, and fills up with the best others, as many as `chosen` has room for. All is undone where f falls.
+    What was taken out rests for some steps, so that steps of equal value do not go in circles.
+    """
+    np.random.seed(seed)  # noqa: NPY002  (Numba's own generator, per thread)
+    removed, added = np.empty(len(chosen), np.int64), np.empty(len(chosen) + 1, np.int64)
+    for step in range(n_steps):
+        e = open_elements[np.random.randint(len(open_elements))]  # noqa: NPY002
+        if state.counts[e] > 0:
+            continue
+        candidate = _to_put_in(state, chosen, n_chosen, e, rests_until, step)
+        if candidate < 0:
+            continue
+        before, n_removed, n_added = objective(state), 0, 0
+        point, place = state.positions[candidate], 0
+        while place < n_chosen:
+            if _is_close(state.positions, chosen[place], point, state.spacing):
+                removed[n_removed] = chosen[place]
+                n_removed += 1
+                remove_elements(state, state.items[state.starts[chosen[place]] : state.starts[chosen[place] + 1]])
+                n_chosen -= 1
+                chosen[place] = chosen[n_chosen]
+            else:
+                place += 1
+        while n_chosen < len(chosen):
+            if n_added > 0:
+                candidate = _best_apart(state, chosen, n_chosen, rests_until, step)
+                if candidate < 0:
+                    break
+            add_elements(state, state.items[state.starts[candidate] : state.starts[candidate + 1]])
+            chosen[n_chosen] = added[n_added] = candidate
+            n_chosen += 1
+            n_added += 1
+        if n_added == 0 or objective(state) < before - 1e-9:
+            for i in range(n_added):
+                remove_elements(state, state.items[state.starts[added[i]] : state.starts[added[i] + 1]])
+            n_chosen -= n_added
+            for i in range(n_removed):
+                add_elements(state, state.items[state.starts[removed[i]] : state.starts[removed[i] + 1]])
+                chosen[n_chosen] = removed[i]
+                n_chosen += 1
+            continue
+        for i in range(n_removed):
+            rests_until[removed[i]] = step + 10 + np.random.randint(20)  # noqa: NPY002
+    return n_chosen
+
+
+@kernel
+def _to_put_in(
+    state: CoverState,
+    chosen: NDArray[np.int64],
+    n_chosen: int,
+    element: int,
+    rests_until: NDArray[np.int64],
+    step: int,
+) -> int:
+    """The one of some random candidates that cover an element whose place costs least; -1 where there is none."""
+    first, last = state.inverse_starts[element], state.inverse_starts[element + 1]
+    best, most = -1, -np.inf
+    for _ in range(min(12, last - first)):
+        candidate = state.inverse_items[first + np.random.randint(last - first)]  # noqa: NPY002
+        if rests_until[candidate] > step:
+            continue
+        value, point, is_taken = state.gains[candidate], state.positions[candidate], False
+        for i in range(len(state.taken)):
+            is_taken |= _is_close(state.taken, i, point, state.spacing)
+        if is_taken:
+            continue
+        for place in range(n_chosen):
+            if _is_close(state.positions, chosen[place], point, state.spacing):
+                c = chosen[place]
+                value -= loss_of(state, state.items[state.starts[c] : state.starts[c + 1]])
+        if value > most:
+            best, most = candidate, value
+    return best
+
+
+@kernel
+def _best_apart(
+    state: CoverState, chosen: NDArray[np.int64], n_chosen: int, rests_until: NDArray[np.int64], step: int
+) -> int:
+    """The candidate of the largest gain that is not too close to others; -1 where none gains."""
+    best, gain = -1, 1e-9
+    for c in range(len(state.gains)):
+        if state.gains[c] > gain and rests_until[c] <= step and not is_too_close(state, c, chosen, n_chosen, -1):
+            best, gain = c, state.gains[c]
+    return best

@@ -11,6 +11,7 @@ from planning.optimise.candidates import Pool, spread_candidates
 from planning.optimise.locked import NONE_LOCKED, covered_by
 from planning.optimise.problem import ViewProblem, concatenate, take
 from planning.optimise.refine import refine_views
+from planning.optimise.spacing import ANYWHERE, Apart, apart_of
 from planning.plan import ViewpointArrays
 from planning.progress import Monitor, Stop, Trace
 
@@ -32,7 +33,9 @@ RADIANS_PER_METRE = 0.05
 """Candidates around a view are moved by 0.1 to 8 m and turned by 3 degrees per metre (one standard deviation)."""
 
 
-def cover_state(elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None) -> kernel.CoverState:
+def cover_state(
+    elements: Elements, weights: Array, covered: NDArray[np.int32] | None = None, apart: Apart = ANYWHERE
+) -> kernel.CoverState:
     """State with nothing chosen and depth 1; `covered` counts the views that each element has all the same."""
     inverse_starts, inverse_items = kernel.invert(elements.starts, elements.items, len(weights))
     n_candidates = len(elements.starts) - 1
@@ -45,13 +48,16 @@ def cover_state(elements: Elements, weights: Array, covered: NDArray[np.int32] |
         counts=np.zeros(len(weights), np.int32) if covered is None else covered.copy(),
         gains=np.zeros(n_candidates),
         depth=np.ones(1, np.int64),
+        positions=np.array(apart.positions_enu_m, np.float64, order="C"),
+        taken=np.array(apart.taken_enu_m, np.float64, order="C"),
+        spacing=float(apart.spacing_m),
     )
     kernel.refresh_gains(state)
     return state
 
 
 class Exchange:
-    """Local search by swapping chosen candidates against others; `covered` is as in `cover_state`."""
+    """Local search by swapping chosen candidates against others; `covered` and `apart` are as in `cover_state`."""
 
     def __init__(
         self,
@@ -60,9 +66,10 @@ class Exchange:
         chosen: NDArray[np.int64],
         seed: int,
         covered: NDArray[np.int32] | None = None,
+        apart: Apart = ANYWHERE,
     ) -> None:
         self.elements, self.chosen, self.seed = elements, chosen.copy(), seed
-        self.state = cover_state(elements, weights, covered)
+        self.state = cover_state(elements, weights, covered, apart)
         for candidate in self.chosen:
             kernel.add_elements(self.state, elements.of(candidate))
         self._rests_until = np.zeros(len(self.state.gains), np.int64)
@@ -97,6 +104,23 @@ class Exchange:
             self._clock += STEPS_PER_SLICE
             idle = 0 if grown > 1e-9 else idle + 1
 
+    def make_room(self, open_elements: NDArray[np.int64], n_wanted: int, stop: Stop) -> None:
+        """Cover open elements whose candidates are too close to chosen ones; up to `n_wanted` candidates are chosen."""
+        idle, value, rests_until = 0, self.value(), np.zeros(len(self.state.gains), np.int64)
+        while idle < IDLE_SLICES and not stop():
+            still_open = open_elements[self.state.counts[open_elements] == 0]
+            if len(still_open) == 0:
+                break
+            chosen = np.zeros(max(n_wanted, len(self.chosen)), np.int64)
+            chosen[: len(self.chosen)] = self.chosen
+            n_chosen = kernel.eject_steps(
+                self.state, chosen, len(self.chosen), still_open, rests_until, STEPS_PER_SLICE, self.seed + self._clock
+            )
+            self.chosen, rests_until[:] = chosen[:n_chosen], 0
+            self._clock += STEPS_PER_SLICE
+            idle = 0 if self.value() > value + 1e-9 else idle + 1
+            value = self.value()
+
 
 def improve_views(
     problem: ViewProblem,
@@ -108,8 +132,11 @@ def improve_views(
     trace: Trace,
     monitor: Monitor,
     locked: ViewpointArrays = NONE_LOCKED,
+    spacing_m: float = 0.0,
 ) -> ViewpointArrays:
     """As many views as were chosen, covering at least as much together with the `locked` ones, which are not returned.
+
+    None stands closer to another than `spacing_m`, unless at its very place.
 
     Each round exchanges views within its candidates and then refines all poses. The first round's candidates are the
     pool, those of further rounds lie around the views at hand, with fresh ones spread over the site.
@@ -119,7 +146,8 @@ def improve_views(
     covered = covered_by(problem.model, locked)
     while idle < IDLE_ROUNDS and not stop():
         monitor.report("improving views", round_number, 0)
-        exchange = Exchange(pool.elements, weights, chosen, seed + 7919 * round_number, covered)
+        apart = apart_of(pool.views, locked, spacing_m)
+        exchange = Exchange(pool.elements, weights, chosen, seed + 7919 * round_number, covered, apart)
         exchange.run(stop)
         trace.record(exchange.n_covered())
         views = take(pool.views, exchange.chosen)
@@ -131,6 +159,7 @@ def improve_views(
             monitor,
             lambda counts: trace.record(int(np.count_nonzero(counts))),
             covered,
+            apart_of(views, locked, spacing_m),
         )
         reached = float(weights[problem.model.covered(views) | (covered > 0)].sum())
         idle = 0 if reached > value + 1e-9 else idle + 1

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from planning.coverage.model import Elements
 from planning.optimise.problem import ViewProblem
+from planning.optimise.spacing import ANYWHERE, Apart
 from planning.plan import ViewpointArrays
 from planning.progress import QUIET, Monitor, Stop, never
 
@@ -38,8 +39,9 @@ def refine_views(
     monitor: Monitor = QUIET,
     improved: Callable[[NDArray[np.int64]], None] | None = None,
     covered: NDArray[np.int32] | None = None,
+    apart: Apart = ANYWHERE,
 ) -> ViewpointArrays:
-    """Views of at least the same value, in the same order.
+    """Views of at least the same value, in the same order, as far apart as `apart` says of them.
 
     Sweeps over all views until a sweep brings nothing or `stop` asks for an end. `improved` is called after each sweep
     with the number of views per element. `covered` counts the views that each element has beside these.
@@ -58,7 +60,8 @@ def refine_views(
             if stop():
                 break
             counts[elements[i]] -= 1
-            search = _PoseSearch(problem, np.where(counts == 0, weights, 0.0), elements[i])
+            others = apart.of_others(poses[:, :3], i)
+            search = _PoseSearch(problem, np.where(counts == 0, weights, 0.0), elements[i], others)
             better = search.run(poses[i])
             if better is not None:
                 grown, poses[i], elements[i] = True, better, search.items
@@ -71,8 +74,8 @@ def refine_views(
 class _PoseSearch:
     """Local search for one pose; remembers the best one that can be flown to, and what it covers."""
 
-    def __init__(self, problem: ViewProblem, open_weights: Array, items: NDArray[np.int32]) -> None:
-        self.problem, self.open_weights, self.items = problem, open_weights, items
+    def __init__(self, problem: ViewProblem, open_weights: Array, items: NDArray[np.int32], others: Apart) -> None:
+        self.problem, self.open_weights, self.items, self.others = problem, open_weights, items, others
         self.value = float(open_weights[items].sum())
         self.pose: Array | None = None
 
@@ -94,7 +97,7 @@ class _PoseSearch:
         return self.pose
 
     def _evaluate(self, pose: Array, _gradient: Array) -> float:
-        if not self.problem.space.is_allowed(pose[None, :3])[0]:
+        if self.others.is_too_close(pose[:3]) or not self.problem.space.is_allowed(pose[None, :3])[0]:
             return NOT_ALLOWED
         items = self.problem.model.elements(_as_views(pose[None])).items
         value = float(self.open_weights[items].sum())

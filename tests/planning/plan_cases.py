@@ -13,9 +13,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.mesh import box_mesh
+from planning.mesh import box_mesh, empty_mesh
 from planning.plan import Camera, Plan, Viewpoint
-from planning.scenes import ORIGIN, panel_grid
+from planning.scenes import ORIGIN, arc_grid, panel_grid
 from planning.site import Airspace, NoFlyZone, Obstacle, Site, SiteModel, box_geometry
 
 Floats = NDArray[np.float64]
@@ -41,6 +41,59 @@ def kiosk(**changes: object) -> SiteModel:
     site = Site(**{**fields, **changes})  # type: ignore[arg-type]
     building = box_mesh(np.array([-6.0, 0.0, 0.0]), np.array([6.0, 8.0, 9.0]))
     return SiteModel(site, building, tuple(box_geometry(obstacle) for obstacle in site.obstacles))
+
+
+def turned_site(
+    turn_deg: float = 0.0,
+    shift_m: tuple[float, float] = (0.0, 0.0),
+    bend_deg: float = 0.0,
+    n_rows: int = 3,
+    n_columns: int = 4,
+    panel_m: tuple[float, float] = (1.5, 1.5),
+    foot_m: float = 2.0,
+    beside_m: float = 30.0,
+    top_m: float = 30.0,
+    obstacle_m: float | None = None,
+) -> SiteModel:
+    """A facade without a building behind it, turned, shifted and bent out of the frame's axes.
+
+    Parameters
+    ----------
+    bend_deg
+        Of the arc that the facade is; 0: planar.
+    panel_m
+        Width and height of a panel.
+    foot_m
+        Height of the lowest panel's lower edge.
+    beside_m, top_m
+        How far the airspace reaches to the sides and up.
+    obstacle_m
+        A mast stands 11 m in front, so far to the side.
+    """
+    turn, shift = math.radians(turn_deg), np.array(shift_m)
+    axes = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+
+    def place(x: float, y: float, z: float) -> tuple[float, float, float]:
+        u, v = shift + axes @ [x, y]
+        return float(u), float(v), float(z)
+
+    width, height = n_columns * panel_m[0], n_rows * panel_m[1]
+    if bend_deg:
+        half, radius = 0.5 * math.radians(bend_deg), width / math.radians(bend_deg)
+        centre = place(0.0, radius, 0.0)[:2]
+        azimuths = (turn - 0.5 * math.pi - half, turn - 0.5 * math.pi + half)
+        facade = arc_grid("A", centre, radius, azimuths, (foot_m, foot_m + height), n_rows, n_columns)
+    else:
+        corners = place(-0.5 * width, 0.0, foot_m), place(0.5 * width, 0.0, foot_m)
+        facade = panel_grid("A", (*corners, place(-0.5 * width, 0.0, foot_m + height)), n_rows, n_columns, gap_m=0.05)
+    low, high = (shift - beside_m).tolist(), (shift + beside_m).tolist()
+    mast: tuple[Obstacle, ...] = ()
+    if obstacle_m is not None:
+        x, y, _ = place(obstacle_m, -11.0, 0.0)
+        mast = (Obstacle("mast", box_enu_m=((x - 0.5, y - 0.5, 0.0), (x + 0.5, y + 0.5, 9.0))),)
+    airspace = Airspace((*low, 2.0), (*high, top_m), ground_z_m=0.0)
+    site = Site("turned", ORIGIN, (facade,), airspace, place(0.0, -24.0, 0.0), obstacles=mast)
+    return SiteModel(site, empty_mesh(), tuple(box_geometry(obstacle) for obstacle in mast))
 
 
 def solid_triangles(model: SiteModel) -> Floats:

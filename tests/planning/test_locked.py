@@ -9,19 +9,20 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.distance import cdist
 
 from planning.checks import check_plan
 from planning.errors import InfeasibleError, InputError
 from planning.evaluate import coverage_counts
 from planning.findings import is_flyable
 from planning.optimise.budget import best_flights, with_fewer_views
-from planning.optimise.candidates import candidate_pool
-from planning.optimise.greedy import element_weights, needed
+from planning.optimise.candidates import Pool, candidate_pool
+from planning.optimise.greedy import choose_greedily, element_weights, needed
 from planning.optimise.improve import improve_views
 from planning.optimise.locked import covered_by, locked_views
 from planning.optimise.problem import concatenate, take
 from planning.optimise.refine import refine_views
-from planning.optimise.spacing import merge_close_views
+from planning.optimise.spacing import apart_of
 from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.plan_records import as_written
 from planning.planner import plan_flight
@@ -138,13 +139,19 @@ def test_what_is_written_keeps_locked_views_unrounded_and_drops_others_like_them
     assert len(written.heading_rad) == 3, "the others round to the same"
 
 
-def test_views_close_to_locked_ones_are_moved_onto_them_and_never_the_other_way() -> None:
+def test_no_view_is_chosen_too_close_to_a_locked_one() -> None:
     problem = prepared("kiosk").problem
     locked = locked_views(problem, LOCKED)
-    near = ViewpointArrays(locked.positions_enu_m[:1] + 0.1, locked.heading_rad[:1] + 0.3, locked.pitch_rad[:1])
-    merged = merge_close_views(problem, concatenate([locked, near]), n_fixed=3)
-    np.testing.assert_array_equal(merged.positions_enu_m[:3], locked.positions_enu_m)
-    assert (merged.positions_enu_m[3] == locked.positions_enu_m[[0, 2]]).all(axis=1).any()
+    rng = np.random.default_rng(0)
+    near = np.repeat(locked.positions_enu_m, 40, axis=0) + rng.normal(size=(40 * len(LOCKED), 3)) * 0.2
+    views = ViewpointArrays(near, np.repeat(locked.heading_rad, 40) + 0.3, np.repeat(locked.pitch_rad, 40))
+    pool = Pool(views, problem.model.elements(views))
+    weights, covered = element_weights(problem.model, False), covered_by(problem.model, locked)
+    apart = apart_of(views, locked, 0.5)
+    chosen, _ = choose_greedily(pool, weights, 60, np.inf, Trace(), QUIET, covered, apart)
+    assert len(chosen) > 0
+    away_m = cdist(near[chosen], np.concatenate([locked.positions_enu_m, near[chosen]]))
+    assert away_m[away_m > 0.0].min() >= 0.5
 
 
 def test_flights_with_locked_views_are_never_left_out() -> None:

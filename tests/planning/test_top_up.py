@@ -389,10 +389,10 @@ def test_elements_that_are_covered_all_the_same_do_not_hold_close_views_apart() 
     views = photos(plan)
     pair = take(views, np.array([4, 4]))
     pair = pair._replace(positions_enu_m=pair.positions_enu_m + np.array([[0.0, 0.0, 0.0], [0.2, 0.2, 0.1]]))
-    unmoved = merge_close_views(problem, pair)
-    nothing = merge_close_views(problem, pair, covered=np.zeros(problem.model.n_elements, np.int32))
+    unmoved = merge_close_views(problem, pair, 0.5)
+    nothing = merge_close_views(problem, pair, 0.5, covered=np.zeros(problem.model.n_elements, np.int32))
     np.testing.assert_array_equal(unmoved.positions_enu_m, nothing.positions_enu_m)
-    merged = merge_close_views(problem, pair, covered=np.ones(problem.model.n_elements, np.int32))
+    merged = merge_close_views(problem, pair, 0.5, covered=np.ones(problem.model.n_elements, np.int32))
     assert (merged.positions_enu_m[0] == merged.positions_enu_m[1]).all()
 
 
