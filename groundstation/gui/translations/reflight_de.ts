@@ -7029,6 +7029,30 @@ Take it over?</source>
         <translation>die Startsäule über dem Startplatz {0:m} kreuzt eine Flugverbotszone</translation>
     </message>
     <message>
+        <source>more time does not help</source>
+        <translation>mehr Zeit hilft nicht</translation>
+    </message>
+    <message>
+        <source>covers {0} % of what is possible at most, {1} % were asked for</source>
+        <translation>deckt {0} % dessen ab, was höchstens möglich ist; gewünscht waren {1} %</translation>
+    </message>
+    <message>
+        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) have no place from which they are known to be seen, and no proof that there is none, so that they count as possible; {3}</source>
+        <translation>zu {0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) ist kein Ort bekannt, von dem sie zu sehen sind, und auch kein Beweis, dass es keinen gibt, so dass sie als möglich zählen; {3}</translation>
+    </message>
+    <message>
+        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) are only seen from places to which no way from home was found that keeps {3} m from everything; move home, or lower the minimum distance</source>
+        <translation>{0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) sind nur von Orten zu sehen, zu denen kein Weg vom Startplatz gefunden wurde, der von allem {3} m Abstand hält; Startplatz verlegen oder den Mindestabstand senken</translation>
+    </message>
+    <message>
+        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) are only seen from places less than {3} m from other viewpoints, which {4} refuses; {5}</source>
+        <translation>{0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) sind nur von Orten zu sehen, die weniger als {3} m von anderen Aufnahmepunkten entfernt sind, was {4} verweigert; {5}</translation>
+    </message>
+    <message>
+        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) can be covered; {3}</source>
+        <translation>{0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) lassen sich abdecken; {3}</translation>
+    </message>
+    <message>
         <source>takes {0} of {1} batteries: more views would show nothing new or could not be flown</source>
         <translation>braucht {0} von {1} Akkus: Mehr Aufnahmen würden nichts Neues zeigen oder wären nicht zu fliegen</translation>
     </message>
