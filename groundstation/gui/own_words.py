@@ -1,7 +1,8 @@
 """What planning, missions and services say, in the window's language and units.
 
 They make English, metric sentences, which the command line prints as they are. The window recognises them by their
-templates (`groundstation.gui.sentences`) and says them again.
+templates (`groundstation.gui.sentences`) and says them again, with its own buttons and fields in place of commands and
+options.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from functools import cache
 from PySide6.QtCore import QCoreApplication
 
 from groundstation.gui.sentences import sentence_tables
+from groundstation.gui.sentences.window import IN_WINDOW, OPTION_FIELDS
+from groundstation.services.import_words import in_window_words
 from groundstation.services.sentences import Phrasebook
 from groundstation.services.units import UnitSystem
 from planning.findings import Finding
@@ -25,7 +28,15 @@ def phrasebook() -> Phrasebook:
 
 def own_words(text: str, units: UnitSystem) -> str:
     """A message, stage or name from below in the user's language and units; as it is where it is not known."""
-    return phrasebook().retold(text, _translated, units)
+    return with_fields(phrasebook().retold(text, _translated, units))
+
+
+def with_fields(text: str) -> str:
+    """A text with labels of fields in place of the command line's options."""
+    if "--" not in text:
+        return text
+    labels = {option: QCoreApplication.translate(*label) for option, label in OPTION_FIELDS.items()}
+    return in_window_words(text, labels, QCoreApplication.translate("Words", "“{0}”"))
 
 
 def finding_in_own_words(finding: Finding, units: UnitSystem) -> Finding:
@@ -34,4 +45,4 @@ def finding_in_own_words(finding: Finding, units: UnitSystem) -> Finding:
 
 
 def _translated(template: str) -> str:
-    return QCoreApplication.translate("Sentences", template)
+    return QCoreApplication.translate("Sentences", IN_WINDOW.get(template, template))

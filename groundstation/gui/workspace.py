@@ -13,7 +13,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.job_bridge import JobBridge
-from groundstation.gui.own_words import own_words
+from groundstation.gui.own_words import own_words, with_fields
 from groundstation.services.document import Document, Item, exists
 from groundstation.services.jobs import ENDED, Job, JobContext, JobRunner, JobState, JobStateChanged
 from groundstation.services.session import Session
@@ -125,7 +125,7 @@ class Workspace(QObject):
 
     def say(self, severity: Severity, text: str, item: Item | None = None) -> None:
         """Tell the user something."""
-        self.messageShown.emit(Message(severity, text, item))
+        self.messageShown.emit(Message(severity, with_fields(text), item))
 
     def words(self, text: str) -> str:
         """What a part without Qt says, an error or a finding, in the user's language and units."""

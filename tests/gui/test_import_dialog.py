@@ -116,7 +116,7 @@ def test_mesh_becomes_a_site_field_by_field(opened, tower_mm):
     hands.again()
     assert dialog.error() == ""
     assert "No panels yet" in dialog._summary.text()
-    assert "draw them on the building (the Site tab, or “Panel grid”)" in dialog._notes.toPlainText()
+    assert "draw them on the building (Site tab)" in dialog._notes.toPlainText()
     assert len(dialog.shown().source.building.triangles) == 12
     grid._rows.setValue(14)
     grid._columns.setValue(20)

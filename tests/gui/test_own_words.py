@@ -11,6 +11,8 @@ from PySide6.QtCore import QTranslator
 from groundstation.gui.languages import FOLDER
 from groundstation.gui.own_words import own_words, phrasebook
 from groundstation.gui.sentences import sentence_tables
+from groundstation.gui.sentences.window import IN_WINDOW, OPTION_FIELDS
+from groundstation.services.import_words import in_window_words
 from groundstation.services.sentences import Template
 from groundstation.services.site_findings import site_findings
 from groundstation.services.site_sources import preview_import
@@ -30,8 +32,8 @@ from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
 
-OTHER_TABLES = {"parts"}
-"""Words and what Python says; all others are of whole sentences."""
+OTHER_TABLES = {"parts", "window"}
+"""Words and what Python says, and what the window says instead; all others are of whole sentences."""
 
 NOT_SHOWN = {
     **{
@@ -240,7 +242,14 @@ def test_every_sentence_is_recognised_with_any_values_and_stays_as_it_is_in_engl
         assert found is not None
         assert filled(found[0].source, found[1]) == text
         assert sum(map(len, found[0].literals)) >= len(re.sub(r"\{[^}]*\}", "", template)), found[0].source
-        assert own_words(text, METRIC) == text
+        assert own_words(text, METRIC) == as_in_the_window(template, text, values)
+
+
+def as_in_the_window(template, text, values):
+    """A sentence with the window's own buttons and fields in place of commands and options."""
+    if template in IN_WINDOW:
+        return filled(IN_WINDOW[template], values)
+    return in_window_words(text, {option: label for option, (_, label) in OPTION_FIELDS.items()})
 
 
 def filled(template, values):

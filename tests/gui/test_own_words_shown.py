@@ -1,14 +1,20 @@
 """Where findings, errors, stages and effects stand in the window, they stand in the user's language and units."""
 
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
 import pytest
 from PySide6.QtCore import QTranslator
 
 from groundstation.gui.job_bar import JobBar
 from groundstation.gui.languages import FOLDER
 from groundstation.gui.mission.findings_list import FindingsList
-from groundstation.gui.own_words import finding_in_own_words
+from groundstation.gui.own_words import finding_in_own_words, own_words
 from groundstation.gui.plan.effects_panel import EffectsPanel
 from groundstation.gui.plan.method_names import method_name
+from groundstation.gui.sentences import sentence_tables
+from groundstation.gui.sentences.window import IN_WINDOW, OPTION_FIELDS
 from groundstation.gui.site.findings_list import FindingsList as SiteFindingsList
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document
@@ -22,6 +28,8 @@ from planning.errors import InfeasibleError
 from planning.findings import Finding, Severity
 from planning.methods import METHODS
 from tests.gui.driving import turn_until
+
+ROOT = Path(__file__).parents[2]
 
 TOO_CLOSE = judge(
     False,
@@ -123,3 +131,75 @@ def test_a_finding_keeps_what_it_measured(german):
         *(TOO_CLOSE.severity, TOO_CLOSE.code),
     )
     assert told.place == "Einsatz 2, Strecke 3"
+
+
+COMMANDS = sorted(path.stem.rstrip("_") for path in (ROOT / "groundstation" / "cli" / "commands").glob("[a-z]*.py"))
+
+COMMAND_LINE = re.compile(
+    # An option, a command in quotes with what goes behind it, or the program's file.
+    rf"(?<![\w-])--[a-z]|['`“„](?:{'|'.join(COMMANDS)})(?: [\w./-]+)*['`”“]|\bapp\.py\b|command line|Befehlszeile"
+)
+
+ONLY_TYPED = {"only the command line works with it", "nur die Befehlszeile arbeitet damit"}
+"""Says that the window has no button for it."""
+
+
+def filled(template):
+    """A sentence made from a template, with a number in each of its fields."""
+    return re.sub(r"\{\d+(?::[mn])?\}", "7", template)
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_nothing_that_the_window_says_speaks_command_line(application, request, language):
+    if language == "de":
+        request.getfixturevalue("german")
+    spoken = {}
+    for table, templates in sentence_tables().items():
+        for template in templates:
+            said = own_words(filled(template), UnitSystem.METRIC)
+            if COMMAND_LINE.search(said) and said not in ONLY_TYPED:
+                spoken[f"{table}: {template}"] = said
+    assert spoken == {}
+
+
+def test_no_text_of_the_window_itself_speaks_command_line():
+    texts = ElementTree.parse(FOLDER / "reflight_de.ts").getroot().iter("context")
+    spoken = [
+        text
+        for context in texts
+        if context.findtext("name") != "Sentences"
+        for message in context.iter("message")
+        for text in (message.findtext("source"), message.findtext("translation"))
+        if text and COMMAND_LINE.search(text)
+    ]
+    assert spoken == []
+
+
+def test_what_the_window_says_instead_has_the_same_fields():
+    known = {template for table in sentence_tables().values() for template in table}
+    for template, instead in IN_WINDOW.items():
+        assert template in known, "no part of the program says this any more"
+        assert re.findall(r"\{[^}]*\}", template) == re.findall(r"\{[^}]*\}", instead)
+
+
+def test_every_option_that_the_import_may_name_has_a_field():
+    sources = [*(ROOT / "planning" / "site_import").glob("*.py"), *(ROOT / "planning" / "geodesy").glob("*.py")]
+    named = {found for source in sources for found in re.findall(r"--[a-z][a-z-]+", source.read_text("utf-8"))}
+    instead = {option for template in IN_WINDOW for option in re.findall(r"--[a-z][a-z-]+", template)}
+    assert len(named) > 10
+    # The window imports without panels, too: nobody is told that it can be asked for.
+    assert named - instead - {"--without-panels"} <= set(OPTION_FIELDS)
+
+
+def test_an_error_of_a_job_names_fields_and_buttons(application, workspace):
+    heard = []
+    workspace.messageShown.connect(heard.append)
+
+    def work(_context):
+        raise InfeasibleError("method 'pso' needs a number of views (--views N); it cannot look for the fewest")
+
+    workspace.start("Plan", work)
+    turn_until(application, lambda: heard)
+    assert heard[-1].text == (
+        "Plan: the particle swarm needs a number of views (“Plan for”: number of views); it cannot look for the fewest"
+    )

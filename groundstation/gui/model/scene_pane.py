@@ -296,7 +296,7 @@ class ScenePane(QWidget):
 
     def _note(self) -> str:
         if self._desk.card is None:
-            return self.tr("Open a model: a folder that 'train' or 'organise' has made.")
+            return self.tr("Open a model: the folder of a training that is finished.")
         if self._problem:
             return str(self._workspace.words(self._problem))
         if not self.measure.isChecked():

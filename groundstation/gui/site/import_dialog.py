@@ -28,7 +28,6 @@ from groundstation.gui.view3d.drawing_tools import PickedRectangle, RectangleToo
 from groundstation.gui.view3d.layers import Layer
 from groundstation.gui.view3d.scene_view import SceneView
 from groundstation.gui.workspace import Workspace
-from groundstation.services.import_words import in_window_words
 from groundstation.services.jobs import Job, JobContext, JobProgress
 from groundstation.services.site_sources import ImportPreview, grid_in_file, preview_import, shown_site
 from planning.errors import InputError
@@ -218,9 +217,8 @@ class ImportDialog(QDialog):
         self._summary.setVisible(bool(text))
 
     def _words(self, text: str) -> str:
-        """A message of the import in the words of this dialog, without the folder."""
-        text = self._workspace.words(text.replace(f"{self._path}: ", ""))
-        return in_window_words(text, self.form.labels(), self.tr("“{0}”"))
+        """A message of the import in words of the window, without the folder."""
+        return self._workspace.words(text.replace(f"{self._path}: ", ""))
 
     def _pick(self) -> None:
         wish = self.grid.value()

@@ -98,29 +98,6 @@ class ImportForm(QWidget):
             box.valueChanged.connect(self._edited)
         self._origin.valueChanged.connect(self._origin_edited)
 
-    def labels(self) -> dict[str, str]:
-        """What the fields are called, by field of `ImportOptions`, for `in_window_words`."""
-        return {
-            "airspace_margin_m": self.tr("Airspace around the building"),
-            "axis_order": self.tr("Order of coordinates"),
-            "building": self.tr("Building"),
-            "ceiling_m": self.tr("Airspace up to, in the Site tab"),
-            "crs": self.tr("Coordinate system"),
-            "floor_m": self.tr("Airspace up from, in the Site tab"),
-            "gap_m": self.tr("Gap"),
-            "grid_tolerance_m": self.tr("Off the wall by up to"),
-            "height_reference": self.tr("Heights are"),
-            "ground_z": self.tr("Height of the ground in the file"),
-            "home_enu_m": self.tr("Home, in the Site tab"),
-            "name": self.tr("Name of the site"),
-            "n_columns": self.tr("Columns"),
-            "n_rows": self.tr("Rows"),
-            "origin": self.tr("Zero point on earth"),
-            "panel_grids": self.tr("Panel grid"),
-            "unit": self.tr("Unit of lengths"),
-            "up": self.tr("Axis that points up"),
-        }
-
     def value(self) -> ImportOptions:
         """The options."""
         place = self._place.currentData()

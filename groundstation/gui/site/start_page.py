@@ -30,7 +30,7 @@ class StartPage(QWidget):
         self.bundled_button.setMenu(opener.bundled_menu(self.bundled_button))
         for button, text in (
             (self.import_button, self.tr("IFC, CityGML, CityJSON, OBJ, PLY, GLB or STL")),
-            (self.open_button, self.tr("A site.json, from here or from the command line")),
+            (self.open_button, self.tr("A site.json that was saved before")),
             (self.bundled_button, self.tr("To look around, and to try a plan")),
         ):
             layout.addWidget(button)
