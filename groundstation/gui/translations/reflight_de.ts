@@ -1980,10 +1980,6 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Die Optionen wurden geändert: „Neue Vorschau“ drücken.</translation>
     </message>
     <message>
-        <source>“{0}”</source>
-        <translation>„{0}“</translation>
-    </message>
-    <message>
         <source>Checking ...</source>
         <translation>Wird geprüft ...</translation>
     </message>
@@ -5227,8 +5223,8 @@ Take it over?</source>
         <translation>Schnitt</translation>
     </message>
     <message>
-        <source>Open a model: a folder that &apos;train&apos; or &apos;organise&apos; has made.</source>
-        <translation>Ein Modell öffnen: einen Ordner, den &apos;train&apos; oder &apos;organise&apos; angelegt hat.</translation>
+        <source>Open a model: the folder of a training that is finished.</source>
+        <translation>Ein Modell öffnen: den Ordner eines fertigen Trainings.</translation>
     </message>
     <message>
         <source>Click two places.</source>
@@ -11624,6 +11620,130 @@ Take it over?</source>
         <source>panels: expected numbers from {0} on, found {1}</source>
         <translation>panels: Zahlen ab {0} erwartet, {1} gefunden</translation>
     </message>
+    <message>
+        <source>there is no part &apos;{0}&apos;; known are {1}</source>
+        <translation>es gibt keinen Teil &apos;{0}&apos;; bekannt sind {1}</translation>
+    </message>
+    <message>
+        <source>CesiumJS stops at Gaussians that are not compressed: for it, show panels.json alone</source>
+        <translation>CesiumJS bricht bei Gaußfunktionen ab, die nicht gepackt sind: für CesiumJS nur panels.json zeigen</translation>
+    </message>
+    <message>
+        <source>holds no objects yet: it is no model whose panels are known</source>
+        <translation>hat noch keine Objekte: es ist kein Modell, dessen Scheiben bekannt sind</translation>
+    </message>
+    <message>
+        <source>there is no signing key on this computer; set one: Key in the Fly tab</source>
+        <translation>auf diesem Rechner gibt es keinen Schlüssel zum Signieren; einen setzen: Schlüssel im Reiter Fliegen</translation>
+    </message>
+    <message>
+        <source>expected a plan file, found a mission file, and the first plan does not name an aircraft of the catalogue to read it for; make a plan of it first (Mission &gt; Import mission files)</source>
+        <translation>erwartet war eine Plandatei, gefunden eine Missionsdatei, und der erste Plan nennt kein Fluggerät des Katalogs, für das sie zu lesen wäre; erst einen Plan daraus machen (Mission &gt; Missionsdateien importieren)</translation>
+    </message>
+    <message>
+        <source>the plan has no {0}, so nothing can be placed on the globe; open its site first</source>
+        <translation>der Plan hat kein {0}, daher lässt sich nichts auf der Erde platzieren; erst seinen Standort öffnen</translation>
+    </message>
+    <message>
+        <source>the particle swarm needs a number of views (“Plan for”: number of views); it cannot look for the fewest</source>
+        <translation>der Partikelschwarm braucht eine Anzahl von Aufnahmen („Planen für“: Anzahl der Aufnahmen); die kleinste Anzahl kann er nicht suchen</translation>
+    </message>
+    <message>
+        <source>the accuracy of curved surfaces is {0}: expected a positive length in metres</source>
+        <translation>die Genauigkeit gekrümmter Flächen ist {0}: erwartet ist eine positive Länge in Metern</translation>
+    </message>
+    <message>
+        <source>its height is above the ellipsoid</source>
+        <translation>seine Höhe gilt über dem Ellipsoid</translation>
+    </message>
+    <message>
+        <source>open it on the Site tab, and plan on the Plan tab</source>
+        <translation>im Reiter Standort öffnen und im Reiter Planung planen</translation>
+    </message>
+    <message>
+        <source>{0} has no plan yet; open it and plan on the Plan tab</source>
+        <translation>{0} hat noch keinen Plan; öffnen und im Reiter Planung planen</translation>
+    </message>
+    <message>
+        <source>open it on the Site tab, and save it as a project (Project &gt; Save as)</source>
+        <translation>im Reiter Standort öffnen und als Projekt speichern (Projekt &gt; Speichern unter)</translation>
+    </message>
+    <message>
+        <source>open its site first, then the plan (Plan tab, Plans, Open plan)</source>
+        <translation>erst seinen Standort öffnen, dann den Plan (Reiter Planung, Pläne, Plan öffnen)</translation>
+    </message>
+    <message>
+        <source>it needs no import: open it on the Plan tab, and export it on the Mission tab</source>
+        <translation>sie braucht keinen Import: im Reiter Planung öffnen und im Reiter Mission exportieren</translation>
+    </message>
+    <message>
+        <source>open it on the Site tab first, then choose the mission file</source>
+        <translation>erst im Reiter Standort öffnen, dann die Missionsdatei wählen</translation>
+    </message>
+    <message>
+        <source>it needs no import: open it as a site (Site tab, Open)</source>
+        <translation>sie braucht keinen Import: als Standort öffnen (Reiter Standort, Öffnen)</translation>
+    </message>
+    <message>
+        <source>only the command line works with it</source>
+        <translation>nur die Befehlszeile arbeitet damit</translation>
+    </message>
+    <message>
+        <source>{0}; a project cannot be opened without its site: put the file back from a copy, or open the site on the Site tab, open the plans on the Plan tab and save them as a new project</source>
+        <translation>{0}; ein Projekt lässt sich ohne seinen Standort nicht öffnen: die Datei aus einer Kopie zurücklegen, oder den Standort im Reiter Standort und die Pläne im Reiter Planung öffnen und als neues Projekt speichern</translation>
+    </message>
+    <message>
+        <source>there is no project in this folder: expected project.json, or a site file with plans beside it; Project &gt; Save as makes a project of what is open</source>
+        <translation>in diesem Ordner ist kein Projekt: erwartet ist project.json oder eine Standortdatei mit Plänen daneben; Projekt &gt; Speichern unter macht ein Projekt aus dem, was offen ist</translation>
+    </message>
+    <message>
+        <source>expected one site file in a folder without project.json, found {0} ({1}); open one on the Site tab and save it as a project</source>
+        <translation>in einem Ordner ohne project.json ist eine Standortdatei erwartet, gefunden {0} ({1}); eine davon im Reiter Standort öffnen und als Projekt speichern</translation>
+    </message>
+    <message>
+        <source>import it first: Mission &gt; Import mission files</source>
+        <translation>erst importieren: Mission &gt; Missionsdateien importieren</translation>
+    </message>
+    <message>
+        <source>import it first (Site &gt; Import building model), and plan a flight over that</source>
+        <translation>erst importieren (Standort &gt; Gebäudemodell importieren) und dafür einen Flug planen</translation>
+    </message>
+    <message>
+        <source>import it first: Site &gt; Import building model</source>
+        <translation>erst importieren: Standort &gt; Gebäudemodell importieren</translation>
+    </message>
+    <message>
+        <source>has no dataset.json; choose the folder of a data set that is finished</source>
+        <translation>hat keine dataset.json; den Ordner eines fertigen Datensatzes wählen</translation>
+    </message>
+    <message>
+        <source>choose one that a training has finished</source>
+        <translation>eines wählen, dessen Training fertig ist</translation>
+    </message>
+    <message>
+        <source>none of {0} photos has a pixel that lies whole on a panel; take larger photos or come closer, or train splats alone (“Method”: 2DGS)</source>
+        <translation>keines von {0} Fotos hat einen Bildpunkt, der ganz auf einer Scheibe liegt; größere Fotos machen, näher herangehen oder nur Splats trainieren („Methode“: 2DGS)</translation>
+    </message>
+    <message>
+        <source>holds no scene of objects ({0}); open a finished model on the Model tab, which makes one beside it</source>
+        <translation>hat keine Szene aus Objekten ({0}); im Reiter Modell ein fertiges Modell öffnen: daneben entsteht eine</translation>
+    </message>
+    <message>
+        <source>the records have the older version {0}; the first change that is kept brings them up to date</source>
+        <translation>die Aufzeichnungen haben die ältere Version {0}; die erste Änderung, die gespeichert wird, bringt sie auf den neuen Stand</translation>
+    </message>
+    <message>
+        <source>there are no records yet; the first one that is added on the Model tab makes them</source>
+        <translation>es gibt noch keine Aufzeichnungen; die erste, die im Reiter Modell hinzukommt, legt sie an</translation>
+    </message>
+    <message>
+        <source>site &apos;{0}&apos; has no panels yet: find them in photos (Photos tab), or draw them on the building (Site tab)</source>
+        <translation>Standort &apos;{0}&apos; hat noch keine Scheiben: in Fotos suchen (Reiter Fotos) oder am Gebäude zeichnen (Reiter Standort)</translation>
+    </message>
+    <message>
+        <source>{0}, so the site has no panels yet: find them in photos (Photos tab), or draw them on the building (Site tab)</source>
+        <translation>{0}, daher hat der Standort noch keine Scheiben: in Fotos suchen (Reiter Fotos) oder am Gebäude zeichnen (Reiter Standort)</translation>
+    </message>
 </context>
 <context>
     <name>SettingsPage</name>
@@ -12161,8 +12281,8 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>IFC, CityGML, CityJSON, OBJ, PLY, GLB oder STL</translation>
     </message>
     <message>
-        <source>A site.json, from here or from the command line</source>
-        <translation>Eine site.json, von hier oder von der Kommandozeile</translation>
+        <source>A site.json that was saved before</source>
+        <translation>Eine site.json, die früher gespeichert wurde</translation>
     </message>
     <message>
         <source>To look around, and to try a plan</source>
@@ -12521,8 +12641,8 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>{0}: violett {1}, gelb {2}</translation>
     </message>
     <message>
-        <source>Choose a data set: a folder that &apos;prepare&apos; or &apos;scene render&apos; has made.</source>
-        <translation>Wählen Sie einen Datensatz: einen Ordner, den &apos;prepare&apos; oder &apos;scene render&apos; erzeugt hat.</translation>
+        <source>Choose a data set: a folder of photos with their poses (dataset.json).</source>
+        <translation>Einen Datensatz wählen: einen Ordner mit Fotos und ihren Posen (dataset.json).</translation>
     </message>
     <message>
         <source>A photo of the data set. The model is shown here once it learns.</source>
@@ -12798,6 +12918,13 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Waypoints</source>
         <translation>Wegpunkte</translation>
+    </message>
+</context>
+<context>
+    <name>Words</name>
+    <message>
+        <source>“{0}”</source>
+        <translation>„{0}“</translation>
     </message>
 </context>
 <context>
