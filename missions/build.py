@@ -18,6 +18,7 @@ from planning.errors import InputError, MissionError
 from planning.frames import Vec3, wrap_heading_deg
 from planning.plan import Plan, Sortie, Viewpoint
 from planning.site import Origin
+from planning.sortie_timing import with_stops
 
 Value = TypeVar("Value")
 
@@ -45,6 +46,7 @@ def missions_from_plan(plan: Plan, origin: Origin | None = None, home_enu_m: Vec
         path, a gimbal pitch that the camera cannot reach, or a path that does not start and end in the column above
         home.
     """
+    plan = with_stops(plan)
     origin = _agreed(plan.origin, origin, "origin")
     home_enu_m = _agreed(plan.home_enu_m, home_enu_m, "home_enu_m")
     _check_each_viewpoint_once(plan)

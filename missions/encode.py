@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -74,6 +74,24 @@ def encode(
         As `export`, where there is nothing to check.
     """
     missions = missions_from_plan(plan, origin, home_enu_m)
+    encoded = _encoded(plan, missions, file_format, options)
+    return replace(encoded, findings=(*_on_passing(plan, missions), *encoded.findings))
+
+
+def _on_passing(plan: Plan, missions: Sequence[Mission]) -> Iterator[Finding]:
+    """An imported mission that takes photos in passing is another one when it is written: it stops for each."""
+    for sortie, mission in zip(plan.sorties, missions, strict=True):
+        n = len(sortie.in_passing_ids)
+        if n:
+            text = (
+                f"{n} photos that the imported mission takes in passing are stops in these files, so the sortie takes "
+                f"{mission.duration_s:.0f} s instead of {sortie.duration_s:.0f} s"
+            )
+            place = f"sortie {mission.number}"
+            yield Finding(Severity.WARNING, "in-passing", text, place, mission.duration_s, sortie.duration_s, "s")
+
+
+def _encoded(plan: Plan, missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
     match file_format:
         case FileFormat.DJI_KMZ:
             return _encode_dji(plan, missions, options)

@@ -114,12 +114,14 @@ class Mission:
 class ReadPhoto:
     """One photo that a file tells the aircraft to take; an angle is None where the file leaves it open.
 
-    `viewpoint_id` is empty where the file names none.
+    `viewpoint_id` is empty where the file names none. A photo `in_passing` costs no stop: the camera is released by
+    time or distance, or at a waypoint that the aircraft flies through.
     """
 
     heading_deg: float | None
     gimbal_pitch_deg: float | None
     viewpoint_id: str = ""
+    in_passing: bool = False
 
     def __post_init__(self) -> None:
         if self.heading_deg is not None and not -180.0 <= self.heading_deg <= 360.0:
@@ -129,14 +131,49 @@ class ReadPhoto:
 
 
 @dataclass(frozen=True, slots=True)
+class Stay:
+    """What an aircraft does at a waypoint, as far as it takes time.
+
+    Parameters
+    ----------
+    passing_m
+        It flies through, and leaves its leg so far before the waypoint (infinite: as early as it likes); None where it
+        stops.
+    wait_s
+        Time at rest without turning.
+    turn_deg
+        What nose and gimbal turn while it rests, the longer of the two each time.
+    """
+
+    passing_m: float | None = None
+    wait_s: float = 0.0
+    turn_deg: float = 0.0
+
+    @property
+    def is_stop(self) -> bool:
+        """Whether it comes to rest."""
+        return self.passing_m is None or self.wait_s > 0.0 or self.turn_deg > 0.0
+
+
+ON_THE_WAY = Stay(passing_m=math.inf)
+"""A place on a leg."""
+
+
+@dataclass(frozen=True, slots=True)
 class ReadWaypoint:
-    """A point of a mission that was read; exactly one of the two heights is known."""
+    """A point of a mission that was read; exactly one of the two heights is known.
+
+    `stay` is None where the file says nothing about it: then every photo takes the time that plans give it. `speed_m_s`
+    is that of the leg which begins here, None where it is the mission's.
+    """
 
     lat_deg: float
     lon_deg: float
     height_ellipsoid_m: float | None = None
     height_above_takeoff_m: float | None = None
     photos: tuple[ReadPhoto, ...] = ()
+    stay: Stay | None = None
+    speed_m_s: float | None = None
 
     def __post_init__(self) -> None:
         if (self.height_ellipsoid_m is None) == (self.height_above_takeoff_m is None):
@@ -174,6 +211,8 @@ class ReadMission:
         it flies home after the last waypoint; 0 where the file does not say.
     speed_m_s
         Cruise speed; None where the file does not say.
+    stated_s
+        Time from the first to the last waypoint as the file states it; None where it does not.
     findings
         What the file's checks found and what had to be assumed; never an error, a file with errors is not read.
     """
@@ -188,6 +227,7 @@ class ReadMission:
     climb_above_takeoff_m: float = 0.0
     return_above_takeoff_m: float = 0.0
     speed_m_s: float | None = None
+    stated_s: float | None = None
     findings: tuple[Finding, ...] = ()
 
     @property

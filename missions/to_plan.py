@@ -11,12 +11,14 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from missions.build import COLUMN_RADIUS_M
 from missions.legs import distance_m
-from missions.model import Finish, HeightReference, ReadMission, ReadPhoto
+from missions.model import Finish, HeightReference, ReadMission, ReadPhoto, Stay
 from planning.belonging import MAX_DISTANCE_M
 from planning.catalogue import DEFAULT_PROFILE, profile
 from planning.errors import InputError
@@ -25,7 +27,14 @@ from planning.frames import Vec3
 from planning.mesh import MAX_COORDINATE_M
 from planning.plan import Aircraft, FlightRules, Sortie, Viewpoint
 from planning.site import Origin
-from planning.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.sortie_timing import SAME_PLACE_M, sortie_flight_path, stopping_duration_s
+from planning.timing import MotionLimits, motion_limits, rest_to_rest_s, speed_limits_m_s
+
+Array = NDArray[np.float64]
+
+STRAIGHT_RAD = math.radians(1.0)
+SHARPEST_TURN_RAD = math.radians(175.0)
+"""Corners that turn less are none; those that turn more are stops."""
 
 TAKEOFF_MOVED_M = 20.0
 """A take-off point of the file this far from the site's home is worth a warning; a launch area is smaller."""
@@ -83,18 +92,28 @@ def viewpoints_and_sorties(
         findings += mission.findings
         findings += _takeoff_findings(mission, home)
         points = _points_enu_m(mission, origin, home[2])
-        path = _flown_path(mission, points, home_enu_m)
+        before, after = _ways(mission, points, home_enu_m)
+        path = _flown_path(mission, before, points, after)
         _check_is_local(mission, path)
-        views = []
+        views: list[Viewpoint] = []
+        in_passing: list[str] = []
         unaimed = _Unaimed()
         for waypoint, point in zip(mission.waypoints, points, strict=True):
             for photo in waypoint.photos:
                 if unaimed.count(photo) and photo.heading_deg is not None:
                     pitch_deg = 0.0 if photo.gimbal_pitch_deg is None else photo.gimbal_pitch_deg
                     views.append(Viewpoint(ids.next(photo.viewpoint_id), point, photo.heading_deg, pitch_deg))
+                    in_passing += [views[-1].id] * photo.in_passing
         findings += unaimed.findings(mission.name)
         findings += _end_findings(mission)
-        sorties.append(_sortie(path, views, mission, rules, aircraft))
+        length_m = float(sum(math.dist(a, b) for a, b in itertools.pairwise(path)))
+        sortie = Sortie(tuple(view.id for view in views), tuple(path), length_m, 0.0, tuple(in_passing))
+        if all(waypoint.stay is not None for waypoint in mission.waypoints):
+            duration_s, told = _time_as_told(mission, before, points, after, rules, aircraft)
+            findings += told
+        else:
+            duration_s = _time_as_planned(sortie, views, mission, rules, aircraft)
+        sorties.append(replace(sortie, duration_s=duration_s))
         viewpoints += views
     return PlanParts(tuple(viewpoints), tuple(sorties), tuple(findings))
 
@@ -206,11 +225,8 @@ def _points_enu_m(mission: ReadMission, origin: Origin, home_height_ellipsoid_m:
     return [(round(float(x), 4), round(float(y), 4), round(float(z), 4)) for x, y, z in points]
 
 
-def _flown_path(mission: ReadMission, points: Sequence[Vec3], home: Vec3) -> list[Vec3]:
-    """From take-off to landing: the waypoints and the pieces that the autopilot flies by itself.
-
-    Each photo has a vertex of its own, also where several are taken at one place, as in plans of our own.
-    """
+def _ways(mission: ReadMission, points: Sequence[Vec3], home: Vec3) -> tuple[list[Vec3], list[Vec3]]:
+    """The pieces that the autopilot flies by itself: from take-off to the first waypoint, from the last to landing."""
     first, last = points[0], points[-1]
     climb_z = max(first[2], home[2] + mission.climb_above_takeoff_m)
     before = [home]
@@ -226,6 +242,13 @@ def _flown_path(mission: ReadMission, points: Sequence[Vec3], home: Vec3) -> lis
         after = [(last[0], last[1], return_z), (home[0], home[1], return_z), home]
     elif mission.finish is Finish.LAND:
         after = [(last[0], last[1], home[2])]
+    return before, after
+
+
+def _flown_path(
+    mission: ReadMission, before: Sequence[Vec3], points: Sequence[Vec3], after: Sequence[Vec3]
+) -> list[Vec3]:
+    """From take-off to landing. Each photo has a vertex of its own, also where several are taken at one place."""
     path: list[Vec3] = []
     is_free = False
     n_photos = [len(waypoint.photos) for waypoint in mission.waypoints]
@@ -236,13 +259,128 @@ def _flown_path(mission: ReadMission, points: Sequence[Vec3], home: Vec3) -> lis
     return path
 
 
-def _sortie(
-    path: Sequence[Vec3], views: Sequence[Viewpoint], mission: ReadMission, rules: FlightRules, aircraft: Aircraft
-) -> Sortie:
-    length_m = float(sum(math.dist(a, b) for a, b in itertools.pairwise(path)))
-    sortie = Sortie(tuple(view.id for view in views), tuple(path), length_m, 0.0)
+def _time_as_planned(
+    sortie: Sortie, views: Sequence[Viewpoint], mission: ReadMission, rules: FlightRules, aircraft: Aircraft
+) -> float:
+    """Duration of a sortie that stops for every photo as long as plans do, for files that say nothing about it."""
     rules = replace(rules, max_speed_m_s=mission.speed_m_s or ASSUMED_SPEED_M_S)
     timed = sortie_flight_path(sortie, {view.id: view for view in views}, aircraft, rules)
-    if timed is None:
-        return sortie
-    return replace(sortie, duration_s=stopping_duration_s(timed[0], aircraft, rules))
+    return 0.0 if timed is None else stopping_duration_s(timed[0], aircraft, rules)
+
+
+def _time_as_told(
+    mission: ReadMission,
+    before: Sequence[Vec3],
+    points: Sequence[Vec3],
+    after: Sequence[Vec3],
+    rules: FlightRules,
+    aircraft: Aircraft,
+) -> tuple[float, tuple[Finding, ...]]:
+    """Duration of a sortie by what the file tells the aircraft to do, and how the file's own time compares."""
+    limits = motion_limits(aircraft, rules)
+    speed_m_s = mission.speed_m_s or ASSUMED_SPEED_M_S
+    stays = [waypoint.stay or Stay() for waypoint in mission.waypoints]
+    speeds = [waypoint.speed_m_s or speed_m_s for waypoint in mission.waypoints]
+    route_s = flown_s(list(map(RoutePoint, points, stays, speeds)), limits)
+    ways = ([*before, points[0]], [points[-1], *after])
+    way_s = sum(flown_s(timed_route(way, [Stay()] * len(way), speed_m_s), limits) for way in ways)
+    duration_s = rules.takeoff_landing_s + way_s + route_s
+    if not mission.stated_s:
+        return duration_s, ()
+    text = (
+        f"the file states {mission.stated_s:.0f} s for its route, and by what it tells the aircraft to do it takes "
+        f"{route_s:.0f} s; with the way there and back, take-off and landing the flight takes {duration_s:.0f} s"
+    )
+    return duration_s, (Finding(Severity.NOTE, "stated-time", text, mission.name, mission.stated_s, route_s, "s"),)
+
+
+class RoutePoint(NamedTuple):
+    """A waypoint to be timed; the speed is that of the leg behind it."""
+
+    place_enu_m: Vec3
+    stay: Stay
+    speed_m_s: float
+
+
+def timed_route(places_enu_m: Sequence[Vec3], stays: Sequence[Stay], speed_m_s: float) -> list[RoutePoint]:
+    """A route at one speed."""
+    return [RoutePoint(place, stay, speed_m_s) for place, stay in zip(places_enu_m, stays, strict=True)]
+
+
+def flown_s(route: Sequence[RoutePoint], limits: MotionLimits) -> float:
+    """Time from the first to the last of some waypoints, at rest at both, seconds.
+
+    Legs are flown with constant acceleration up to their speed. A corner that is flown through is an arc that leaves
+    its leg as far before the waypoint as the file says, at most half of either leg, at the speed that the acceleration
+    allows on it. Jerk counts on legs from rest to rest.
+    """
+    rests = [point.stay for point in route if point.stay.is_stop]
+    rests_s = sum(stay.wait_s + math.radians(stay.turn_deg) / limits.yaw_rate_rad_s for stay in rests)
+    kept = _kept(route)
+    legs = np.diff([point.place_enu_m for point in kept], axis=0)
+    if not len(legs):
+        return rests_s
+    speeds = [
+        speed_limits_m_s(leg, replace(limits, horizontal_m_s=min(limits.horizontal_m_s, point.speed_m_s)))
+        for leg, point in zip(legs, kept, strict=False)
+    ]
+    cuts = [None if point.stay.is_stop else point.stay.passing_m for point in kept]
+    return rests_s + _legs_s(legs, np.array(speeds, np.float64), cuts, limits)
+
+
+def _kept(route: Sequence[RoutePoint]) -> list[RoutePoint]:
+    """The route without places on straight legs, and with those at which it does not move on as one."""
+    apart: list[RoutePoint] = []
+    for point in route:
+        if apart and math.dist(apart[-1].place_enu_m, point.place_enu_m) <= SAME_PLACE_M:
+            stay = apart[-1].stay if apart[-1].stay.is_stop else point.stay
+            apart[-1] = RoutePoint(apart[-1].place_enu_m, stay, point.speed_m_s)
+        else:
+            apart.append(point)
+    kept = apart[:1]
+    for point, following in itertools.pairwise(apart[1:]):
+        is_on_leg = not point.stay.is_stop and point.speed_m_s == kept[-1].speed_m_s
+        if not (is_on_leg and _turn_rad(*(p.place_enu_m for p in (kept[-1], point, following))) < STRAIGHT_RAD):
+            kept.append(point)
+    return kept + apart[1:][-1:]
+
+
+def _turn_rad(before: Vec3, here: Vec3, behind: Vec3) -> float:
+    """By how much a route turns at a place, 0 to pi."""
+    u, v = np.subtract(here, before), np.subtract(behind, here)
+    u, v = u / np.linalg.norm(u), v / np.linalg.norm(v)
+    return 2.0 * math.atan2(float(np.linalg.norm(u - v)), float(np.linalg.norm(u + v)))
+
+
+def _legs_s(legs: Array, speed_m_s: Array, cuts_m: Sequence[float | None], limits: MotionLimits) -> float:
+    """Time over legs, shape (n, 3), with their speeds, shape (n,), and how corners are cut, n + 1 (None: a stop)."""
+    length, a = np.linalg.norm(legs, axis=1), limits.acceleration_m_s2
+    n = len(legs)
+    corner_m_s, cut, arc = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
+    for k in range(1, n):
+        wanted = cuts_m[k]
+        if wanted is None:
+            continue
+        turn = _turn_rad((0.0, 0.0, 0.0), legs[k - 1], legs[k - 1] + legs[k])
+        slower = float(min(speed_m_s[k - 1], speed_m_s[k]))
+        if turn < STRAIGHT_RAD:
+            corner_m_s[k] = slower
+        elif turn < SHARPEST_TURN_RAD:
+            cut[k] = min(wanted, length[k - 1] / 2.0, length[k] / 2.0)
+            radius = cut[k] / math.tan(turn / 2.0)
+            corner_m_s[k], arc[k] = min(slower, math.sqrt(a * radius)), radius * turn
+    straight = np.maximum(length - cut[:-1] - cut[1:], 0.0)
+    for k in range(1, n + 1):
+        corner_m_s[k] = min(corner_m_s[k], math.sqrt(corner_m_s[k - 1] ** 2 + 2.0 * a * straight[k - 1]))
+    for k in range(n - 1, -1, -1):
+        corner_m_s[k] = min(corner_m_s[k], math.sqrt(corner_m_s[k + 1] ** 2 + 2.0 * a * straight[k]))
+    total_s = sum(arc[k] / corner_m_s[k] for k in range(1, n) if arc[k] > 0.0)
+    for k in range(n):
+        start, end = corner_m_s[k], corner_m_s[k + 1]
+        if start == end == 0.0:
+            total_s += float(rest_to_rest_s(straight[k], speed_m_s[k], a, limits.jerk_m_s3))
+            continue
+        peak = min(speed_m_s[k], math.sqrt(a * straight[k] + (start**2 + end**2) / 2.0))
+        cruised = straight[k] - (2.0 * peak**2 - start**2 - end**2) / (2.0 * a)
+        total_s += (2.0 * peak - start - end) / a + max(0.0, cruised) / peak
+    return float(total_s)

@@ -187,17 +187,23 @@ class Viewpoint:
 class Sortie:
     """One flight on one battery, from take-off to landing.
 
-    `path_enu_m` is the polyline really flown; the sortie's viewpoints are among its vertices, in order.
+    `path_enu_m` is the polyline really flown; the sortie's viewpoints are among its vertices, in order. Photos of those
+    in `in_passing_ids` are taken without a stop, as missions of other programs do that release the camera by time or
+    distance.
     """
 
     viewpoint_ids: tuple[str, ...]
     path_enu_m: tuple[Vec3, ...]
     length_m: float
     duration_s: float
+    in_passing_ids: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for i, point in enumerate(self.path_enu_m):
             check_point(point, f"path_enu_m[{i}]")
+        unknown = set(self.in_passing_ids).difference(self.viewpoint_ids)
+        if unknown:
+            raise ValueError(f"in_passing_ids: expected viewpoints of the sortie, got {sorted(unknown)[0]!r}")
 
 
 @dataclass(frozen=True, slots=True)

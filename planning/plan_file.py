@@ -32,6 +32,9 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
     for viewpoint in content["viewpoints"]:
         if not viewpoint["locked"]:
             del viewpoint["locked"]
+    for sortie in content["sorties"]:
+        if not sortie["in_passing_ids"]:
+            del sortie["in_passing_ids"]
     return {key: value for key, value in content.items() if value is not None}
 
 

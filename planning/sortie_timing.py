@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.plan import Aircraft, FlightRules, Sortie, Viewpoint, viewpoint_arrays
+from planning.plan import Aircraft, FlightRules, Plan, Sortie, Viewpoint, viewpoint_arrays
 from planning.timing import FlightPath, flight_path, motion_limits, stopping_times_s
 
 SAME_PLACE_M = 1e-3
@@ -61,7 +62,33 @@ def sortie_flight_path(
     first = np.cumsum(repeats) - repeats
     vertices = first[vertices] + np.arange(len(vertices)) - np.searchsorted(vertices, vertices)
     angles = views.heading_rad, views.pitch_rad
-    return flight_path(path, vertices, *angles, aircraft, rules, stop_at_corners=stop_at_corners), vertices
+    passing = frozenset(sortie.in_passing_ids)
+    in_passing = np.array([viewpoint_id in passing for viewpoint_id in sortie.viewpoint_ids], np.bool_)
+    flown = flight_path(
+        path, vertices, *angles, aircraft, rules, stop_at_corners=stop_at_corners, in_passing=in_passing
+    )
+    return flown, vertices
+
+
+def with_stops(plan: Plan) -> Plan:
+    """The plan as aircraft that stop for every photo fly it: what an imported mission takes in passing is a stop, too.
+
+    Raises
+    ------
+    InfeasibleError
+        The aircraft cannot fly in the expected wind.
+    """
+    if not any(sortie.in_passing_ids for sortie in plan.sorties):
+        return plan
+    by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
+    sorties = []
+    for sortie in plan.sorties:
+        stopping = replace(sortie, in_passing_ids=())
+        timed = sortie_flight_path(stopping, by_id, plan.aircraft, plan.rules) if sortie.in_passing_ids else None
+        if timed is not None:
+            stopping = replace(stopping, duration_s=stopping_duration_s(timed[0], plan.aircraft, plan.rules))
+        sorties.append(stopping)
+    return replace(plan, sorties=tuple(sorties))
 
 
 def stopping_duration_s(flown: FlightPath, aircraft: Aircraft, rules: FlightRules) -> float:

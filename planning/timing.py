@@ -22,6 +22,9 @@ from planning.plan import Aircraft, FlightRules
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+STRAIGHT_COSINE = math.cos(0.02)
+"""Of the turn at a place on a straight leg: what rounding to 0.1 mm makes of places 1 cm apart."""
+
 UNKNOWN_TURN_RAD = math.pi
 """Turn charged before the first photo of a sortie: the heading after take-off is not known."""
 
@@ -231,12 +234,16 @@ class FlightPath:
     turn_s
         Shape (k - 1,): what turning heading and gimbal at their full rates takes of each leg's turn. The turn is
         spread evenly along the leg, so the leg takes no less at any part of it.
+    is_passed
+        Shape (k,), places on a straight leg where a photo is taken in passing: no stop even for an aircraft that stops
+        at every vertex. None where there is no such place.
     """
 
     vertices_enu_m: Floats
     is_stop: NDArray[np.bool_]
     hover_s: Floats
     turn_s: Floats
+    is_passed: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         k = len(self.vertices_enu_m)
@@ -253,6 +260,16 @@ class FlightPath:
             raise ValueError("hover_s: expected finite times, none negative")
         if (self.hover_s[~self.is_stop] > 0.0).any():
             raise ValueError("hover_s: expected no hover where the aircraft does not stop")
+        if self.is_passed is not None and (self.is_passed.shape != (k,) or (self.is_passed & self.is_stop).any()):
+            raise ValueError(f"is_passed: expected shape ({k},) and no stop, got {self.is_passed!r}")
+
+    def without_passed(self) -> FlightPath:
+        """The same path without the places that are passed."""
+        if self.is_passed is None or not self.is_passed.any():
+            return self
+        kept = np.flatnonzero(~self.is_passed)
+        turn_s = np.add.reduceat(self.turn_s, kept[:-1]) if len(kept) > 1 else np.zeros(0)
+        return FlightPath(self.vertices_enu_m[kept], self.is_stop[kept], self.hover_s[kept], turn_s)
 
     @property
     def deltas_enu_m(self) -> Floats:
@@ -269,6 +286,7 @@ def flight_path(
     rules: FlightRules,
     *,
     stop_at_corners: bool = True,
+    in_passing: NDArray[np.bool_] | None = None,
 ) -> FlightPath:
     """Flight path of a sortie: pauses and turns of its photos, laid onto its polyline.
 
@@ -282,6 +300,8 @@ def flight_path(
         Shape (m,), of the photos.
     stop_at_corners
         Come to rest at vertices without a photo, too, as waypoint missions of the formats written here do.
+    in_passing
+        Photos that are taken without a stop, shape (m,); heading and gimbal turn for them on the way.
     """
     limits = motion_limits(aircraft, rules)
     k, m = len(vertices_enu_m), len(photo_vertices)
@@ -289,6 +309,10 @@ def flight_path(
         raise ValueError("expected as many headings and pitches as photos, and photo vertices in rising order")
     is_photo = np.zeros(k, np.bool_)
     is_photo[photo_vertices] = True
+    passes = np.zeros(m, np.bool_) if in_passing is None else in_passing
+    is_passing = np.zeros(k, np.bool_)
+    is_passing[photo_vertices] = passes
+    is_photo &= ~is_passing
     hover_s = np.where(is_photo, photo_stop_s(aircraft, rules), 0.0)
     heading_change = np.concatenate([[UNKNOWN_TURN_RAD], heading_difference_rad(heading_rad[:-1], heading_rad[1:])])
     needed_s = turn_times_s(heading_change[:m], np.diff(pitch_rad, prepend=0.0), limits)
@@ -296,12 +320,26 @@ def flight_path(
     length_m = np.linalg.norm(np.diff(vertices_enu_m, axis=0), axis=1)
     photo_of_leg = np.searchsorted(photo_vertices, np.arange(k - 1), side="right")
     stretch_m = np.bincount(photo_of_leg, length_m, minlength=m + 1)[:m]
-    in_flight = rules.turn_in_flight & (stretch_m > 0.0)
-    hover_s[photo_vertices] += np.where(in_flight, 0.0, needed_s)
+    in_flight = (rules.turn_in_flight | passes) & (stretch_m > 0.0)
+    hover_s[photo_vertices] += np.where(in_flight | passes, 0.0, needed_s)
     pace_s_m = np.append(np.where(in_flight, needed_s, 0.0) / np.where(in_flight, stretch_m, 1.0), 0.0)
     turn_s = pace_s_m[photo_of_leg] * length_m
     ends = np.isin(np.arange(k), [0, k - 1])
-    return FlightPath(np.asarray(vertices_enu_m, float), is_photo | ends | stop_at_corners, hover_s, turn_s)
+    vertices = np.asarray(vertices_enu_m, float)
+    is_passed = is_passing & ~ends & _is_straight(vertices)
+    is_stop = (is_photo | ends | stop_at_corners) & ~is_passed
+    return FlightPath(vertices, is_stop, hover_s, turn_s, is_passed if is_passed.any() else None)
+
+
+def _is_straight(vertices_enu_m: Floats) -> NDArray[np.bool_]:
+    """Which vertices, shape (k, 3), lie on a straight leg between their neighbours, shape (k,)."""
+    deltas = np.diff(vertices_enu_m, axis=0)
+    lengths = np.linalg.norm(deltas, axis=1)
+    products = lengths[:-1] * lengths[1:]
+    is_straight = np.zeros(len(vertices_enu_m), np.bool_)
+    cosines = np.einsum("ij,ij->i", deltas[:-1], deltas[1:]) / np.where(products > 0.0, products, 1.0)
+    is_straight[1:-1] = (products > 0.0) & (cosines > STRAIGHT_COSINE)
+    return is_straight
 
 
 def slowed_by_turns_m_s(path: FlightPath, limits: MotionLimits) -> Floats:
@@ -316,10 +354,28 @@ def stopping_times_s(path: FlightPath, limits: MotionLimits) -> Floats:
     """Arrival at every vertex when the aircraft comes to rest at each, shape (k,), seconds from the first departure.
 
     The sortie is over `path.hover_s[-1]` after the last arrival; the hover at the first vertex counts before it leaves.
+    At places that are passed it does not rest; when they are reached is taken evenly along their leg.
     """
+    if path.is_passed is not None and path.is_passed.any():
+        return _with_passed(path, limits)
     length = np.linalg.norm(path.deltas_enu_m, axis=1)
     speed = slowed_by_turns_m_s(path, limits)
     moves = (length > 0.0) & (speed > 0.0)
     flying_s = rest_to_rest_s(length, np.where(moves, speed, 1.0), limits.acceleration_m_s2, limits.jerk_m_s3)
     leg_s = np.where(moves, flying_s, path.turn_s)
     return np.concatenate([[0.0], np.cumsum(path.hover_s[:-1] + leg_s)])
+
+
+def _with_passed(path: FlightPath, limits: MotionLimits) -> Floats:
+    """Arrivals, shape (k,), of a path with places that are passed."""
+    assert path.is_passed is not None
+    kept = np.flatnonzero(~path.is_passed)
+    arrival = stopping_times_s(path.without_passed(), limits)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(path.deltas_enu_m, axis=1))])
+    before = np.maximum(np.searchsorted(kept, np.arange(len(along)), side="left") - 1, 0)
+    start, length = along[kept[before]], along[kept[before + 1]] - along[kept[before]]
+    share = np.where(length > 0.0, (along - start) / np.where(length > 0.0, length, 1.0), 1.0)
+    left = arrival[before] + path.hover_s[kept[before]]
+    found = left + share * (arrival[before + 1] - left)
+    found[kept] = arrival
+    return np.asarray(found)

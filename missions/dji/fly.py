@@ -8,15 +8,28 @@ started on a leg). That a photo trigger by time or distance shoots at once when 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from missions.dji.wpml import Action, ActionGroup, Folder, WpmlWaypoint
 from missions.legs import bearing_deg, courses_deg, leg_lengths_m, point_between, shots_on_leg
-from missions.model import ReadPhoto
+from missions.model import ON_THE_WAY, ReadPhoto, Stay
 from planning.frames import wrap_heading_deg
 
 PHOTO_FUNCS = ("takePhoto", "orientedShoot", "accurateShoot")
+
+RELEASE_S = 1.2
+"""Of a photo at a waypoint, and of a zoom or a focus: DJI publishes none. A route of two turns of the nose, two of the
+gimbal, zoom, focus and a photo at one place is stated by FlightHub 2 as 6.8 s."""
+
+RESTING_FUNCS = ("hover", "rotateYaw", "orientedShoot", "accurateShoot", "panoShot")
+"""What is done at rest, also at a waypoint that is flown through."""
+
+CAMERA_FUNCS = ("zoom", "focus", "setFocusType")
+
+FLOWN_THROUGH = ("coordinateTurn", "toPointAndPassWithContinuityCurvature")
+"""Turn modes that do not stop at the waypoint."""
 
 _LAPSE_SHOT = Action(None, "takePhoto", {})
 
@@ -29,6 +42,8 @@ class FlownPoint:
     lon_deg: float
     height_m: float
     photos: tuple[ReadPhoto, ...] = ()
+    stay: Stay | None = ON_THE_WAY
+    speed_m_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,17 +121,21 @@ class Flight:
 
     Parameters
     ----------
-    ids_from_suffix
-        Whether the suffixes of the photos' names are viewpoint ids, which they are in our own files.
+    is_ours
+        Whether the file is one of ours: then the suffixes of the photos' names are viewpoint ids, and stops take what
+        plans give them.
     """
 
     folder: Folder
-    ids_from_suffix: bool
+    is_ours: bool
     nose_deg: float | None = None
     gimbal_yaw_deg: float = 0.0
     pitch_deg: float | None = None
     lapse: _Trigger | None = None
     triggers: list[_Trigger] = field(default_factory=list)
+    wait_s: float = 0.0
+    turn_deg: float = 0.0
+    needs_rest: bool = False
 
     def points(self) -> list[FlownPoint]:
         """All waypoints, and between them the points where photos are taken on the way.
@@ -133,21 +152,36 @@ class Flight:
         photos: list[ReadPhoto] = []
         for index, waypoint in enumerate(waypoints):
             self._arrive(waypoint, is_first=index == 0, courses=courses)
-            for group in groups.at_waypoint("reachPoint", index):
-                photos += self._act(group.actions)
-            if index == len(waypoints) - 1:
-                flown.append(_with(places[index], photos))
+            released = [
+                photo for group in groups.at_waypoint("reachPoint", index) for photo in self._act(group.actions)
+            ]
+            is_last = index == len(waypoints) - 1
+            stay = self._stay(waypoint, is_end=is_last or index == 0)
+            photos += [replace(photo, in_passing=not stay.is_stop) for photo in released]
+            speed_m_s = waypoint.speed_m_s or self.folder.speed_m_s
+            if is_last:
+                flown.append(replace(places[index], photos=tuple(photos), stay=stay))
                 break
             self._turn_for_leg(waypoint, places[index], courses[index])
             photos += self._begin_leg(groups, index)
             leg = self._leg(waypoint, waypoints[index + 1], places[index], places[index + 1], groups, index)
-            speed_m_s = waypoint.speed_m_s or self.folder.speed_m_s or 1.0
-            flown.append(_with(places[index], photos))
-            on_the_way = self._shots(leg, float(lengths_m[index]), speed_m_s, index)
-            flown += [_with(leg.point_at(fraction), [shot]) for fraction, shot in on_the_way if fraction < 1.0]
+            flown.append(replace(places[index], photos=tuple(photos), stay=stay, speed_m_s=speed_m_s))
+            on_the_way = self._shots(leg, float(lengths_m[index]), speed_m_s or 1.0, index)
+            flown += [
+                replace(leg.point_at(fraction), photos=(shot,), speed_m_s=speed_m_s)
+                for fraction, shot in on_the_way
+                if fraction < 1.0
+            ]
             photos = [shot for fraction, shot in on_the_way if fraction == 1.0]
             self.nose_deg, self.pitch_deg = leg.heading_at(1.0), leg.pitch_at(1.0)
         return flown
+
+    def _stay(self, waypoint: WpmlWaypoint, *, is_end: bool) -> Stay:
+        """What was done at a waypoint since the last was left; at one that is passed, what needs no rest is free."""
+        is_passed = waypoint.turn_mode in FLOWN_THROUGH and not is_end
+        stay = Stay(_cut_m(waypoint) if is_passed else None, self.wait_s, self.turn_deg)
+        needs_rest, self.needs_rest, self.wait_s, self.turn_deg = self.needs_rest, False, 0.0, 0.0
+        return Stay(stay.passing_m) if is_passed and not needs_rest else stay
 
     def _arrive(self, waypoint: WpmlWaypoint, *, is_first: bool, courses: Sequence[float | None]) -> None:
         """Set the heading that a waypoint itself demands; the first one is reached looking along its leg."""
@@ -169,12 +203,12 @@ class Flight:
         """Actions and triggers that begin with the leg from waypoint `index`; the photos taken there and then."""
         photos: list[ReadPhoto] = []
         for group in groups.on_leg("betweenAdjacentPoints", index):
-            photos += self._act(group.actions)
+            photos += self._in_flight(group.actions)
         for name, in_seconds in (("multipleTiming", True), ("multipleDistance", False)):
             for group in groups.on_leg(name, index):
                 shoots = any(action.func in PHOTO_FUNCS for action in group.actions)
                 if group.start_index == index and shoots and group.trigger_param and group.end_index is not None:
-                    photos += self._act(group.actions)
+                    photos += self._in_flight(group.actions)
                     trigger = _Trigger(group.actions, group.trigger_param, in_seconds, group.end_index)
                     self.triggers.append(trigger)
         return photos
@@ -208,14 +242,27 @@ class Flight:
         shots: list[tuple[float, ReadPhoto]] = []
         for fraction, actions in sorted(due, key=lambda shot: shot[0]):
             self.nose_deg, self.pitch_deg = leg.heading_at(fraction), leg.pitch_at(fraction)
-            shots += [(fraction, photo) for photo in self._act(actions)]
+            shots += [(fraction, photo) for photo in self._in_flight(actions)]
         return shots
+
+    def _in_flight(self, actions: Sequence[Action]) -> list[ReadPhoto]:
+        """Do actions that cost no time, as the aircraft flies on; the photos they take."""
+        before = self.wait_s, self.turn_deg, self.needs_rest
+        photos = self._act(actions)
+        self.wait_s, self.turn_deg, self.needs_rest = before
+        return [replace(photo, in_passing=True) for photo in photos]
 
     def _act(self, actions: Sequence[Action]) -> list[ReadPhoto]:
         """Do actions in order; the photos they take."""
         photos: list[ReadPhoto] = []
         for action in actions:
-            if action.func == "rotateYaw":
+            before = self.nose_deg, self.pitch_deg
+            if action.func in PHOTO_FUNCS or action.func in CAMERA_FUNCS:
+                self.wait_s += RELEASE_S
+            self.needs_rest |= action.func in RESTING_FUNCS
+            if action.func == "hover":
+                self.wait_s += max(0.0, action.number("hoverTime") or 0.0)
+            elif action.func == "rotateYaw":
                 self.nose_deg = action.number("aircraftHeading")
             elif action.func == "gimbalRotate":
                 self._rotate_gimbal(action)
@@ -229,6 +276,7 @@ class Flight:
                 photos.append(self._photo(""))
             elif action.func == "stopTimeLapse":
                 self.lapse = None
+            self.turn_deg += _turned_deg(before, (self.nose_deg, self.pitch_deg))
         return photos
 
     def _rotate_gimbal(self, action: Action) -> None:
@@ -245,7 +293,7 @@ class Flight:
 
     def _photo(self, suffix: str) -> ReadPhoto:
         heading = None if self.nose_deg is None else wrap_heading_deg(self.nose_deg + self.gimbal_yaw_deg)
-        return ReadPhoto(heading, self.pitch_deg, suffix if self.ids_from_suffix else "")
+        return ReadPhoto(heading, self.pitch_deg, suffix if self.is_ours else "")
 
     def _oriented_photo(self, action: Action) -> ReadPhoto:
         """A photo that says all its angles itself; the gimbal's yaw counts from north."""
@@ -263,5 +311,15 @@ def _place(waypoint: WpmlWaypoint) -> FlownPoint:
     return FlownPoint(waypoint.lat_deg, waypoint.lon_deg, waypoint.execute_height_m)
 
 
-def _with(place: FlownPoint, photos: Sequence[ReadPhoto]) -> FlownPoint:
-    return FlownPoint(place.lat_deg, place.lon_deg, place.height_m, tuple(photos))
+def _cut_m(waypoint: WpmlWaypoint) -> float:
+    """How far before a waypoint that is flown through the turn begins; as early as it likes on a curved route."""
+    damping_m = waypoint.turn_damping_m or 0.0
+    return damping_m if damping_m > 0.0 else math.inf
+
+
+def _turned_deg(before: tuple[float | None, float | None], after: tuple[float | None, float | None]) -> float:
+    """The longer of the turns of nose and gimbal; what is not known is not counted."""
+    (nose_0, pitch_0), (nose_1, pitch_1) = before, after
+    nose = 0.0 if nose_0 is None or nose_1 is None else abs(wrap_heading_deg(nose_1 - nose_0))
+    pitch = 0.0 if pitch_0 is None or pitch_1 is None else abs(pitch_1 - pitch_0)
+    return max(nose, pitch)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from missions.dji.check import check_dji, is_on_globe
@@ -60,7 +61,10 @@ def _read_wayline(path: Path, parts: DjiParts, folder: Folder, findings: tuple[F
             "save it with fixed heights"
         )
     is_relative = folder.height_mode == "relativeToStartPoint"
-    flown = Flight(folder, ids_from_suffix=_is_ours(parts)).points()
+    is_ours = _is_ours(parts)
+    flown = Flight(folder, is_ours).points()
+    if is_ours:
+        flown = [replace(point, stay=None) for point in flown]
     several = len(parts.waylines.folders) > 1
     return ReadMission(
         name=f"{path.stem}-{(folder.wayline_id or 0) + 1}" if several else path.stem,
@@ -73,6 +77,7 @@ def _read_wayline(path: Path, parts: DjiParts, folder: Folder, findings: tuple[F
         climb_above_takeoff_m=parts.waylines.config.takeoff_security_height_m or 0.0,
         return_above_takeoff_m=parts.waylines.config.rth_height_m or 0.0,
         speed_m_s=folder.speed_m_s,
+        stated_s=None if is_ours else folder.duration_s,
         findings=findings,
     )
 
@@ -82,9 +87,10 @@ def _is_ours(parts: DjiParts) -> bool:
 
 
 def _waypoint(point: FlownPoint, *, is_relative: bool) -> ReadWaypoint:
-    if is_relative:
-        return ReadWaypoint(point.lat_deg, point.lon_deg, height_above_takeoff_m=point.height_m, photos=point.photos)
-    return ReadWaypoint(point.lat_deg, point.lon_deg, height_ellipsoid_m=point.height_m, photos=point.photos)
+    height = {"height_above_takeoff_m" if is_relative else "height_ellipsoid_m": point.height_m}
+    return ReadWaypoint(
+        point.lat_deg, point.lon_deg, photos=point.photos, stay=point.stay, speed_m_s=point.speed_m_s, **height
+    )
 
 
 def _takeoff(parts: DjiParts) -> GeoPoint | None:

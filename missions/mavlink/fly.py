@@ -18,7 +18,7 @@ from missions.legs import bearing_deg, courses_deg, distance_m, point_between, s
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MavlinkFile, MissionItem
 from missions.mavlink.places import RELATIVE_FRAMES, has_place, is_same_place, position_of
-from missions.model import Finish, ReadPhoto, ReadWaypoint
+from missions.model import ON_THE_WAY, Finish, ReadPhoto, ReadWaypoint, Stay
 from planning.errors import MissionError
 from planning.findings import Finding, Severity
 from planning.frames import wrap_heading_deg
@@ -31,6 +31,10 @@ FLOWN_TO = (
     mavlink.MAV_CMD_NAV_LOITER_TIME,
     mavlink.MAV_CMD_NAV_LOITER_TO_ALT,
 )
+ACCEPTANCE_M = 2.0
+"""Radius within which a waypoint is reached where its item names none: ArduPilot's WPNAV_RADIUS and, for multirotors,
+PX4's NAV_ACC_RAD by default."""
+
 TAKEOFFS = (mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_VTOL_TAKEOFF)
 LANDINGS = (mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_VTOL_LAND)
 
@@ -81,10 +85,14 @@ class MavlinkFlight:
         """
         self.autopilot = self.file.autopilot or autopilot_by_items(self.file.items)
         self.speed_m_s = self.file.cruise_speed_m_s
+        self._go_through()
+        self.flown = [_with_passing(point) for point in self.flown]
+
+    def _go_through(self) -> None:
         for number, item in enumerate(self.file.items, 1):
             self._note_simplification(item, number)
             if item.command in FLOWN_TO:
-                self._fly_to(self._position(item, number), self._yaw_of(item))
+                self._fly_to(replace(self._position(item, number), stay=self._stay(item)), self._yaw_of(item))
             elif item.command in TAKEOFFS:
                 self._take_off(item, number)
             elif item.command in LANDINGS:
@@ -95,6 +103,19 @@ class MavlinkFlight:
                 return
             elif item.command in _HANDLERS:
                 _HANDLERS[item.command](self, item, number)
+
+    def _stay(self, item: MissionItem) -> Stay:
+        """How long the vehicle stays at a waypoint; without a hold it flies through, within its acceptance radius."""
+        hold, radius, *_ = item.params
+        if item.command == mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT:
+            return Stay(None, hold) if hold > 0.0 else Stay(math.inf)
+        if item.command == mavlink.MAV_CMD_NAV_WAYPOINT:
+            return Stay(None, hold) if hold > 0.0 else Stay(radius if radius > 0.0 else ACCEPTANCE_M)
+        if item.command == mavlink.MAV_CMD_NAV_LOITER_TIME:
+            return Stay(None, max(0.0, hold) if math.isfinite(hold) else 0.0)
+        if item.command == mavlink.MAV_CMD_NAV_LOITER_TURNS and math.isfinite(hold) and math.isfinite(item.params[2]):
+            return Stay(None, max(0.0, hold) * 2.0 * math.pi * abs(item.params[2]) / (self.speed_m_s or 1.0))
+        return Stay()
 
     def _note_simplification(self, item: MissionItem, number: int) -> None:
         text = NOT_FLOWN.get(item.command)
@@ -115,7 +136,7 @@ class MavlinkFlight:
 
     def _take_off(self, item: MissionItem, number: int) -> None:
         if self.file.home is not None or has_place(item):
-            self.flown.append(self._position(item, number))
+            self.flown.append(replace(self._position(item, number), stay=Stay()))
         if item.frame in RELATIVE_FRAMES and math.isfinite(item.params[6]):
             self.climb_m = item.params[6]
 
@@ -124,7 +145,8 @@ class MavlinkFlight:
         self.finish = Finish.LAND
         if self.flown and has_place(item):
             ground = self._position(item, number)
-            self._fly_to(replace(self.flown[-1], lat_deg=ground.lat_deg, lon_deg=ground.lon_deg, photos=()), None)
+            there = replace(self.flown[-1], lat_deg=ground.lat_deg, lon_deg=ground.lon_deg, photos=(), stay=Stay())
+            self._fly_to(there, None)
 
     def _fly_to(self, end: ReadWaypoint, yaw_deg: float | None) -> None:
         start = self.flown[-1] if self.flown else None
@@ -134,11 +156,18 @@ class MavlinkFlight:
         wishes = (self.wanted_yaw_deg, yaw_deg, course_deg, self.nose_deg)
         self.nose_deg = next((wish for wish in wishes if wish is not None), None)
         self.wanted_yaw_deg = None
+        if start is not None:
+            self.flown[-1] = start = replace(start, speed_m_s=self.speed_m_s)
         if start is not None and self.trigger is not None:
             self.flown += self._shots_between(start, end, self.trigger)
-        # A waypoint where the aircraft already is adds nothing but perhaps another photo there.
+        # A waypoint where the aircraft already is adds nothing but perhaps another photo there, and a hold.
         if not self.flown or not is_same_place(self.flown[-1], end):
             self.flown.append(end)
+        elif end.stay is not None and end.stay.is_stop:
+            here = self.flown[-1].stay or Stay()
+            self.flown[-1] = replace(self.flown[-1], stay=Stay(None, here.wait_s + end.stay.wait_s))
+        elif self.flown[-1].stay == ON_THE_WAY:
+            self.flown[-1] = replace(self.flown[-1], stay=end.stay)
 
     def _shots_between(self, start: ReadWaypoint, end: ReadWaypoint, trigger: _Trigger) -> list[ReadWaypoint]:
         """Points of a leg where the trigger releases the camera, each with its photo."""
@@ -166,7 +195,8 @@ class MavlinkFlight:
             point = ReadWaypoint(lat_deg, lon_deg, height_ellipsoid_m=(end.height_ellipsoid_m or 0.0) - below_m)
         else:
             point = ReadWaypoint(lat_deg, lon_deg, height_above_takeoff_m=end.height_above_takeoff_m - below_m)
-        return replace(point, photos=(self._photo(point),))
+        photo = replace(self._photo(point), in_passing=True)
+        return replace(point, photos=(photo,), stay=ON_THE_WAY, speed_m_s=self.speed_m_s)
 
     # Aiming ---------------------------------------------------------------------------------------------------------
 
@@ -244,6 +274,9 @@ class MavlinkFlight:
         """NAV_DELAY: the aircraft stays, and a yaw that was asked for is reached here."""
         if self.wanted_yaw_deg is not None:
             self.nose_deg, self.wanted_yaw_deg = self.wanted_yaw_deg, None
+        if self.flown and item.params[0] > 0.0:
+            here = self.flown[-1].stay or Stay()
+            self.flown[-1] = replace(self.flown[-1], stay=Stay(None, here.wait_s + item.params[0], here.turn_deg))
 
     def change_speed(self, item: MissionItem, number: int) -> None:
         """DO_CHANGE_SPEED."""
@@ -318,6 +351,13 @@ _HANDLERS: dict[int, Callable[[MavlinkFlight, MissionItem, int], None]] = {
     mavlink.MAV_CMD_DO_SET_CAM_TRIGG_DIST: MavlinkFlight.trigger_distance,
     mavlink.MAV_CMD_DO_SET_CAM_TRIGG_INTERVAL: MavlinkFlight.trigger_interval,
 }
+
+
+def _with_passing(point: ReadWaypoint) -> ReadWaypoint:
+    """A waypoint whose photos are taken in passing, if the vehicle does not stop there."""
+    if point.stay is None or point.stay.is_stop or not point.photos:
+        return point
+    return replace(point, photos=tuple(replace(photo, in_passing=True) for photo in point.photos))
 
 
 def autopilot_by_items(items: tuple[MissionItem, ...]) -> Autopilot | None:

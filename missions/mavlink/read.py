@@ -39,7 +39,7 @@ def read_mavlink(path: Path, file: MavlinkFile, file_format: FileFormat) -> Read
         height_reference=HeightReference.ABOVE_TAKEOFF if is_relative else HeightReference.AMSL,
         finish=flight.finish,
         climb_above_takeoff_m=flight.climb_m,
-        speed_m_s=flight.speed_m_s,
+        speed_m_s=file.cruise_speed_m_s or flight.speed_m_s,
         findings=(*map(_as_remark, checks), *flight.findings, *_on_rally(file)),
     )
 

@@ -34,8 +34,8 @@ Pose = tuple[Vec3, float, float]
 
 Leg = tuple[Vec3, Vec3]
 
-FlightKey = tuple[tuple[Vec3, ...], tuple[Pose, ...]]
-"""A path and the photos taken along it."""
+FlightKey = tuple[tuple[Vec3, ...], tuple[Pose, ...], tuple[int, ...]]
+"""A path, the photos taken along it, and the places in their order of those that are taken in passing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,7 +113,9 @@ def legs_of(sortie: Sortie) -> list[Leg]:
 
 def flight_key(sortie: Sortie, by_id: Mapping[str, Viewpoint]) -> FlightKey:
     """What decides how long a sortie takes."""
-    return sortie.path_enu_m, tuple(pose_of(by_id[viewpoint_id]) for viewpoint_id in sortie.viewpoint_ids)
+    poses = tuple(pose_of(by_id[viewpoint_id]) for viewpoint_id in sortie.viewpoint_ids)
+    passing = frozenset(sortie.in_passing_ids)
+    return sortie.path_enu_m, poses, tuple(k for k, name in enumerate(sortie.viewpoint_ids) if name in passing)
 
 
 def measure(plan: Plan, space: FreeSpace, model: CoverageModel, known: Measures = NOTHING_KNOWN) -> Measures:
@@ -212,6 +214,7 @@ def corner_stretches(path: FlightPath) -> FlightPath:
     Nothing else differs between stopping at each corner and flying through: a flight of hundreds of photos has a few
     such stretches, and they stay as they are when a viewpoint elsewhere is edited.
     """
+    path = path.without_passed()
     stops = np.flatnonzero(path.is_stop)
     n_legs = np.diff(stops)
     kept = np.repeat(n_legs > 1, n_legs)

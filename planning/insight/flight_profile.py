@@ -111,13 +111,16 @@ def sortie_profile(plan: Plan, sortie: Sortie) -> FlightProfile | None:
     )
     if timed is None:
         return None
-    flown, at_photos = timed
+    passing, at_photos = timed
+    photos_s = (stopping_times_s(passing, limits) + passing.hover_s)[at_photos]
+    flown = passing.without_passed()
     arrival = stopping_times_s(flown, limits)
     lengths = np.linalg.norm(flown.deltas_enu_m, axis=1)
     ramps = rest_to_rest_ramps(lengths, slowed_by_turns_m_s(flown, limits), limits.acceleration_m_s2, limits.jerk_m_s3)
     departure = arrival + flown.hover_s
     # Of a photo stop, turning comes first, then settling, the photo, and waiting for the camera.
-    photo_s = departure[at_photos] - photo_stop_s(plan.aircraft, plan.rules) + plan.rules.settle_s
+    stop_s = photo_stop_s(plan.aircraft, plan.rules) - plan.rules.settle_s
+    photo_s = photos_s - np.where(passing.hover_s[at_photos] > 0.0, stop_s, 0.0)
     return FlightProfile(flown.vertices_enu_m, arrival, departure, ramps, photo_s, sortie.viewpoint_ids)
 
 

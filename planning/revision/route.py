@@ -69,4 +69,5 @@ def redrawn(
     found = ways.between([(place_of(a, after), place_of(b, after)) for a, b in missing])
     legs = {**known, **dict(zip(missing, found, strict=True))}
     path = [*legs[pairs[0]], *itertools.chain.from_iterable(legs[pair][1:] for pair in pairs[1:])]
-    return Sortie(viewpoint_ids, tuple(path), sortie.length_m, sortie.duration_s)
+    passing = tuple(each for each in sortie.in_passing_ids if each in viewpoint_ids and each not in is_moved)
+    return Sortie(viewpoint_ids, tuple(path), sortie.length_m, sortie.duration_s, passing)

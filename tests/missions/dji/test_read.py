@@ -152,7 +152,7 @@ def photos(*waypoints: WpmlWaypoint, start: tuple[Action, ...] = ()) -> list[tup
     """Photos with the distance flown north or east from the last waypoint passed, metres."""
     folder = Folder("", 0, "WGS84", 5.0, None, None, "", start, waypoints)
     found = []
-    for point in Flight(folder, ids_from_suffix=False).points():
+    for point in Flight(folder, is_ours=False).points():
         from_start_m = distance_m(PLACES[0][0], PLACES[0][1], point.lat_deg, point.lon_deg)
         found += [(round(from_start_m, 1), photo) for photo in point.photos]
     return found
