@@ -196,13 +196,13 @@ def test_the_check_of_a_plan_reckons_no_stop_for_them() -> None:
         (found,) = [f for f in check_plan(each, model) if f.code == "endurance"]
         needed.append(found.value)
     assert needed[0] == pytest.approx(plan.sorties[0].duration_s)
-    assert needed[1] > needed[0] + 10 * 3.0
+    assert needed[1] > needed[0] + 10 * 2.5
 
 
 def test_files_of_ours_stop_for_them_and_say_so() -> None:
     plan = survey()
     (mission,) = missions_from_plan(plan, plan.origin, plan.home_enu_m)
-    assert mission.duration_s > plan.sorties[0].duration_s + 10 * 3.0
+    assert mission.duration_s > plan.sorties[0].duration_s + 10 * 2.5
     encoded = encode(plan, plan.origin, plan.home_enu_m, FileFormat.CSV)
     (told,) = [finding for finding in encoded.findings if finding.code == "in-passing"]
     assert f"{len(plan.viewpoints)} photos" in told.message

@@ -235,4 +235,14 @@ SENTENCES = (
         "Sentences",
         "the file has {0} rally points, which belong to a site and not to a plan; mark them there",
     ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the file states {0} s for its route, and by what it tells the aircraft to do it takes {1} s; with "
+        "the way there and back, take-off and landing the flight takes {2} s",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} photos that the imported mission takes in passing are stops in these files, so the sortie takes "
+        "{1} s instead of {2} s",
+    ),
 )
