@@ -6273,6 +6273,14 @@ Take it over?</source>
         <translation>Die Datei hat {0} Rally-Punkte, die zu einem Standort gehören und nicht zu einem Plan; dort setzen</translation>
     </message>
     <message>
+        <source>the file states {0} s for its route, and by what it tells the aircraft to do it takes {1} s; with the way there and back, take-off and landing the flight takes {2} s</source>
+        <translation>die Datei gibt für ihre Route {0} s an, und nach dem, was sie dem Fluggerät aufträgt, dauert sie {1} s; mit Hin- und Rückweg, Start und Landung dauert der Flug {2} s</translation>
+    </message>
+    <message>
+        <source>{0} photos that the imported mission takes in passing are stops in these files, so the sortie takes {1} s instead of {2} s</source>
+        <translation>{0} Fotos, die die importierte Mission im Vorbeiflug macht, sind in diesen Dateien Halte, sodass der Einzelflug {1} s statt {2} s dauert</translation>
+    </message>
+    <message>
         <source>starts</source>
         <translation>beginnt</translation>
     </message>
