@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
-import struct
+import stat
 import tempfile
 import threading
 from collections.abc import Iterator, Sequence
@@ -25,7 +25,6 @@ BUSY_S = 5.0
 FAILURES = (sqlite3.Error, UnicodeError, OverflowError)
 """What a damaged file makes Python's module raise: it decodes messages and texts as UTF-8."""
 
-HEADER = b"SQLite format 3\x00"
 MAX_FILE_BYTES = 64 * 2**30
 
 
@@ -48,32 +47,30 @@ class Database:
     def __init__(self, path: Path, writing: bool = False, busy_s: float = BUSY_S, steps: Sequence[str] = STEPS) -> None:
         self.path, self.writing, self._busy_s = path, writing, busy_s
         self._lock = threading.RLock()
-        _check_file(path, len(steps), writing)
+        _check_place(path, writing)
         with self._in_words():
-            if not writing:
-                _take_back(path, busy_s)
-            self._connection = _connected(path, "rw" if writing else "ro", busy_s)
             try:
-                self._prepare(steps)
-            except BaseException as error:
-                self._connection.close()
-                if isinstance(error, InputError):
-                    raise InputError(f"{path}: {error}") from error
-                raise
+                self._connection = self._opened(steps)
+            except sqlite3.OperationalError as error:
+                if not _was_interrupted(error):
+                    raise
+                _take_back(path, busy_s)
+                self._connection = self._opened(steps)
 
-    def _prepare(self, steps: Sequence[str]) -> None:
-        check_version(version_of(self._connection), len(steps))
-        check_schema(self._connection, steps)
-        if not self.writing:
-            if version_of(self._connection) < len(steps):
-                raise InputError(
-                    f"the records have the older version {version_of(self._connection)}; opening them for "
-                    "writing, as 'records FOLDER make' does, brings them up to date"
-                )
-            return
-        # Somebody's tool may have switched it; see the module's text.
-        self._connection.execute("PRAGMA journal_mode = DELETE")
-        migrate(self._connection, steps)
+    def _opened(self, steps: Sequence[str]) -> sqlite3.Connection:
+        connection = _connected(self.path, "rw" if self.writing else "ro", self._busy_s)
+        try:
+            _check_content(connection, self.path, steps, self.writing)
+            if self.writing:
+                # Somebody's tool may have switched it; see the module's text.
+                connection.execute("PRAGMA journal_mode = DELETE")
+                migrate(connection, steps)
+        except BaseException as error:
+            connection.close()
+            if isinstance(error, InputError):
+                raise InputError(f"{self.path}: {error}") from error
+            raise
+        return connection
 
     def close(self) -> None:
         """Close the file; what was not committed is gone."""
@@ -88,11 +85,16 @@ class Database:
         InputError
             The file is damaged, or somebody wrote for too long.
         """
-        with self._lock:
+        with self._lock, self._in_words():
             try:
                 return self._connection.execute(sql, values).fetchall()
-            except FAILURES as error:
-                raise _refusal(self.path, error, self._busy_s) from error
+            except sqlite3.OperationalError as error:
+                if self.writing or not _was_interrupted(error):
+                    raise
+                # A writer was killed since this file was opened. No row of this transaction was read before: while one
+                # reads, nobody writes.
+                _take_back(self.path, self._busy_s)
+                return self._connection.execute(sql, values).fetchall()
 
     def run(self, sql: str, values: Sequence[Any] = ()) -> int:
         """Run one statement that changes something, within `transaction`; returns the id of a row it put in.
@@ -212,57 +214,78 @@ def _connected(path: Path, mode: str, busy_s: float) -> sqlite3.Connection:
     return connection
 
 
+def _was_interrupted(error: sqlite3.Error) -> bool:
+    """Whether a read failed over what a killed writer left, which those who only read cannot take back."""
+    return getattr(error, "sqlite_errorname", "") in ("SQLITE_READONLY_ROLLBACK", "SQLITE_READONLY_RECOVERY")
+
+
 def _take_back(path: Path, busy_s: float) -> None:
-    """Take back what an interrupted writer left, which those who only read cannot; a writer at work is left alone."""
-    has_journal = path.with_name(f"{path.name}-journal").exists()
-    if has_journal and os.access(path, os.W_OK) and os.access(path.parent, os.W_OK):
-        connection = _connected(path, "rw", busy_s)
-        try:
-            connection.execute("PRAGMA user_version").fetchall()
-        finally:
-            connection.close()
-
-
-def _check_file(path: Path, known: int, writing: bool) -> None:
-    """Refuse by the header alone what is no file of ours: SQLite never sees it."""
+    """Take back what an interrupted writer left; a writer at work is waited for."""
+    connection = _connected(path, "rw", busy_s)
     try:
-        if path.is_dir():
-            raise InputError(f"{path}: is a folder; expected a file with records")
-        if not path.exists():
-            raise InputError(f"{path}: there are no records yet; make them with 'records FOLDER make --objects SITE'")
-        if not path.is_file():
-            raise InputError(f"{path}: expected a file with records, found a device or a pipe")
-        size = path.stat().st_size
-        with path.open("rb") as file:
-            head = file.read(100)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
-    if not size:
+        connection.execute("PRAGMA user_version").fetchall()
+    finally:
+        connection.close()
+
+
+def _check_place(path: Path, writing: bool) -> None:
+    """Refuse what is no regular file.
+
+    It is not opened for that, here or anywhere else but by SQLite: what one reads without SQLite's lock may be half of
+    a change, and to close a file ends all locks that the same process has on it.
+    """
+    try:
+        status = path.stat()
+    except FileNotFoundError:
+        raise InputError(
+            f"{path}: there are no records yet; make them with 'records FOLDER make --objects SITE'"
+        ) from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from error
+    if stat.S_ISDIR(status.st_mode):
+        raise InputError(f"{path}: is a folder; expected a file with records")
+    if not stat.S_ISREG(status.st_mode):
+        raise InputError(f"{path}: expected a file with records, found a device or a pipe")
+    if not status.st_size:
         raise InputError(f"{path}: the file is empty; take a copy of it back")
-    if not head.startswith(HEADER[:size]) or (len(head) == 100 and not head.startswith(HEADER)):
-        raise InputError(f"{path}: expected records (a SQLite file), found something else")
-    if len(head) < 100 or size > MAX_FILE_BYTES:
-        raise InputError(f"{path}: the file is cut off or too large; take a copy of it back")
-    page, changed, pages, valid, version, application = _header(head)
-    if application != APPLICATION_ID:
-        raise InputError(f"{path}: is a SQLite file of another program, not records of ours")
-    try:
-        check_version(version, known)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
-    # A journal beside it belongs to a write that was interrupted: SQLite takes it back, lengths and all.
-    if changed == valid and size < page * pages and not path.with_name(f"{path.name}-journal").exists():
-        raise InputError(f"{path}: the file is cut off ({size} of {page * pages} bytes); take a copy of it back")
+    if status.st_size > MAX_FILE_BYTES:
+        raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**30} GiB; take a copy of it back")
     if writing and not os.access(path, os.W_OK):
         raise InputError(f"{path}: the file is write-protected")
 
 
-def _header(head: bytes) -> tuple[int, int, int, int, int, int]:
-    """Page size, change counter, pages, counter that the pages hold for, user version and application id."""
-    (page,) = struct.unpack_from(">H", head, 16)
-    changed, pages = struct.unpack_from(">II", head, 24)
-    version, application, valid = (struct.unpack_from(">i", head, at)[0] for at in (60, 68, 92))
-    return (65536 if page == 1 else page), changed, pages, valid, version, application
+def _check_content(connection: sqlite3.Connection, path: Path, steps: Sequence[str], writing: bool) -> None:
+    """Refuse what is none of ours, newer or cut off, all of it looked at in one state of the file.
+
+    Raises
+    ------
+    InputError
+        As said, without the file's name.
+    sqlite3.Error
+        SQLite finds it damaged.
+    """
+    connection.execute("BEGIN")
+    try:
+        application = connection.execute("PRAGMA application_id").fetchone()[0]
+        if application != APPLICATION_ID:
+            raise InputError("is a SQLite file of another program, not records of ours")
+        version = version_of(connection)
+        check_version(version, len(steps))
+        check_schema(connection, steps)
+        if not writing and version < len(steps):
+            raise InputError(
+                f"the records have the older version {version}; opening them for writing, as 'records FOLDER make' "
+                "does, brings them up to date"
+            )
+        n_pages, page_bytes = (
+            connection.execute(f"PRAGMA {name}").fetchone()[0] for name in ("page_count", "page_size")
+        )
+        # SQLite misses whole pages, not a last one that is cut off. Pages of a write-ahead log are in the log.
+        size, wanted = path.stat().st_size, n_pages * page_bytes
+        if size < wanted and connection.execute("PRAGMA journal_mode").fetchone()[0] != "wal":
+            raise InputError(f"the file is cut off ({size} of {wanted} bytes); take a copy of it back")
+    finally:
+        connection.execute("ROLLBACK")
 
 
 def _refusal(path: Path, error: Exception, busy_s: float) -> InputError:
@@ -274,8 +297,8 @@ def _refusal(path: Path, error: Exception, busy_s: float) -> InputError:
         "SQLITE_READONLY": "the file or its folder is write-protected, or a write was interrupted here; make the "
         "folder writable and open it for writing",
         "SQLITE_CANTOPEN": "cannot be opened; is its folder there, and may it be written?",
-        "SQLITE_CORRUPT": "the file is damaged; take a copy of it back",
-        "SQLITE_NOTADB": "expected records (a SQLite file), found something else",
+        "SQLITE_CORRUPT": "the file is damaged or cut off; take a copy of it back",
+        "SQLITE_NOTADB": "expected records (a SQLite file), found something else or a file that is cut off",
         "SQLITE_IOERR": "the disk does not answer as it should; nothing was changed",
         "SQLITE_TOOBIG": "a value is too large",
     }

@@ -218,6 +218,81 @@ def test_a_killed_writer_leaves_the_old_state_whole(tmp_path):
         assert search(again, "crack") == ()
 
 
+GROWING = """
+import itertools, sys
+from pathlib import Path
+from reconstruction.records.book import RecordBook
+from reconstruction.records.entries import Inspection
+with RecordBook(Path(sys.argv[1]), True, "Chan") as book:
+    print("open", flush=True)
+    for number in itertools.count():
+        with book.changing("growing") as changes:
+            for line in range(40):
+                changes.put(Inspection(sys.argv[2], "2026-01-01", note=f"{number} {line} " + "crack " * 200))
+        book.undo()
+"""
+
+
+def test_books_opened_beside_a_process_that_writes_all_the_time_are_never_called_damaged(tmp_path):
+    with new_book(tmp_path) as book:
+        path = book.path
+    command = [sys.executable, "-c", GROWING, str(path), PANES[0]]
+    writer = subprocess.Popen(command, stdout=subprocess.PIPE, cwd=ROOT)
+    try:
+        assert writer.stdout.readline() == b"open\n"
+        states = set()
+        for _ in range(400):
+            with RecordBook(path) as reader:
+                states.add(len(reader.entries(Inspection)))
+        assert states <= {0, 40}, "a change is seen whole or not at all"
+        assert writer.poll() is None
+    finally:
+        writer.kill()
+        writer.communicate()
+
+
+OTHER_WRITER = """
+import sys
+from pathlib import Path
+from planning.errors import InputError
+from reconstruction.records.book import RecordBook
+from reconstruction.records.entries import Attribute
+with RecordBook(Path(sys.argv[1]), True, "Lee", busy_s=0.05) as book:
+    try:
+        book.put(Attribute(sys.argv[2], "maker", "b"))
+    except InputError as error:
+        print(error)
+"""
+
+
+def test_a_look_at_the_book_leaves_the_locks_of_the_same_process_alone(book):
+    # POSIX locks of a process end when it closes any descriptor of the file, SQLite's or not.
+    with book.changing("long") as changes:
+        changes.put(Attribute(PANES[0], "maker", "a"))
+        RecordBook(book.path).close()
+        with pytest.raises(InputError, match="there are no records"):
+            RecordBook(book.path.with_name("none")).close()
+        command = [sys.executable, "-c", OTHER_WRITER, str(book.path), PANES[0]]
+        said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
+        assert "another program is writing the records" in said
+    assert [entry.value for entry in book.entries(Attribute)] == ["a"]
+
+
+def test_readers_that_were_open_go_on_when_a_writer_is_killed(tmp_path):
+    with new_book(tmp_path) as book:
+        book.put(Attribute(PANES[0], "maker", "old"))
+    with RecordBook(book.path) as reader:
+        before = state(reader)
+        command = [sys.executable, "-c", WRITER, str(book.path), PANES[0]]
+        writer = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT)
+        assert writer.stdout.readline() == b"written\n"
+        os.kill(writer.pid, signal.SIGKILL)
+        writer.communicate()
+        assert book.path.with_name(f"{FILE}-journal").exists()
+        with reader.database.snapshot():
+            assert state(reader) == before
+
+
 def test_readers_leave_a_writer_at_work_alone(book):
     book.database.rows("PRAGMA cache_size = 5")
     with book.changing("long") as changes:
