@@ -31,7 +31,7 @@ from groundstation.services.project_file import is_project
 from groundstation.services.project_lock import ProjectLock
 from groundstation.services.recovery import Recovery, discard_recovery, find_recovery, find_unsaved, recover
 from groundstation.services.session import Session
-from groundstation.services.settings import Settings, read_settings, settings_path, write_settings
+from groundstation.services.settings import Settings, settings_at_start, settings_path, write_settings
 from groundstation.services.worker import Worker
 from planning.errors import GroundStationError, InputError
 from planning.findings import Severity
@@ -57,7 +57,8 @@ class Desk(QObject):
         super().__init__()
         self._application = application
         self._questions = Questions() if questions is None else questions
-        self._settings, self._settings_problem = _read_settings()
+        self._settings_problems: list[str] = []
+        self._settings = settings_at_start(settings_path(), self._settings_problems.append)
         self._translations = Translations(application)
         self._garbage = GarbageCollector(self, lambda: self.workspace.is_busy)
         self._own_worker = Worker() if worker is None else None
@@ -98,13 +99,8 @@ class Desk(QObject):
         threading.Thread(target=self._worker.start, name="start-worker", daemon=True).start()
 
     def _after_first_paint(self) -> None:
-        if self._settings_problem:
-            self.workspace.say(
-                Severity.WARNING,
-                self.tr("{0}. The settings of the first start are used; the file stays as it is.").format(
-                    self.workspace.words(self._settings_problem)
-                ),
-            )
+        for problem in self._settings_problems:
+            self.workspace.say(Severity.WARNING, self.workspace.words(problem))
         if self._settings.map_tiles:
             self.window.stage.set_tiles(Path(self._settings.map_tiles))
         if self.workspace.session.folder is None:
@@ -178,8 +174,6 @@ class Desk(QObject):
         apply_theme(self._application, self._settings.theme, self._settings.text_scale)
 
     def _keep_settings(self) -> None:
-        if self._settings_problem:
-            return  # the user's file has mistakes that are not ours to overwrite
         try:
             write_settings(settings_path(), self._settings)
         except InputError as error:
@@ -402,13 +396,6 @@ class Desk(QObject):
             self._own_worker.close()
         self._runner.shutdown()
         self._garbage.close()
-
-
-def _read_settings() -> tuple[Settings, str]:
-    try:
-        return read_settings(settings_path()), ""
-    except InputError as error:
-        return Settings(), str(error)
 
 
 def _first_document(settings: Settings) -> Document:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from groundstation.services.kept import read_kept
+from groundstation.services.kept import Tell, read_kept
 from groundstation.services.settings import settings_path
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.link import DEFAULT_BAUD
@@ -71,6 +71,6 @@ def choice_path() -> Path:
     return settings_path().with_name("connection.toml")
 
 
-def read_choice(path: Path) -> ConnectionChoice:
-    """The last choice; the first one where none was kept, or what was kept cannot be read any more."""
-    return read_kept(path, ConnectionChoice())
+def read_choice(path: Path, tell: Tell = lambda _: None) -> ConnectionChoice:
+    """The last choice, as `read_kept`; the first one where none was kept."""
+    return read_kept(path, ConnectionChoice(), tell)

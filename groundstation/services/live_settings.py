@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from groundstation.services.kept import read_kept
+from groundstation.services.kept import Tell, read_kept
 from groundstation.services.settings import settings_path
 
 
@@ -30,6 +30,6 @@ def flight_settings_path() -> Path:
     return settings_path().with_name("flight.toml")
 
 
-def read_flight_settings(path: Path) -> FlightSettings:
-    """What was kept."""
-    return read_kept(path, USUAL)
+def read_flight_settings(path: Path, tell: Tell = lambda _: None) -> FlightSettings:
+    """What was kept, as `read_kept`."""
+    return read_kept(path, USUAL, tell)

@@ -13,9 +13,11 @@ from typing import Any
 
 import msgspec
 
+from groundstation.services.kept import Tell, or_first
 from groundstation.services.units import UnitSystem
 from planning.catalogue import DEFAULT_PROFILE
 from planning.errors import InputError
+from planning.files import real_path
 from planning.json_file import read_toml, to_record, write_atomically
 
 CONFIG_VARIABLE = "REFLIGHT_CONFIG_DIR"
@@ -95,7 +97,7 @@ class Settings:
 
     def with_recent(self, folder: Path) -> Settings:
         """With a project as the latest one; a folder whose name is no valid text is not kept, TOML cannot hold it."""
-        name = str(folder.resolve())
+        name = str(real_path(folder))
         if name.encode(errors="replace").decode() != name:
             return self
         others = tuple(known for known in self.recent_projects if known != name)
@@ -134,9 +136,12 @@ def read_settings(path: Path) -> Settings:
     InputError
         The file cannot be read or is not TOML, a key is unknown, or a value has the wrong type or is out of range.
     """
-    if not path.exists():
+    try:
+        content = read_toml(path, dict[str, Any])
+    except InputError:
+        if os.path.lexists(path):
+            raise
         return Settings()
-    content = read_toml(path, dict[str, Any])
     known = [setting.name for setting in fields(Settings)]
     for key, value in content.items():
         if key not in known:
@@ -146,6 +151,11 @@ def read_settings(path: Path) -> Settings:
         if key in CHOICES and value not in list(CHOICES[key]):
             raise InputError(f"{path}: {key}: expected {' or '.join(CHOICES[key])}, got {value!r}")
     return to_record(content, Settings, path)
+
+
+def settings_at_start(path: Path, tell: Tell) -> Settings:
+    """Settings for a program that starts: those of the first start where the file is damaged, see `read_kept`."""
+    return or_first(path, lambda: read_settings(path), Settings(), tell)
 
 
 def write_settings(path: Path, settings: Settings, *, replace_unreadable: bool = False) -> None:

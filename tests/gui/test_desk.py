@@ -238,15 +238,25 @@ def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, mak
     assert open_project(tmp_path / "project").document.site.site.name == "roof"
 
 
-def test_settings_with_a_mistake_are_named_and_left_alone(application, make_desk, tmp_path):
+def test_damaged_settings_are_told_kept_aside_and_the_window_opens_as_at_first(application, make_desk, tmp_path):
     config = tmp_path / "config"
     config.mkdir()
-    (config / "settings.toml").write_text('theme = "drak"\n')
+    damaged = {
+        "settings": b'theme = "drak"\n', "flight": b"a = " + b"[" * 100_000, "connection": b"a." * 100_000 + b"a = 1",
+    }  # fmt: skip
+    for name, content in damaged.items():
+        (config / f"{name}.toml").write_bytes(content)
     desk = make_desk()
+    desk.window.show_tab("fly")
     turn_until_idle(application, desk)
-    assert "drak" in desk.window.messages.texts()
+    turn_until(application, lambda: "connection.damaged.toml" in desk.window.messages.texts())
+    said = desk.window.messages.texts()
+    assert "drak" in said
+    for name, content in damaged.items():
+        assert f"{name}.damaged.toml" in said
+        assert (config / f"{name}.damaged.toml").read_bytes() == content
     desk.choose(text_scale=1.15)
-    assert (config / "settings.toml").read_text() == 'theme = "drak"\n'
+    assert "text_scale = 1.15" in (config / "settings.toml").read_text()
     desk.choose(text_scale=1.0)
 
 

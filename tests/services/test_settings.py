@@ -1,6 +1,8 @@
 """Settings: they survive, mistakes are refused by name, and a file with mistakes is not written over."""
 
 import math
+import os
+import stat
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.services.live_choice import ConnectionChoice, read_choice
+from groundstation.services.live_settings import USUAL, read_flight_settings
 from groundstation.services.settings import (
     MAX_RECENT_PROJECTS,
     Language,
@@ -16,6 +20,7 @@ from groundstation.services.settings import (
     Theme,
     data_folder,
     read_settings,
+    settings_at_start,
     settings_path,
     write_settings,
 )
@@ -143,3 +148,55 @@ def test_the_header_names_every_choice(tmp_path):
     for kind in (Theme, Language, UnitSystem):
         assert ", ".join(kind) in text
     assert set(tomllib.loads(text)) == set(Settings.__slots__)
+
+
+def nothing(path):
+    path.symlink_to("nowhere")
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda path: path.write_text("a = " + "[" * 100_000),
+        lambda path: path.write_text("a." * 100_000 + "a = 1"),
+        lambda path: path.write_text("seed = " + "1" * 5000),
+        lambda path: path.write_text("a = 1\n" * 1_000_000),
+        lambda path: path.write_bytes(b"\xff\xfe"),
+        lambda path: path.symlink_to("/dev/zero"),
+        lambda path: path.mkdir(),
+        os.mkfifo,
+        nothing,
+    ],
+)
+def test_a_program_starts_with_damaged_settings_and_keeps_them_aside(tmp_path, damage):
+    for path, read, first in (
+        (tmp_path / "settings.toml", settings_at_start, Settings()),
+        (tmp_path / "flight.toml", read_flight_settings, USUAL),
+        (tmp_path / "connection.toml", read_choice, ConnectionChoice()),
+    ):
+        damage(path)
+        kind = stat.S_IFMT(path.lstat().st_mode)
+        said = []
+        assert read(path, said.append) == first
+        aside = path.with_name(f"{path.stem}.damaged.toml")
+        assert len(said) == 1
+        assert said[0].startswith(f"{path}: ")
+        assert said[0].endswith(f"the damaged file is kept as '{aside}'")
+        assert len(said[0]) < 700
+        assert stat.S_IFMT(aside.lstat().st_mode) == kind
+        assert not os.path.lexists(path)
+        assert read(path, said.append) == first
+        assert len(said) == 1
+    write_settings(tmp_path / "settings.toml", Settings())
+
+
+def test_damaged_settings_that_cannot_be_put_aside_stay(tmp_path):
+    path = tmp_path / "settings.toml"
+    path.write_text("x")
+    aside = tmp_path / "settings.damaged.toml"
+    aside.mkdir()
+    (aside / "kept").touch()
+    said = []
+    assert settings_at_start(path, said.append) == Settings()
+    assert "the file stays as it is" in said[0]
+    assert path.read_text() == "x"

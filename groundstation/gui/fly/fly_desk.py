@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from groundstation.gui.fly.after_flight import AfterFlight
 from groundstation.gui.fly.flight_in_hand import FlightInHand
@@ -92,8 +92,8 @@ class FlyDesk(QObject):
         self._flight_id = 0
         self._case: Case | None = None
         self._preparing_id = 0
-        self.choice = read_choice(choice_path())
-        self.settings = read_flight_settings(flight_settings_path())
+        self.choice = read_choice(choice_path(), self._say_soon)
+        self.settings = read_flight_settings(flight_settings_path(), self._say_soon)
         self.simulation, self.limit = SimulationDesk(workspace, self), ItemLimit(workspace, self)
         self.number = 1
         self.in_hand: FlightInHand | None = None
@@ -225,6 +225,10 @@ class FlyDesk(QObject):
             write_kept(path, record)
         except InputError as error:
             self._say(Severity.WARNING, str(error))
+
+    def _say_soon(self, text: str) -> None:
+        """Say it once there is a window that can show it."""
+        QTimer.singleShot(0, self, lambda: self._say(Severity.WARNING, text))
 
     def _prepare(self, then: Callable[[LiveSortie], None], raised_m: float = 0.0) -> None:
         plan, site_model, number, known = self.plan, self._workspace.document.site, self.number, self._case

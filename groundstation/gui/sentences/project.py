@@ -131,6 +131,8 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "plan '{0}' was removed"),
     QT_TRANSLATE_NOOP("Sentences", "what is asked of the next plan"),
     QT_TRANSLATE_NOOP("Sentences", "; is '{0}' meant?"),
+    QT_TRANSLATE_NOOP("Sentences", "its settings are as at first, and the file stays as it is"),
+    QT_TRANSLATE_NOOP("Sentences", "its settings are as at first again, and the damaged file is kept as '{0}'"),
     QT_TRANSLATE_NOOP("Sentences", "expected one of {0}, found an unknown key{1}"),
     QT_TRANSLATE_NOOP("Sentences", "expected {0}, got {1}"),
     QT_TRANSLATE_NOOP("Sentences", "a building model (.ifc, .gml, .xml, .json, .obj, .ply, .glb or .stl)"),
