@@ -6,6 +6,7 @@ a place in the user's data folder. A save or an orderly close removes it.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import platform
 import shutil
@@ -81,8 +82,16 @@ def unsaved_place() -> ProjectLock:
 
 def give_up_place(place: ProjectLock) -> None:
     """Remove what `unsaved_place` made, after a save as a project or an orderly close."""
+    clear_copy(place.folder / AUTOSAVE_FOLDER)
     place.release()
     shutil.rmtree(place.folder, ignore_errors=True)
+
+
+def clear_copy(place: Path) -> None:
+    """Remove a copy; what is left of one when the program ends meanwhile counts as none."""
+    with contextlib.suppress(OSError):
+        (place / HEADER_FILE).unlink(missing_ok=True)
+    shutil.rmtree(place, ignore_errors=True)
 
 
 class Autosave:
@@ -131,7 +140,7 @@ class Autosave:
         with self._state:
             self._wanted = self._last = None
         with self._disk:
-            shutil.rmtree(self._place, ignore_errors=True)
+            clear_copy(self._place)
 
     def _write_all(self) -> None:
         while True:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
+import time
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
@@ -11,12 +14,15 @@ from groundstation.services.autosave import AUTOSAVE_FOLDER, HEADER_FILE, UNSAVE
 from groundstation.services.document import Document, PlanEntry
 from groundstation.services.project import OpenedProject, open_project
 from groundstation.services.project_file import read_index
-from groundstation.services.project_lock import lock_holder
+from groundstation.services.project_lock import ProjectInUse, lock_holder, lock_project
 from groundstation.services.project_site import same_site
 from groundstation.services.project_store import in_words
 from groundstation.services.settings import data_folder
 from planning.errors import InputError
 from planning.json_file import read_json, to_record
+
+REMAINS_S = 3600.0
+"""A place that was made so long ago is in use, or never will be."""
 
 DAMAGED_FOLDER = ".autosave-damaged"
 
@@ -62,11 +68,58 @@ def find_recovery(folder: Path) -> Recovery | None:
     if holder is not None and not holder.is_this_process:
         return None
     try:
-        header = to_record(read_json(place / HEADER_FILE), AutosaveHeader, place / HEADER_FILE)
-        copy = open_project(place)
+        header, copy = _read(place)
+    except InputError:
+        return _looked_at_again(folder)
+    return _recovery(folder, header, copy)
+
+
+def _read(place: Path) -> tuple[AutosaveHeader, OpenedProject]:
+    header = to_record(read_json(place / HEADER_FILE, names_files=True), AutosaveHeader, place / HEADER_FILE)
+    return header, open_project(place)
+
+
+def _looked_at_again(folder: Path) -> Recovery | None:
+    """What to say of a copy that could not be read: another Reflight may just have been writing or clearing it."""
+    place = folder / AUTOSAVE_FOLDER
+    try:
+        with _held(folder):
+            if not (place / HEADER_FILE).exists():
+                return None
+            header, copy = _read(place)
+    except ProjectInUse:
+        return None
     except InputError as error:
         problem = f"{error}; this copy of unsaved work is damaged and cannot be taken over"
         return Recovery(folder, None, (), False, None, problem)
+    return _recovery(folder, header, copy)
+
+
+@contextlib.contextmanager
+def _held(folder: Path) -> Iterator[None]:
+    """Nobody else writes here meanwhile; where nothing can be written at all, nobody does.
+
+    Raises
+    ------
+    ProjectInUse
+        Another Reflight has it open.
+    """
+    lock = None
+    try:
+        lock = lock_project(folder)
+    except ProjectInUse as error:
+        if not error.holder.is_this_process:
+            raise
+    except InputError:
+        pass
+    try:
+        yield
+    finally:
+        if lock is not None:
+            lock.release()
+
+
+def _recovery(folder: Path, header: AutosaveHeader, copy: OpenedProject) -> Recovery | None:
     changes = _changes(folder, copy)
     if not changes:
         return None
@@ -76,8 +129,10 @@ def find_recovery(folder: Path) -> Recovery | None:
 
 def find_unsaved() -> tuple[Recovery, ...]:
     """Copies of work that never had a project, from the user's data folder, oldest first."""
-    places = sorted((data_folder() / UNSAVED_FOLDER).glob("*"))
-    found = [find_recovery(place) for place in places if place.is_dir()]
+    places = [place for place in sorted((data_folder() / UNSAVED_FOLDER).glob("*")) if place.is_dir()]
+    for place in places:
+        _clear_remains(place)
+    found = [find_recovery(place) for place in places]
     return tuple(recovery for recovery in found if recovery is not None)
 
 
@@ -103,14 +158,25 @@ def discard_recovery(recovery: Recovery) -> None:
         The folder cannot be written.
     """
     place = recovery.folder / AUTOSAVE_FOLDER
-    with in_words(place):
+    with _held(recovery.folder), in_words(place):
         if recovery.problem:
             shutil.rmtree(recovery.folder / DAMAGED_FOLDER, ignore_errors=True)
             place.replace(recovery.folder / DAMAGED_FOLDER)
         elif recovery.folder.parent == data_folder() / UNSAVED_FOLDER:
+            (place / HEADER_FILE).unlink(missing_ok=True)
             shutil.rmtree(recovery.folder)
         else:
+            (place / HEADER_FILE).unlink(missing_ok=True)
             shutil.rmtree(place)
+
+
+def _clear_remains(place: Path) -> None:
+    """Remove what is left of a place without a copy, of a Reflight that ended while it made or cleared it."""
+    with contextlib.suppress(OSError, InputError):
+        is_old = time.time() - place.stat().st_mtime > REMAINS_S
+        if is_old and not (place / AUTOSAVE_FOLDER / HEADER_FILE).exists() and not (place / DAMAGED_FOLDER).exists():
+            with lock_project(place):
+                shutil.rmtree(place)
 
 
 def _saved_state(folder: Path) -> str:

@@ -1,20 +1,31 @@
 """Copies of unsaved work: written beside the project, told about once when they fail, found after a crash."""
 
 import json
+import os
 import subprocess
+import sys
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.autosave import AUTOSAVE_FOLDER, HEADER_FILE, Autosave, give_up_place, unsaved_place
+from groundstation.services.autosave import (
+    AUTOSAVE_FOLDER,
+    HEADER_FILE,
+    UNSAVED_FOLDER,
+    Autosave,
+    clear_copy,
+    give_up_place,
+    unsaved_place,
+)
 from groundstation.services.document import Document, PlanEntry
 from groundstation.services.project import create_project, open_project, save_project
-from groundstation.services.project_lock import Holder, lock_project
+from groundstation.services.project_lock import LOCK_FILE, Holder, lock_project
 from groundstation.services.recovery import (
     DAMAGED_FOLDER,
     discard_recovery,
@@ -38,6 +49,8 @@ from tests.services.project_cases import (
     small_disk,
 )
 from tests.services.test_project import files_of
+
+ROOT = Path(__file__).resolve().parents[2]
 
 NOON = datetime(2026, 5, 1, 12, 0, tzinfo=UTC)
 
@@ -106,7 +119,8 @@ def test_unsaved_work_is_found_again_and_says_what_is_different(project):
     assert (opened.folder, opened.name) == (folder, "My building")
     discard_recovery(found)
     assert find_recovery(folder) is None
-    assert files_of(folder) == before
+    after = files_of(folder)
+    assert {name: value for name, value in after.items() if name != LOCK_FILE} == before
 
 
 def test_there_is_nothing_to_recover_without_unsaved_work(project):
@@ -304,7 +318,7 @@ def test_a_full_disk_is_told_once_and_loses_nothing(project):
     works = [edited(saved, seed) for seed in range(1, 5)]
     keeper.keep(works[0])
     for work in works[1:3]:
-        with failing_disk(6):
+        with failing_disk(4):
             keeper.keep(work)
     (message,) = told
     assert "No space left on device" in message
@@ -312,7 +326,7 @@ def test_a_full_disk_is_told_once_and_loses_nothing(project):
     assert is_same(recover(find_recovery(folder)).document, works[0])
     keeper.keep(works[2])  # the same document once more, now that there is room
     assert is_same(recover(find_recovery(folder)).document, works[2])
-    with failing_disk(6):
+    with failing_disk(4):
         keeper.keep(works[3])
     assert len(told) == 2
 
@@ -374,3 +388,74 @@ def _is_same_work(one, other):
     """The same but for which plan is shown, which is nothing to recover."""
     plain = [Document(made.site, made.plans, "", made.request) for made in (one, other)]
     return is_same(*plain)
+
+
+OTHER = """
+import sys
+from dataclasses import replace
+from pathlib import Path
+from groundstation.services.autosave import Autosave
+from groundstation.services.project import open_project
+from groundstation.services.project_lock import lock_project
+from planning.request import PlanRequest
+class AtOnce:
+    def submit(self, function):
+        function()
+folder = Path(sys.argv[1])
+document = open_project(folder).document
+print("ready", flush=True)
+number = 1
+while True:
+    copies = Autosave(folder, AtOnce(), print)
+    for ends in (False, True):
+        with lock_project(folder):
+            number += 1
+            copies.keep(replace(document, request=PlanRequest(n_views=number)))
+            if ends:
+                copies.discard()
+        for _ in range(number % 7):
+            open_project(folder)
+"""
+
+
+def test_the_copy_of_another_reflight_is_never_taken_for_a_damaged_one(project):
+    folder, _ = project
+    other = subprocess.Popen([sys.executable, "-c", OTHER, str(folder)], stdout=subprocess.PIPE, cwd=ROOT)
+    try:
+        assert other.stdout.readline() == b"ready\n"
+        for _ in range(40):
+            found = find_recovery(folder)
+            assert found is None or not found.problem, found.problem
+        assert other.poll() is None
+    finally:
+        other.kill()
+        other.communicate()
+
+
+def test_a_copy_that_was_only_half_cleared_away_is_none(project):
+    folder, saved = project
+    autosave(folder).keep(edited(saved, 9))
+    place = folder / AUTOSAVE_FOLDER
+    clear_copy(place)
+    assert not place.exists()
+    autosave(folder).keep(edited(saved, 9))
+    (place / HEADER_FILE).unlink()
+    (place / "project.json").unlink()
+    assert find_recovery(folder) is None
+    autosave(folder).keep(edited(saved, 11))
+    assert find_recovery(folder).problem == ""
+
+
+def test_places_that_a_killed_reflight_left_without_a_copy_are_cleared_away(data):
+    left = data / UNSAVED_FOLDER / "left"
+    (left / AUTOSAVE_FOLDER / "site").mkdir(parents=True)
+    new, damaged, held = (data / UNSAVED_FOLDER / name for name in ("new", "damaged", "held"))
+    for place in (new, damaged, held):
+        place.mkdir()
+    (damaged / DAMAGED_FOLDER).mkdir()
+    with lock_project(held):
+        for place in (left, damaged, held):
+            os.utime(place, (0, 0))
+        assert find_unsaved() == ()
+    assert not left.exists()
+    assert all(place.is_dir() for place in (new, damaged, held))
