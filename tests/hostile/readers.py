@@ -1,0 +1,52 @@
+"""Readers without a command, as the window calls them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+def recovery(path: Path) -> None:
+    """What the window does about a copy of unsaved work when it starts."""
+    from groundstation.services.recovery import find_recovery, recover
+
+    found = find_recovery(path.parents[1])
+    if found is not None:
+        recover(found)
+
+
+def holder(path: Path) -> None:
+    """Who has a project open."""
+    from groundstation.services.project_lock import lock_holder
+
+    lock_holder(path.parent)
+
+
+def signer(path: Path) -> None:
+    """The key that links are signed with."""
+    from missions.mavlink.key_store import KeyStore
+
+    KeyStore(path.parent, may_use_system=False).signer()
+
+
+def map_tiles(path: Path) -> None:
+    """A map file, and a tile of it."""
+    from groundstation.services.map_tiles import MapTiles
+    from groundstation.services.web_mercator import Tile
+
+    tiles = MapTiles(path)
+    tiles.image(Tile(1, 1, 0))
+    tiles.close()
+
+
+def lpips(path: Path) -> None:
+    """Weights for scores."""
+    from reconstruction.scores.lpips_weights import read_lpips_weights
+
+    read_lpips_weights([path])
+
+
+def coco(path: Path) -> None:
+    """Annotated photos."""
+    from reconstruction.scores.annotated import coco_photos
+
+    list(coco_photos(path.parent))
