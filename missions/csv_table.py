@@ -13,8 +13,9 @@ from pathlib import Path
 
 from missions.heights import altitude_amsl_m
 from missions.model import FileFormat, HeightReference, Mission, ReadMission, ReadPhoto, ReadWaypoint
-from missions.safe_files import read_limited
+from missions.safe_files import MAX_LINES, read_limited
 from planning.errors import MissionError
+from planning.files import check_lines
 from planning.findings import Finding, Severity
 
 COLUMNS = (
@@ -91,7 +92,9 @@ def read_csv(path: Path) -> tuple[ReadMission, ...]:
         A column is missing or a row is wrong; the message names the line.
     """
     try:
-        text = read_limited(path).decode("utf-8-sig")
+        content = read_limited(path)
+        check_lines(content, MAX_LINES, path)
+        text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise MissionError(f"{path}: expected text in UTF-8, found other bytes at offset {error.start}") from error
     table = csv.DictReader(text.splitlines())

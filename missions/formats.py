@@ -7,14 +7,17 @@ Reading looks at the content, never only at the name of a file.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from missions.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, encode
 from missions.model import FileFormat, ReadMission
+from missions.safe_files import KMZ_FILE, MISSION_FILE
 from planning.errors import InputError, MissionError
+from planning.files import open_given
 from planning.findings import Severity
 from planning.frames import Vec3
-from planning.json_file import write_atomically
+from planning.json_file import write_together
 from planning.plan import Plan
 from planning.site import Origin
 
@@ -64,15 +67,7 @@ def write_files(encoded: EncodedFiles, path: Path) -> tuple[Path, ...]:
         more = f" (and {len(errors) - 1} more errors)" if len(errors) > 1 else ""
         raise MissionError(f"the mission would be refused: {first}{more}")
     paths = tuple(sortie_path(path, number) for number in range(1, len(encoded.contents) + 1))
-    written: list[Path] = []
-    try:
-        for target, content in zip(paths, encoded.contents, strict=True):
-            write_atomically(target, content)
-            written.append(target)
-    except BaseException:
-        for target in written:
-            target.unlink(missing_ok=True)
-        raise
+    write_together(dict(zip(paths, encoded.contents, strict=True)))
     return paths
 
 
@@ -107,11 +102,8 @@ def is_mission(head: bytes) -> bool:
 
 
 def _reader(path: Path) -> _Reader:
-    try:
-        with path.open("rb") as file:
-            head = file.read(HEAD_BYTES)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    with open_given(path, replace(KMZ_FILE, what=MISSION_FILE.what)) as file:
+        head = file.read(HEAD_BYTES)
     reader = _reader_of(head)
     if reader is None:
         raise InputError(

@@ -27,6 +27,7 @@ from missions.model import (
 )
 from missions.safe_files import read_limited
 from planning.errors import MissionError
+from planning.files import HostileXml, parse_xml
 from planning.frames import camera_axes
 from planning.site import Origin
 
@@ -142,16 +143,11 @@ def read_kml(path: Path) -> tuple[ReadMission, ...]:
     MissionError
         It is no KML, or one that another program made for looking at, which says too little to be a mission.
     """
-    from xml.etree.ElementTree import ParseError
-
-    from defusedxml.common import DefusedXmlException
-    from defusedxml.ElementTree import fromstring
-
     try:
-        root = fromstring(read_limited(path), forbid_dtd=True)
-    except DefusedXmlException as error:
-        raise MissionError(f"{path}: declares a DTD or entities, which no mission needs; refused as hostile") from error
-    except (ParseError, ValueError, LookupError) as error:
+        root = parse_xml(read_limited(path), path)
+    except HostileXml as error:
+        raise MissionError(f"{path}: {error}, which no mission needs; refused as hostile") from error
+    except ValueError as error:
         raise MissionError(f"{path}: not readable as XML ({error})") from error
     folders = [folder for folder in root.iter(f"{_KML}Folder") if "sortie" in _data(folder)]
     if not folders:

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import lzma
-import stat
 import zipfile
 import zlib
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
 from planning.errors import InputError, MissionError
+from planning.files import MIB, FileLimit, check_zip_directory, open_given, read_given
 
-MAX_FILE_BYTES = 64 * 2**20
-"""Larger mission files are refused; a mission of 10 000 waypoints with actions has about 40 MiB of XML."""
+MISSION_FILE = FileLimit("a mission file", 64 * MIB)
+"""Larger ones are refused; a mission of 10 000 waypoints with actions has about 40 MiB of XML."""
+
+KMZ_FILE = FileLimit("a DJI KMZ", 512 * MIB)
+"""With reference pictures in it."""
+
+MAX_FILE_BYTES = MISSION_FILE.max_bytes
+
+MAX_LINES = 1_000_000
+"""Of text files with a waypoint or photo in each line."""
 
 MAX_MEMBERS = 1000
 """A KMZ holds two parts and perhaps reference pictures, one a waypoint."""
@@ -26,16 +34,7 @@ def read_limited(path: Path) -> bytes:
     InputError
         The file is missing, unreadable or larger than any mission.
     """
-    try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            raise InputError(f"{path}: expected a mission file, found something that is not a regular file")
-        with path.open("rb") as file:
-            content = file.read(MAX_FILE_BYTES + 1)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
-    if len(content) > MAX_FILE_BYTES:
-        raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**20} MiB; expected a mission file")
-    return content
+    return read_given(path, MISSION_FILE)
 
 
 def open_archive(source: Path | BinaryIO, label: str) -> tuple[zipfile.ZipFile, dict[str, zipfile.ZipInfo]]:
@@ -54,6 +53,9 @@ def open_archive(source: Path | BinaryIO, label: str) -> tuple[zipfile.ZipFile, 
         It is no zip, or one that no ground station writes: too many files, names that climb out of the archive, the
         same name twice, encrypted content.
     """
+    if isinstance(source, Path):
+        with open_given(source, KMZ_FILE) as file:
+            check_zip_directory(file, label)
     try:
         archive = zipfile.ZipFile(source)
     except OSError as error:

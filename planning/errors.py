@@ -6,6 +6,16 @@ A message says what was expected, what was found, where, and what to do. Wrong c
 
 from __future__ import annotations
 
+MAX_MESSAGE = 1000
+"""Characters of a message: what a damaged file has in place of a name or number can be as long as the file."""
+
+
+def shortened(text: str) -> str:
+    """A message with its middle left out where it is too long to be read."""
+    if len(text) <= MAX_MESSAGE:
+        return text
+    return f"{text[: 2 * MAX_MESSAGE // 3]} ... {text[-MAX_MESSAGE // 3 :]}"
+
 
 class GroundStationError(Exception):
     """Root of all errors whose message is meant for the user."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import itertools
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.files import read_given
+from planning.json_file import write_atomically
+from planning.mesh_limits import MESH_FILE, check_mesh_size
 
 MESH_SUFFIXES = (".ply", ".obj", ".glb", ".stl")
 
@@ -114,26 +118,42 @@ def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> Triangl
     """
     if path.suffix.lower() not in MESH_SUFFIXES:
         raise InputError(f"{path}: expected a mesh file ({', '.join(MESH_SUFFIXES)}), got '{path.suffix}'")
-    if not path.is_file():
+    if not path.exists():
         raise InputError(f"{path}: there is no such mesh file")
+    content = read_given(path, MESH_FILE)
+    kind = path.suffix.lower()
+    check_mesh_size(content, kind, path)
     import trimesh
 
+    # What is wrong with a file is said in an error, and once.
+    trimesh.util.log.disabled = True
     try:
-        loaded = trimesh.load_mesh(path, process=False, maintain_order=True)
-        if isinstance(loaded, trimesh.Scene):
-            loaded = loaded.to_mesh()
+        # No resolver: what a file names beside itself (materials, textures) is neither needed nor to be trusted.
+        # Numbers beyond all bounds overflow in between; they are refused below.
+        with np.errstate(all="ignore"):
+            loaded = trimesh.load_mesh(
+                io.BytesIO(content), file_type=kind[1:], process=False, maintain_order=True, skip_materials=True
+            )
+            if isinstance(loaded, trimesh.Scene):
+                loaded = loaded.to_mesh()
         vertices, triangles = np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
     except Exception as error:  # trimesh's readers raise whatever their parsers raise
         raise InputError(f"{path}: this mesh cannot be read ({error})") from error
     if triangles.ndim != 2 or len(triangles) == 0:
         raise InputError(f"{path}: the mesh has no triangles (a point cloud cannot serve as a building)")
+    if not 0 <= triangles.min() <= triangles.max() < len(vertices):
+        wrong = triangles.min() if triangles.min() < 0 else triangles.max()
+        raise InputError(
+            f"{path}: a triangle names vertex {wrong}, which is not there (vertices: 0 to {len(vertices) - 1}); "
+            "export the mesh again"
+        )
     used = vertices[triangles]
     if not np.isfinite(used).all():
         raise InputError(f"{path}: the mesh has coordinates that are not finite numbers")
     if np.abs(used).max() > max_coordinate_m:
         raise InputError(
-            f"{path}: the mesh has a coordinate of {np.abs(used).max():.0f} m; local ENU metres near the site's origin "
-            "are expected. Shift it (site import does) before using it"
+            f"{path}: the mesh has a coordinate of {np.abs(used).max():.10g} m; local ENU metres near the site's "
+            "origin are expected. Shift it (site import does) before using it"
         )
     return TriangleMesh(np.where(np.isfinite(vertices), vertices, 0.0), triangles)
 
@@ -147,8 +167,8 @@ def ply_bytes(mesh: TriangleMesh) -> bytes:
 
 
 def write_mesh(path: Path, mesh: TriangleMesh) -> None:
-    """Write a binary PLY file."""
-    path.write_bytes(ply_bytes(mesh))
+    """Write a binary PLY file, whole or not at all; errors as `write_atomically`."""
+    write_atomically(path, ply_bytes(mesh))
 
 
 def closed_parts(corners_enu_m: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -8,7 +8,8 @@ from typing import Any
 
 import msgspec
 
-from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.files import read_given
+from planning.json_file import JSON_FILE, expect_format, parse_json, to_record, write_atomically
 from planning.plan import PLAN_FORMAT, Plan
 
 
@@ -20,7 +21,12 @@ def read_plan(path: Path) -> Plan:
     InputError
         The file is missing or wrong; the message names the file, the field and what was expected.
     """
-    content = read_json(path)
+    return plan_of(read_given(path, JSON_FILE), path)
+
+
+def plan_of(written: bytes, path: Path) -> Plan:
+    """A plan from the content of its file `path`; errors as `read_plan`."""
+    content = parse_json(written, path)
     expect_format(content, PLAN_FORMAT, path)
     return to_record(content, Plan, path)
 

@@ -10,7 +10,8 @@ from typing import Any
 import msgspec
 
 from planning.errors import InputError
-from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.files import read_given
+from planning.json_file import JSON_FILE, expect_format, parse_json, to_record, write_atomically
 from planning.mesh import TriangleMesh, empty_mesh, read_mesh
 from planning.site import SITE_FORMAT, Obstacle, Site, SiteModel, box_geometry
 
@@ -23,7 +24,12 @@ def read_site(path: Path) -> SiteModel:
     InputError
         The file or a mesh is missing or wrong; the message names the file, the field and what was expected.
     """
-    content = read_json(path)
+    return site_of(read_given(path, JSON_FILE), path)
+
+
+def site_of(written: bytes, path: Path) -> SiteModel:
+    """A site from the content of its file `path`, beside which its meshes lie; errors as `read_site`."""
+    content = parse_json(written, path)
     expect_format(content, SITE_FORMAT, path)
     site = to_record(content, Site, path)
     folder = path.parent
@@ -33,7 +39,7 @@ def read_site(path: Path) -> SiteModel:
         _obstacle_geometry(folder, obstacle, f"{path}: obstacles[{i}].mesh")
         for i, obstacle in enumerate(site.obstacles)
     )
-    return SiteModel(site, building, obstacles, hashlib.sha256(path.read_bytes()).hexdigest())
+    return SiteModel(site, building, obstacles, hashlib.sha256(written).hexdigest())
 
 
 def _read_named_mesh(folder: Path, name: str, place: str) -> TriangleMesh:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from functools import cache
@@ -9,8 +10,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, open_given
 
-MAX_FILE_BYTES = 4 * 2**30
+IFC_FILE = FileLimit("an IFC file", 4096 * MIB, "export the facade alone")
 
 TAIL_BYTES = 4096
 """The end mark stands in the last few; some programs write a comment after it."""
@@ -33,18 +35,10 @@ def check_ends(path: Path) -> None:
     InputError
         As said.
     """
-    try:
-        if not path.is_file():
-            raise InputError(f"{path}: there is no such file")
-        size = path.stat().st_size
-        with path.open("rb") as file:
-            head = file.read(64)
-            file.seek(max(0, size - TAIL_BYTES))
-            tail = file.read()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
-    if size > MAX_FILE_BYTES:
-        raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**30} GiB; export the facade alone")
+    with open_given(path, IFC_FILE) as file:
+        head = file.read(64)
+        file.seek(max(0, file.seek(0, os.SEEK_END) - TAIL_BYTES))
+        tail = file.read(TAIL_BYTES)
     if not head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(START):
         raise InputError(f"{path}: expected an IFC file (STEP text that begins with ISO-10303-21)")
     if END not in tail:

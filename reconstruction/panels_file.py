@@ -174,7 +174,7 @@ def read_panels(path: Path) -> PanelsFile:
     InputError
         It cannot be read, is of another format, or breaks a rule; the message names the place and the rule.
     """
-    content = read_json(path)
+    content = read_json(path, names_files=True)
     expect_format(content, PANELS_FORMAT, path)
     return to_record(content, PanelsFile, path)
 

@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 
 from groundstation.cli import commands
 from groundstation.cli.options import new_folder
-from planning.errors import GroundStationError, OperationCancelled
+from planning.errors import GroundStationError, OperationCancelled, shortened
 
 EXIT_DONE, EXIT_FAILED, EXIT_USAGE = 0, 1, 2
 
@@ -158,4 +158,4 @@ def _in_one_line(error: Exception) -> str:
     text = str(error)
     if isinstance(error, OSError) and error.strerror:
         text = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
-    return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
+    return shortened("".join(c if c.isprintable() else "?" for c in " ".join(text.split())))

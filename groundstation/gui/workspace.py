@@ -18,7 +18,7 @@ from groundstation.services.document import Document, Item, exists
 from groundstation.services.jobs import ENDED, Job, JobContext, JobRunner, JobState, JobStateChanged
 from groundstation.services.session import Session
 from groundstation.services.units import UnitSystem
-from planning.errors import GroundStationError
+from planning.errors import GroundStationError, shortened
 from planning.findings import Severity
 
 Work = Callable[[JobContext], Any]
@@ -125,11 +125,11 @@ class Workspace(QObject):
 
     def say(self, severity: Severity, text: str, item: Item | None = None) -> None:
         """Tell the user something."""
-        self.messageShown.emit(Message(severity, with_fields(text), item))
+        self.messageShown.emit(Message(severity, shortened(with_fields(text)), item))
 
     def words(self, text: str) -> str:
         """What a part without Qt says, an error or a finding, in the user's language and units."""
-        return own_words(text, self._units)
+        return own_words(shortened(text), self._units)
 
     def start(
         self, name: str, work: Work, when_done: Done | None = None, when_failed: Failed | None = None

@@ -14,6 +14,7 @@ from groundstation.services.given_files import FileKind, kind_of, read_given_pla
 from groundstation.services.mission_files import missions_as_plan
 from planning.catalogue import profiles
 from planning.errors import InputError
+from planning.files import real_path
 from planning.findings import Finding, Severity
 from planning.insight.comparison import Comparison, compare_plans
 from planning.plan import Plan
@@ -73,7 +74,7 @@ def compare_files(plan_paths: Sequence[Path], site_path: Path, monitor: Monitor 
         As `compare`, or a file cannot be read or is named twice.
     """
     for number, path in enumerate(plan_paths):
-        if path.resolve() in [other.resolve() for other in plan_paths[:number]]:
+        if real_path(path) in [real_path(other) for other in plan_paths[:number]]:
             raise InputError(f"{path}: this plan is named twice; name each plan once")
     names = [_name_of(path) for path in plan_paths]
     if len(set(names)) < len(names):

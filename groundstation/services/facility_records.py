@@ -196,9 +196,16 @@ def put_fields(book: RecordBook, name: str, kind_name: str, texts: Mapping[str, 
     values = {field: value for field, value in values.items() if value != ""}
     row = book.object(name)
     _check_required(kind.record, values)
+    from reconstruction.records.stored_files import discard_stored
+
+    there = {path.name for path in book.files.glob("*")}
     stored = _with_files(book, values)
-    with book.changing(f"{kind_name} of {row.name}"[:200]) as changes:
-        return changes.put(kind.record(global_id=row.global_id, **stored))
+    try:
+        with book.changing(f"{kind_name} of {row.name}"[:200]) as changes:
+            return changes.put(kind.record(global_id=row.global_id, **stored))
+    except BaseException:
+        discard_stored(book, {str(stored.get(field, "")) for field in ("picture", "place")} - there)
+        raise
 
 
 def _check_required(record: type[Any], values: Mapping[str, Any]) -> None:

@@ -13,6 +13,7 @@ from missions.heights import altitude_amsl_m
 from missions.mavlink.link import open_link
 from missions.model import GeoPoint
 from planning.errors import InputError, LinkError
+from planning.files import real_path
 from planning.progress import QUIET, Monitor
 
 SITL_LINK = "tcp:127.0.0.1:5760"
@@ -69,8 +70,8 @@ def sitl(
         values = {**DEFAULTS, "BATT_CAPACITY": round(CURRENT_A * endurance_s / 3.6)}
         own.write_text("".join(f"{name} {value}\n" for name, value in values.items()))
         place = f"{home.lat_deg:.9f},{home.lon_deg:.9f},{altitude_amsl_m(home):.2f},0"
-        files = ",".join(str(path.resolve()) for path in (defaults, own) if path is not None)
-        command = [str(binary.resolve()), "--model", MODEL, "--speedup", f"{speedup:g}", "--home", place]
+        files = ",".join(str(real_path(path)) for path in (defaults, own) if path is not None)
+        command = [str(real_path(binary)), "--model", MODEL, "--speedup", f"{speedup:g}", "--home", place]
         command += ["--defaults", files, "-I0"]
         process = _started([*command, "-w"], Path(folder), monitor)
 

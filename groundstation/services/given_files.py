@@ -6,6 +6,7 @@ a plan is wanted, a project where one of its files is wanted. A file is looked a
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
@@ -16,6 +17,7 @@ from groundstation.services.project_migration import FORMAT as PROJECT_FORMAT
 from groundstation.services.project_store import PROJECT_FILE
 from missions.formats import HEAD_BYTES, is_mission
 from planning.errors import InputError, MissionError
+from planning.files import ANY_FILE, open_given
 from planning.json_file import read_json
 from planning.plan import PLAN_FORMAT, Plan
 from planning.plan_file import read_plan
@@ -140,12 +142,12 @@ def kind_of(path: Path) -> FileKind | None:
     """What lies under a name, by its content; None for what cannot be read, and for JSON that does not say."""
     if path.is_dir():
         return FileKind.PROJECT if _project_record(path) is not None else FileKind.FOLDER
-    try:
-        with path.open("rb") as file:
-            head = file.read(HEAD_BYTES)
-    except FileNotFoundError:
+    if not os.path.lexists(path):
         return FileKind.NOTHING
-    except OSError:
+    try:
+        with open_given(path, ANY_FILE) as file:
+            head = file.read(HEAD_BYTES)
+    except InputError:
         return None
     text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
     if not text:

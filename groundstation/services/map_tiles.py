@@ -19,6 +19,7 @@ from urllib.parse import quote
 
 from groundstation.services.web_mercator import MAX_ZOOM, Tile
 from planning.errors import InputError
+from planning.files import real_path
 
 MAX_QUERY_S = 2.0
 """Longest that one query may take; with the index that the format asks for it takes under a millisecond."""
@@ -81,7 +82,7 @@ class MapTiles:
         if not path.is_file():
             raise InputError(f"{path}: there is no such file; choose an MBTiles file")
         # Immutable: no lock and no journal beside the file, which may be on a stick that is write-protected.
-        place = f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1"
+        place = f"file:{quote(str(real_path(path)))}?mode=ro&immutable=1"
         self._connection = sqlite3.connect(place, uri=True, check_same_thread=False)
         try:
             self._connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_TILE_BYTES)

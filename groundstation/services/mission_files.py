@@ -17,6 +17,7 @@ from planning.catalogue import DEFAULT_PROFILE, profile
 from planning.checks import check_plan
 from planning.errors import GroundStationError, InputError
 from planning.evaluate import coverage
+from planning.files import real_path
 from planning.findings import Finding, Severity
 from planning.plan import Constraints, FlightRules, Plan
 from planning.planner import share_out_anew
@@ -168,7 +169,7 @@ def read_mission_files(paths: Sequence[Path]) -> tuple[ReadMission, ...]:
     InputError, MissionError
         A file cannot be read, or is given twice.
     """
-    resolved = [path.resolve() for path in paths]
+    resolved = [real_path(path) for path in paths]
     for number, path in enumerate(paths):
         if resolved[number] in resolved[:number]:
             raise InputError(f"{path}: this mission file is named twice; name the file of each sortie once")

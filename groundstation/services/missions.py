@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,9 +20,10 @@ from missions.formats import sortie_path, write_files
 from missions.model import FileFormat
 from planning.catalogue import DEFAULT_PROFILE
 from planning.errors import InputError
+from planning.files import real_path, sha256_given
 from planning.findings import Finding, Severity
 from planning.folders import check_ending
-from planning.json_file import check_output
+from planning.json_file import JSON_FILE, check_output
 from planning.plan import Constraints, Plan
 from planning.plan_file import write_plan
 from planning.progress import QUIET, Monitor
@@ -56,7 +56,7 @@ def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> Sit
 def _site_beside(plan: Plan, plan_path: Path) -> Path | None:
     if not plan.site_sha256:
         return None
-    folder = plan_path.resolve().parent
+    folder = real_path(plan_path).parent
     candidates = [*sorted(folder.glob("*.json")), *sorted((folder.parent / SITE_FOLDER).glob("*.json"))]
     return next((path for path in candidates if _is_site_of(path, plan)), None)
 
@@ -64,8 +64,8 @@ def _site_beside(plan: Plan, plan_path: Path) -> Path | None:
 def _is_site_of(path: Path, plan: Plan) -> bool:
     """Whether a file beside a plan is its site; what cannot be read is not."""
     try:
-        return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == plan.site_sha256
-    except OSError:
+        return sha256_given(path, JSON_FILE) == plan.site_sha256
+    except InputError:
         return False
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from planning.errors import InputError
+from planning.files import read_given
 from planning.folders import check_ending, check_folder_name
 from planning.json_file import check_output
 from planning.progress import QUIET, Monitor, Stop, Trace
@@ -245,15 +246,15 @@ def _web(export: _Export) -> list[str]:
     from groundstation.services.facility_records import open_records, records_path
     from reconstruction.exports.web import WebOptions, write_web
     from reconstruction.exports.web_sky import sky_light
-    from reconstruction.records.stored_files import stored_path
+    from reconstruction.records.stored_files import DOCUMENT_FILE, stored_path
 
     has_records = records_path(export.folder).is_file()
     with open_records(export.folder) if has_records else nullcontext() as book:
 
         def content_of(name: str) -> bytes | None:
             try:
-                return None if book is None else stored_path(book, name).read_bytes()
-            except (InputError, OSError):
+                return None if book is None else read_given(stored_path(book, name), DOCUMENT_FILE)
+            except InputError:
                 return None
 
         options = WebOptions(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from groundstation.services.model_wish import DEFAULT_PRESET, TrainWish
 from planning.errors import InputError
 from planning.folders import check_ending, make_folder
-from planning.json_file import check_output, write_atomically
+from planning.json_file import check_output, read_toml, write_atomically
 from planning.progress import QUIET, Monitor, Stop, Trace, never
 
 if TYPE_CHECKING:
@@ -54,8 +54,6 @@ def config_of_wish(wish: TrainWish) -> TrainConfig:
     InputError
         There is no such preset, the file cannot be used, or a value is out of range.
     """
-    import tomllib
-
     from reconstruction.modelling.config import config_of
     from reconstruction.modelling.presets import preset, with_wishes
 
@@ -63,13 +61,7 @@ def config_of_wish(wish: TrainWish) -> TrainConfig:
     if wish.method is not None:
         config = config_of({"method": wish.method}, config, Path("--method"))
     if wish.settings is not None:
-        try:
-            content = tomllib.loads(wish.settings.read_text("utf-8"))
-        except OSError as error:
-            raise InputError(f"{wish.settings}: cannot be read ({error.strerror or error})") from error
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise InputError(f"{wish.settings}: not valid TOML ({error})") from error
-        config = config_of(content, config, wish.settings)
+        config = config_of(read_toml(wish.settings, dict[str, Any]), config, wish.settings)
     found = with_wishes(
         config,
         light=wish.light,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -16,13 +18,13 @@ from groundstation.services.project_file import check_not_index
 from planning.errors import InputError
 from planning.findings import Finding
 from planning.frames import Vec3
-from planning.json_file import check_output, write_atomically
+from planning.json_file import check_output, write_together
 from planning.mesh import TriangleMesh
 from planning.photo_files.folder import read_photos
 from planning.photo_files.places import Locality, PhotoHeights
 from planning.progress import QUIET, Monitor
 from planning.site import Facade, Origin, Panel, SiteModel
-from planning.site_file import write_site
+from planning.site_file import site_bytes
 from planning.site_import.importer import check_ground, read_source, site_of_facades
 from planning.site_import.options import ImportOptions
 from planning.site_import.output import write_imported_site
@@ -137,13 +139,13 @@ def find_panel_files(
     found = find_panels(photos, mesh, load, parameters, monitor, given)
     facades = tuple(site_facade(facade) for facade in found.facades)
     notes: tuple[str, ...] = ()
+    beside = {facades_path(out): facades_bytes(found, photos)}
     if site_model is not None:
-        written = _rewritten(site_model, model, out, facades)
+        written = _rewritten(site_model, model, out, facades, beside)
     else:
         assert source is not None
         imported = site_of_facades(model, source, facades, options, source.notes)
-        written, notes = write_imported_site(out, imported, model), imported.notes
-    write_atomically(facades_path(out), facades_bytes(found, photos))
+        written, notes = write_imported_site(out, imported, model, beside), imported.notes
     return PanelSearch(
         written,
         found,
@@ -223,8 +225,10 @@ def _place(
     return site_model.site, site_model.building
 
 
-def _rewritten(model: SiteModel, source: Path, out: Path, facades: tuple[Facade, ...]) -> SiteModel:
-    """The site with other facades; its meshes stay where they are."""
+def _rewritten(
+    model: SiteModel, source: Path, out: Path, facades: tuple[Facade, ...], beside: Mapping[Path, bytes]
+) -> SiteModel:
+    """The site with other facades, and files that belong to it; its meshes stay where they are."""
 
     def moved(name: str | None) -> str | None:
         return None if name is None else Path(os.path.relpath(source.parent / name, out.parent)).as_posix()
@@ -235,4 +239,6 @@ def _rewritten(model: SiteModel, source: Path, out: Path, facades: tuple[Facade,
         building_mesh=moved(model.site.building_mesh),
         obstacles=tuple(replace(obstacle, mesh=moved(obstacle.mesh)) for obstacle in model.site.obstacles),
     )
-    return replace(model, site=site, sha256=write_site(out, site))
+    content = site_bytes(site)
+    write_together({out: content, **beside})
+    return replace(model, site=site, sha256=hashlib.sha256(content).hexdigest())

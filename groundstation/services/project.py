@@ -23,13 +23,17 @@ from groundstation.services.project_file import (
 )
 from groundstation.services.project_migration import FORMAT, VERSION
 from groundstation.services.project_plans import plan_file, read_entry, read_request
-from groundstation.services.project_store import PROJECT_FILE, current_path, in_words, settle
+from groundstation.services.project_store import PROJECT_FILE, current_content, in_words, settle
 from groundstation.services.project_writing import site_to_write, write_project
 from planning.errors import InputError
+from planning.files import real_path
 from planning.findings import Finding, Severity
 from planning.request import PlanRequest
 from planning.site import SiteModel
-from planning.site_file import read_site
+from planning.site_file import site_of
+
+ATTEMPTS = 5
+"""To read a project that is being saved meanwhile; a save takes tenths of a second, and the next is seconds later."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,7 +73,21 @@ def open_project(path: Path) -> OpenedProject:
         names the file. A plan that cannot be read is left out, with a note.
     """
     folder = project_folder(path)
-    index = read_index(folder)
+    for _ in range(ATTEMPTS - 1):
+        index = read_index(folder)
+        try:
+            opened = _opened(folder, index)
+        except InputError:
+            if read_index(folder).written == index.written:
+                raise
+        else:
+            if read_index(folder).written == index.written:
+                return opened
+        # It was saved while it was being read: what was read may be half of each.
+    return _opened(folder, read_index(folder))
+
+
+def _opened(folder: Path, index: ProjectIndex) -> OpenedProject:
     record = index.record
     notes = [*_migration_notes(folder, index)]
     if not os.access(folder, os.W_OK):
@@ -90,7 +108,7 @@ def open_project(path: Path) -> OpenedProject:
     document = Document(
         site, tuple(entries), current, PlanRequest() if request is None else request, found_facades=facades
     )
-    return OpenedProject(folder, record.name or folder.resolve().name, document, record, tuple(notes), index.version)
+    return OpenedProject(folder, record.name or real_path(folder).name, document, record, tuple(notes), index.version)
 
 
 def _migration_notes(folder: Path, index: ProjectIndex) -> Iterator[Finding]:
@@ -109,9 +127,9 @@ def _migration_notes(folder: Path, index: ProjectIndex) -> Iterator[Finding]:
 
 
 def _read_site(folder: Path, record: ProjectRecord) -> SiteModel:
-    path = current_path(folder, record.site, record.site_sha256)
     try:
-        return read_site(path)
+        path, written = current_content(folder, record.site, record.site_sha256)
+        return site_of(written, path)
     except InputError as error:
         raise InputError(
             f"{error}; a project cannot be opened without its site: put the file back from a copy, or make a new "
@@ -195,7 +213,7 @@ def save_project(folder: Path, document: Document, *, name: str = "", site_sourc
         if content is not None:
             files[plan.file] = content
     record = ProjectRecord(
-        name=name or before.name or folder.resolve().name,
+        name=name or before.name or real_path(folder).name,
         site="" if site is None else site.file,
         site_sha256="" if site is None else site.sha256,
         plans=tuple(plans),

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from groundstation.services.project_file import ProjectRecord
-from groundstation.services.project_store import current_path, digest, holds, may_replace
+from groundstation.services.project_store import current_content, digest, holds, may_replace
 from planning.errors import InputError
 from planning.findings import Finding, Severity
-from reconstruction.panels.accuracy import FoundFacades, facades_path, read_facades
+from reconstruction.panels.accuracy import FoundFacades, facades_of, facades_path, read_facades
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,8 @@ def read_project_facades(folder: Path, record: ProjectRecord) -> tuple[FoundFaca
     if not record.facades:
         return None, []
     try:
-        return read_facades(current_path(folder, record.facades, record.facades_sha256)), []
+        path, written = current_content(folder, record.facades, record.facades_sha256)
+        return facades_of(written, path), []
     except InputError as error:
         text = f"{error}; how good the panels are was left out"
         return None, [Finding(Severity.WARNING, "facades-left-out", text)]

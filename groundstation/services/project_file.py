@@ -13,7 +13,8 @@ import msgspec
 from groundstation.services.project_migration import FORMAT, VERSION, Content, Listing, migrate
 from groundstation.services.project_store import PROJECT_FILE, digest
 from planning.errors import InputError
-from planning.json_file import read_json, to_record
+from planning.files import read_given
+from planning.json_file import JSON_FILE, parse_json, read_json, to_record
 from planning.plan import PLAN_FORMAT
 from planning.site import SITE_FORMAT
 
@@ -162,7 +163,7 @@ def project_name(path: Path) -> str:
     folder = project_folder(path)
     if not is_project(folder):
         return folder.name
-    content = read_json(folder / PROJECT_FILE)
+    content = read_json(folder / PROJECT_FILE, names_files=True)
     name = content.get("name") if isinstance(content, dict) else None
     return name if isinstance(name, str) and name else folder.name
 
@@ -176,19 +177,23 @@ def read_index(folder: Path) -> ProjectIndex:
         There is no project, a newer version wrote it, or a field is missing or wrong; the message names the file.
     """
     file = folder / PROJECT_FILE
-    if not file.is_file():
+    try:
+        written = read_given(file, JSON_FILE)
+    except InputError:
+        if is_project(folder):
+            raise
         try:
             content = migrate({}, 0, _listing(folder))
         except InputError as error:
             raise InputError(f"{folder}: {error}") from error
         return ProjectIndex(to_record(content, ProjectRecord, folder), content, 0, b"")
-    content = read_json(file)
+    content = parse_json(written, file, names_files=True)
     version = _version(content, file)
     try:
         content = migrate(content, version, {})
     except InputError as error:
         raise InputError(f"{file}: {error}") from error
-    return ProjectIndex(to_record(content, ProjectRecord, file), content, version, file.read_bytes())
+    return ProjectIndex(to_record(content, ProjectRecord, file), content, version, written)
 
 
 def _version(content: Any, file: Path) -> int:
@@ -210,7 +215,7 @@ def _listing(folder: Path) -> Listing:
     listing = {}
     for path in sorted(folder.glob("*.json")):
         try:
-            content = read_json(path)
+            content = read_json(path, names_files=True)
         except InputError:
             kinds = {".site.json": SITE_FORMAT, ".plan.json": PLAN_FORMAT}
             listing[path.name] = next((kinds[end] for end in kinds if path.name.endswith(end)), "")

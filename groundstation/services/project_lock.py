@@ -136,6 +136,6 @@ def _file_lock(folder: Path, wait_s: float) -> BaseFileLock:
 
 def _read_holder(folder: Path) -> Holder:
     try:
-        return to_record(read_json(folder / HOLDER_FILE), Holder, folder / HOLDER_FILE)
+        return to_record(read_json(folder / HOLDER_FILE, names_files=True), Holder, folder / HOLDER_FILE)
     except InputError:
         return UNKNOWN_HOLDER  # it is just being written, or was never complete

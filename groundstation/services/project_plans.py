@@ -14,25 +14,26 @@ from groundstation.services.given_files import read_given_plan
 from groundstation.services.project_file import PLANS_FOLDER, PlanRecord, ProjectRecord, json_bytes
 from groundstation.services.project_migration import free_name, title_of
 from groundstation.services.project_site import file_stem
-from groundstation.services.project_store import PROJECT_FILE, current_path, digest, holds, may_replace
+from groundstation.services.project_store import PROJECT_FILE, current_content, digest, holds, may_replace
 from planning.errors import InputError
+from planning.files import read_given
 from planning.findings import Finding, Severity
-from planning.json_file import to_record
-from planning.plan_file import plan_to_json, read_plan
+from planning.json_file import JSON_FILE, to_record
+from planning.plan_file import plan_of, plan_to_json
 from planning.request import PlanRequest
 from planning.site_file import is_planned_on
 
 
 def read_entry(folder: Path, record: PlanRecord) -> tuple[PlanEntry | None, list[Finding]]:
     """A plan with what the project knows of it, and notes; None where its file cannot be read."""
-    path = current_path(folder, record.file, record.sha256)
     title = record.id if record.title is None else record.title
     try:
-        plan = read_plan(path)
+        path, written = current_content(folder, record.file, record.sha256)
+        plan = plan_of(written, path)
     except InputError as error:
         text = f"{error}; the plan '{title}' was left out"
         return None, [Finding(Severity.WARNING, "plan-left-out", text, record.id)]
-    if record.sha256 and digest(path.read_bytes()) != record.sha256:
+    if record.sha256 and digest(written) != record.sha256:
         # What was asked for and the bound belong to the plan that was there before.
         text = f"{path}: another program has changed the plan '{title}' since the project was saved"
         return PlanEntry(record.id, title, plan), [Finding(Severity.NOTE, "plan-changed", text, record.id)]
@@ -74,9 +75,9 @@ def plan_file(
     content = json_bytes(plan_to_json(entry.plan), f"plan '{entry.title}'")
     known = before.plan(entry.id)
     if known is not None:
-        with contextlib.suppress(OSError, InputError):  # what cannot be read does not hold the plan
-            found = (folder / known.file).read_bytes()
-            if found != content and read_plan(folder / known.file) == entry.plan:
+        with contextlib.suppress(InputError):  # what cannot be read does not hold the plan
+            found = read_given(folder / known.file, JSON_FILE)
+            if found != content and plan_of(found, folder / known.file) == entry.plan:
                 content = found
     if (
         known is not None

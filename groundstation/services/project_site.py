@@ -7,7 +7,6 @@ stays whole until project.json names the new one.
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,12 +16,16 @@ import msgspec
 import numpy as np
 
 from groundstation.services.project_file import MAX_NAME_LENGTH
-from groundstation.services.project_store import digest
+from groundstation.services.project_store import digest, holds
 from planning.errors import InputError
-from planning.json_file import read_json, to_record
+from planning.files import read_given, real_path, sha256_given
+from planning.json_file import JSON_FILE, parse_json, to_record
 from planning.mesh import TriangleMesh, empty_mesh, ply_bytes, read_mesh
+from planning.mesh_limits import MESH_FILE
 from planning.site import Obstacle, Site, SiteModel
 from planning.site_file import site_bytes
+
+SITE_NAME = "site.json"
 
 DIGEST_ENDING = re.compile(r"-[0-9a-f]{12}$")
 """Of the names of meshes that have changed."""
@@ -110,14 +113,21 @@ class _NamedMeshes:
 
 def mesh_names(content: bytes) -> set[str]:
     """Paths of all meshes that the content of a site.json names."""
-    site = msgspec.convert(json.loads(content.decode("utf-8-sig")), _NamedMeshes)
+    site = msgspec.convert(parse_json(content, Path(SITE_NAME)), _NamedMeshes)
     return {name for name in (site.building_mesh, *(obstacle.mesh for obstacle in site.obstacles)) if name is not None}
 
 
 def spare_meshes(folder: Path, used: set[str]) -> list[Path]:
     """Meshes with a checksum in their names, and that content, which no site uses: saves left them that broke off."""
     named = {path: DIGEST_ENDING.search(path.stem) for path in folder.glob("*.ply") if path.name not in used}
-    return [path for path, ending in named.items() if ending and digest(path.read_bytes())[:12] == ending[0][1:]]
+    return [path for path, ending in named.items() if ending and _begins(path, ending[0][1:])]
+
+
+def _begins(path: Path, start: str) -> bool:
+    try:
+        return sha256_given(path).startswith(start)
+    except InputError:
+        return False
 
 
 def _nameless(site: Site) -> Site:
@@ -139,14 +149,14 @@ def _site_bytes(site: Site) -> bytes:
 def _unchanged(source: Path, model: SiteModel) -> bytes | None:
     """Content of a site file that the model was read from and still is the same as."""
     try:
-        content = source.read_bytes()
+        content = read_given(source, JSON_FILE)
         if digest(content) != model.sha256:
             return None
-        if content != _site_bytes(model.site) and to_record(read_json(source), Site, source) != model.site:
+        if content != _site_bytes(model.site) and to_record(parse_json(content, source), Site, source) != model.site:
             return None
         meshes = [(model.site.building_mesh, model.building)]
         meshes += [(obstacle.mesh, mesh) for obstacle, mesh in _with_meshes(model)]
-    except (OSError, InputError):
+    except InputError:
         return None  # what cannot be read holds no site, so all of it is written anew
     same = all(_holds(source.parent / name, mesh) for name, mesh in meshes if name is not None)
     return content if same else None
@@ -154,16 +164,16 @@ def _unchanged(source: Path, model: SiteModel) -> bytes | None:
 
 def _copies(source: Path, content: bytes, folder: Path) -> dict[str, bytes] | None:
     """Meshes to copy beside a site file that is taken over as it is; None where their names do not allow it."""
-    if source.resolve() == folder.resolve():
+    if real_path(source) == real_path(folder):
         return {}
     copies = {}
     for name in sorted(mesh_names(content)):
         target = folder / name
-        content = (source / name).read_bytes()
-        if not is_plain(name) or (target.exists() and target.read_bytes() != content):
+        mesh = read_given(source / name, MESH_FILE)
+        if not is_plain(name) or (target.exists() and not holds(target, mesh)):
             return None
         if not target.exists():
-            copies[name] = content
+            copies[name] = mesh
     return copies
 
 
@@ -236,8 +246,8 @@ class _MeshNames:
 def _holds(path: Path, mesh: TriangleMesh) -> bool:
     """Whether a file holds a mesh; one that we wrote is told by its bytes, ten times as fast as by reading it."""
     try:
-        return path.read_bytes() == ply_bytes(mesh) or same_mesh(read_mesh(path), mesh)
-    except (OSError, InputError):
+        return holds(path, ply_bytes(mesh)) or same_mesh(read_mesh(path), mesh)
+    except InputError:
         return False
 
 

@@ -14,7 +14,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from planning.errors import InputError
-from planning.json_file import write_atomically
+from planning.files import read_given, sha256_given
+from planning.json_file import JSON_FILE, write_atomically
 
 PROJECT_FILE = "project.json"
 
@@ -28,12 +29,15 @@ def digest(content: bytes) -> str:
 
 def has_digest(path: Path, sha256: str) -> bool:
     """Whether there is a file with this SHA-256."""
-    return path.is_file() and digest(path.read_bytes()) == sha256
+    try:
+        return sha256_given(path) == sha256
+    except InputError:
+        return False
 
 
 def holds(path: Path, content: bytes) -> bool:
     """Whether there is a file with this content."""
-    return path.is_file() and path.read_bytes() == content
+    return has_digest(path, digest(content))
 
 
 def may_replace(path: Path, sha256: str, content: bytes) -> bool:
@@ -54,6 +58,25 @@ def current_path(folder: Path, file: str, sha256: str) -> Path:
     path = folder / file
     staged = _staged(path)
     return staged if sha256 and has_digest(staged, sha256) else path
+
+
+def current_content(folder: Path, file: str, sha256: str) -> tuple[Path, bytes]:
+    """Where the content of `file` stands, as `current_path`, and the content: what was looked at is what is read.
+
+    A save that takes its place meanwhile is no harm: what no longer waits beside `file` is under its name.
+
+    Raises
+    ------
+    InputError
+        It cannot be read.
+    """
+    path = folder / file
+    if sha256:
+        with contextlib.suppress(InputError):
+            content = read_given(_staged(path), JSON_FILE)
+            if digest(content) == sha256:
+                return _staged(path), content
+    return path, read_given(path, JSON_FILE)
 
 
 def settle(folder: Path, checksums: Mapping[str, str]) -> None:
@@ -126,9 +149,11 @@ def leftovers(folder: Path, parts: Iterable[str], checksums: Mapping[str, str]) 
         SHA-256 by file, as in project.json.
     """
     needed = {current_path(folder, file, sha256) for file, sha256 in checksums.items()}
-    half_done = (f"*{STAGED_ENDING}", f".*{STAGED_ENDING}.*", ".*.ply.????????")
+    # The third and fourth: as older versions named what they were writing.
+    half_done = (f"*{STAGED_ENDING}", ".*.????????.part*", f".*{STAGED_ENDING}.????????", ".*.ply.????????")
     found = [path for part in parts for pattern in half_done for path in (folder / part).glob(pattern)]
-    found += folder.glob(f".{PROJECT_FILE}.????????")
+    for pattern in (".project.????????.part.json", f".{PROJECT_FILE}.????????"):
+        found += folder.glob(pattern)
     return [path for path in found if path not in needed]
 
 

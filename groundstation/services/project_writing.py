@@ -27,6 +27,8 @@ from groundstation.services.project_store import (
     remove,
     replace_together,
 )
+from planning.files import read_given
+from planning.json_file import JSON_FILE
 from planning.site import SiteModel
 
 
@@ -151,6 +153,6 @@ def _unused(folder: Path, present: ProjectIndex, record: ProjectRecord, meshes: 
     unused = [path for file, path in own.items() if file not in kept]
     old_site = own.get(present.record.site)
     if old_site is not None:
-        old_meshes = mesh_names(old_site.read_bytes()) - meshes
+        old_meshes = mesh_names(read_given(old_site, JSON_FILE)) - meshes
         unused += [old_site.with_name(name) for name in sorted(old_meshes) if is_plain(name)]
     return unused

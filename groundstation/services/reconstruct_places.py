@@ -13,6 +13,7 @@ from typing import Any
 from groundstation.services.model_wish import TrainWish
 from planning.effects import Decision
 from planning.errors import InputError
+from planning.files import real_path
 from planning.folders import make_folder
 from planning.json_file import expect_format, read_json, to_record, write_atomically
 from planning.progress import QUIET, Monitor, QualityPoint
@@ -82,7 +83,7 @@ def read_data_set(folder: Path, monitor: Monitor = QUIET) -> DataSetCard:
     monitor.report("reading the data set", 0, 0)
     source = read_photo_set(folder)
     path = folder / DATA_SET
-    known = to_record(read_json(path), _Description, path)
+    known = to_record(read_json(path, names_files=True), _Description, path)
     return DataSetCard(source, known.site, known.normal_step)
 
 
@@ -127,7 +128,7 @@ def noted_training(out: Path) -> TrainingNote | None:
     """What the training in a folder was begun with; None where no window has begun it, or its note is damaged."""
     path = out / NOTE
     try:
-        content = read_json(path)
+        content = read_json(path, names_files=True)
         expect_format(content, NOTE_FORMAT, path)
         return to_record(content, TrainingNote, path)
     except InputError:
@@ -212,7 +213,7 @@ def read_model_card(folder: Path) -> ModelCard:
     path = folder / MODEL
     if not path.is_file():
         raise InputError(f"{folder}: holds no finished model")
-    content = read_json(path)
+    content = read_json(path, names_files=True)
     found = to_record(content, _Model, path)
     panels = tuple(panel.corners_enu_m for panel in found.site.panels)
     light = "" if found.light is None else found.light.name
@@ -315,9 +316,9 @@ def _newest(parent: Path, file: str) -> list[Path]:
 
 def _from(out: Path, dataset: Path) -> str:
     try:
-        return os.path.relpath(dataset.resolve(), out.resolve())
+        return os.path.relpath(real_path(dataset), real_path(out))
     except ValueError:  # on another drive
-        return str(dataset.resolve())
+        return str(real_path(dataset))
 
 
 def _is_same(mine: Any, others: Any) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.reconstruct_places import MODEL
+from planning.files import real_path
 from planning.json_file import expect_format, read_json
 from planning.site import Origin
 from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
@@ -183,8 +184,8 @@ def read_card(folder: Path) -> SceneCard:
 def scenes_beside(folder: Path) -> tuple[Path, ...]:
     """Folders beside a scene's that hold scenes too: the same building at another time, or of another flight."""
     found = []
-    for path in sorted(folder.resolve().parent.glob(f"*/{DESCRIPTION}")):
-        if path.parent != folder.resolve():
+    for path in sorted(real_path(folder).parent.glob(f"*/{DESCRIPTION}")):
+        if path.parent != real_path(folder):
             try:
                 expect_format(read_json(path), FORMAT, path)
             except Exception:

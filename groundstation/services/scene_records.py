@@ -40,10 +40,15 @@ def book_of_scene(folder: Path, who: str) -> RecordBook:
 
     path = folder / FILE
     if path.exists():
-        return RecordBook(path, True, who)
+        book = RecordBook(path, True, who)
+        if book.objects(with_absent=True):
+            return book
+        # A program ended between making the book and telling it of the objects.
+    else:
+        StoredScene(folder)
+        make_book(path)
+        book = RecordBook(path, True, who)
     scene = StoredScene(folder)
-    make_book(path)
-    book = RecordBook(path, True, who)
     book.set_objects(object_rows(scene), scene.origin)
     return book
 

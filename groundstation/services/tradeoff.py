@@ -6,11 +6,10 @@ Both files are written into a temporary folder and moved together: runs that fai
 from __future__ import annotations
 
 import csv
-import shutil
-import tempfile
+import io
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -26,6 +25,7 @@ from groundstation.services.given_files import (
 )
 from groundstation.services.missions import find_site
 from planning.errors import InfeasibleError, InputError
+from planning.json_file import part_folder, write_atomically
 from planning.plan import Plan
 from planning.progress import QUIET, Monitor
 from planning.request import DEFAULT_VIEWS, PlanRequest
@@ -219,19 +219,18 @@ def output_folder(path: Path) -> Iterator[Path]:
     made = [folder for folder in (path, *path.parents) if not folder.exists()]
     try:
         path.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(prefix=".tradeoff-", dir=path))
+        with part_folder(path, "tradeoff") as temporary:
+            yield temporary
+            for file in sorted(temporary.iterdir()):
+                file.replace(path / file.name)
+            made = []
     except OSError as error:
         text = f"{path}: this folder cannot be made or written into ({error.strerror or error}); name another"
         raise InputError(text) from error
-    try:
-        yield temporary
-        for file in sorted(temporary.iterdir()):
-            file.replace(path / file.name)
-        made = []
     finally:
-        shutil.rmtree(temporary, ignore_errors=True)
         for folder in made:
-            folder.rmdir()
+            with suppress(OSError):  # it was never made, or holds something
+                folder.rmdir()
 
 
 def write_results(
@@ -246,7 +245,8 @@ def write_results(
 def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Write a table; cells stay empty where a row lacks a column."""
     columns = list(dict.fromkeys(column for row in rows for column in row))
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, columns, restval="")
-        writer.writeheader()
-        writer.writerows(rows)
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, columns, restval="")
+    writer.writeheader()
+    writer.writerows(rows)
+    write_atomically(path, text.getvalue().encode())

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
 from planning.errors import MissionError
+from planning.files import HostileXml, parse_xml
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -129,16 +130,11 @@ def parse_wpml(content: bytes, part: str) -> WpmlDocument:
     MissionError
         The content is not XML, declares entities (which no mission needs and attacks do), or is not WPML.
     """
-    from xml.etree.ElementTree import ParseError
-
-    from defusedxml.common import DefusedXmlException
-    from defusedxml.ElementTree import fromstring
-
     try:
-        root = fromstring(content, forbid_dtd=True)
-    except DefusedXmlException as error:
-        raise MissionError(f"{part}: declares a DTD or entities, which no mission needs; refused as hostile") from error
-    except (ParseError, ValueError, LookupError) as error:
+        root = parse_xml(content, part)
+    except HostileXml as error:
+        raise MissionError(f"{part}: {error}, which no mission needs; refused as hostile") from error
+    except ValueError as error:
         raise MissionError(f"{part}: not readable as XML ({error}); export the mission again") from error
     version = next((found[1] for element in root.iter() if (found := _WPML_NAMESPACE.match(element.tag))), "")
     document = _child(root, "Document")

@@ -110,7 +110,7 @@ def read_flight(path: Path) -> Flight:
     InputError
         The file is missing or wrong; the message names the file, the field and what was expected.
     """
-    content = read_json(path)
+    content = read_json(path, names_files=True)
     expect_format(content, FLIGHT_FORMAT, path)
     flight = to_record(content, _FlightContent, path)
     records = tuple(_record(record, f"{path}: sorties[{i}]") for i, record in enumerate(flight.sorties))

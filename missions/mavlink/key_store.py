@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import stat
-import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,11 +17,14 @@ from typing import Any
 
 from missions.mavlink.signing import KEY_BYTES, Signer
 from planning.errors import InputError
+from planning.files import FileLimit, read_given
+from planning.json_file import part_file
 
 SERVICE = "reflight"
 KEY_NAME = "mavlink-signing-key"
 TIMESTAMP_NAME = "mavlink-signing-timestamp"
 OWNER_ONLY = 0o600
+KEY_FILE = FileLimit("a file of the signing key", 1024)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +108,10 @@ class KeyStore:
 
     def _timestamp(self) -> int:
         try:
-            return int(self.timestamp_path.read_text("ascii"))
-        except FileNotFoundError:
-            return 0
-        except (OSError, ValueError) as error:
+            if not self.timestamp_path.exists():
+                return 0
+            return int(read_given(self.timestamp_path, KEY_FILE).decode("ascii"))
+        except (InputError, ValueError) as error:
             path = self.timestamp_path
             raise InputError(f"{path} does not hold a time stamp for signing ({error}); delete it") from error
 
@@ -125,7 +127,7 @@ class KeyStore:
                     f"others may read the signing key {self.key_path} (mode {mode:04o}, expected {OWNER_ONLY:04o}); "
                     f"give the vehicle a new key, or run: chmod 600 '{self.key_path}'"
                 )
-            return self.key_path.read_text("ascii")
+            return read_given(self.key_path, KEY_FILE).decode("ascii")
         except FileNotFoundError:
             return None
         except (OSError, UnicodeDecodeError) as error:
@@ -135,15 +137,8 @@ class KeyStore:
         """Write a file for the owner only, all of it or nothing."""
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            # mkstemp makes files that only their owner may read.
-            handle, name = tempfile.mkstemp(dir=self.folder)
-            try:
-                with os.fdopen(handle, "w", encoding="ascii") as file:
-                    file.write(text)
-                Path(name).replace(path)
-            except BaseException:
-                Path(name).unlink(missing_ok=True)
-                raise
+            with part_file(path, OWNER_ONLY) as part:
+                part.write_text(text, "ascii")
         except OSError as error:
             raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
 

@@ -14,8 +14,9 @@ from pymavlink.dialects.v20 import common as mavlink
 from missions.heights import altitude_amsl_m, point_at_amsl
 from missions.mavlink.items import MavlinkFile, MissionItem
 from missions.model import GeoPoint
-from missions.safe_files import read_limited
+from missions.safe_files import MAX_LINES, read_limited
 from planning.errors import MissionError
+from planning.files import check_lines
 
 N_COLUMNS = 12
 HOME_IN_LINE_0, NO_HOME = "110", "120"
@@ -54,7 +55,9 @@ def read_wpl(path: Path) -> MavlinkFile:
         It is no such file, or a line is wrong; the message names the line.
     """
     try:
-        lines = read_limited(path).decode("utf-8-sig").splitlines()
+        content = read_limited(path)
+        check_lines(content, MAX_LINES, path)
+        lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
         raise MissionError(f"{path}: expected text, found other bytes at offset {error.start}") from error
     header = _HEADER.fullmatch(lines[0].strip()) if lines else None

@@ -6,13 +6,16 @@ Only the header is read, and no picture is ever decoded: neither large dimension
 from __future__ import annotations
 
 import os
-import stat
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, open_given
+
+PHOTO_FILE = FileLimit("a photo", 512 * MIB)
+"""Panoramas of drones have up to 100 MiB."""
 
 SOI, EOI, SOS, APP1 = 0xD8, 0xD9, 0xDA, 0xE1
 SIZE_MARKERS = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
@@ -71,13 +74,8 @@ def read_header(path: Path) -> JpegHeader:
     InputError
         The file is missing, unreadable, no JPEG, or its header is cut off.
     """
-    try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            raise InputError(f"{path}: expected a photo, found something that is not a regular file")
-        with path.open("rb") as file:
-            return _header(file, str(path))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    with open_given(path, PHOTO_FILE) as file:
+        return _header(file, str(path))
 
 
 @dataclass(slots=True)

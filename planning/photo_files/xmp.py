@@ -9,8 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from xml.etree.ElementTree import Element, ParseError
+from xml.etree.ElementTree import Element
 from xml.sax.saxutils import unescape
+
+from planning.errors import InputError
+from planning.files import HostileXml, parse_xml
 
 RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 XMLNS = "xmlns"
@@ -31,15 +34,12 @@ _ELEMENT = re.compile(rf"<{_NAME}>([^<]{{0,4096}})</")
 
 def read_xmp(packet: bytes) -> Properties:
     """Properties of a packet; none where it is no XMP."""
-    from defusedxml.common import DefusedXmlException
-    from defusedxml.ElementTree import fromstring
-
     content = packet.strip(b"\0 \t\r\n")
     try:
-        root = fromstring(content, forbid_dtd=True)
-    except DefusedXmlException:
+        root = parse_xml(content, "XMP")
+    except (HostileXml, InputError):
         return {}
-    except (ParseError, ValueError, LookupError):
+    except ValueError:
         return _scanned(content)
     found: Properties = {}
     for description in root.iter(f"{{{RDF}}}Description"):

@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, check_lines, read_given
 
 Array = NDArray[np.float64]
 
 MAX_POINTS = 10_000
 """Larger instances are refused: their distance matrix would take more than 0.8 GB."""
 
-MAX_FILE_BYTES = 2**30
+TSPLIB_FILE, MAX_LINES = FileLimit("a TSPLIB file", 64 * MIB), 1_000_000
 
 SECTIONS = (
     "NODE_COORD_SECTION",
@@ -141,12 +142,9 @@ def _is_number(word: str) -> bool:
 
 def _read(path: Path) -> _File:
     """Split a file into header fields and sections."""
-    try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise InputError(f"{path}: the file is larger than {MAX_FILE_BYTES // 2**20} MiB; expected a TSPLIB file")
-        text = path.read_text("utf-8-sig", errors="replace")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    content = read_given(path, TSPLIB_FILE)
+    check_lines(content, MAX_LINES, path)
+    text = content.decode("utf-8-sig", "replace")
     fields: dict[str, _Line] = {}
     sections: dict[str, tuple[int, list[_Line]]] = {}
     body: list[_Line] | None = None

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
-from xml.etree.ElementTree import Element, ParseError
+from xml.etree.ElementTree import Element
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
-from planning.json_file import MAX_FILE_BYTES
+from planning.files import MIB, FileLimit, HostileXml, parse_xml, read_given
 from planning.progress import Monitor
 from planning.site_import.city_model import MIN_RING_POINTS, CityBuilding, Rings, city_source
 from planning.site_import.options import ImportOptions
@@ -20,6 +20,8 @@ from planning.site_import.source import SourceModel
 from planning.step_file import real_name
 
 Array = NDArray[np.float64]
+
+CITYGML_FILE = FileLimit("a CityGML file", 512 * MIB, "cut out the buildings wanted")
 
 WINDOWS = ("Window", "WindowSurface")
 """CityGML 1 and 2, and CityGML 3."""
@@ -78,20 +80,11 @@ def read_citygml(path: Path, options: ImportOptions, monitor: Monitor) -> Source
 
 
 def _parse(path: Path) -> Any:
-    import defusedxml
-    import defusedxml.ElementTree
-
     try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise InputError(
-                f"{path}: the file has more than {MAX_FILE_BYTES // 2**20} MiB; cut out the buildings wanted"
-            )
-        return defusedxml.ElementTree.parse(path).getroot()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
-    except defusedxml.DefusedXmlException as error:
-        raise InputError(f"{path}: the XML defines entities, which a CityGML file has no need of; refused") from error
-    except (ParseError, LookupError, ValueError) as error:
+        return parse_xml(read_given(path, CITYGML_FILE), path, forbid_dtd=False)
+    except HostileXml as error:
+        raise InputError(f"{path}: the XML {error}, which a CityGML file has no need of; refused") from error
+    except ValueError as error:
         raise InputError(f"{path}: not valid XML ({error})") from error
 
 

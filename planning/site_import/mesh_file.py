@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,9 @@ from planning.site_import.ground import stand, stated_ground
 from planning.site_import.options import UNITS_M, ImportOptions
 from planning.site_import.placement import place
 from planning.site_import.source import SourceModel
+
+MAX_SOURCE_COORDINATE = 1e12
+"""A projected coordinate has 1e7 metres, or 1e10 millimetres."""
 
 COARSE_M = 0.01
 """Coordinates stored in steps coarser than this are worth a note."""
@@ -36,7 +38,7 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
             "photos with 'panels'"
         )
     monitor.report("reading the mesh", 0, 1)
-    mesh = read_mesh(path, max_coordinate_m=math.inf)
+    mesh = read_mesh(path, MAX_SOURCE_COORDINATE)
     vertices, triangles = mesh.vertices_enu_m, mesh.triangles
     up = options.up or ("y" if path.suffix.lower() == ".glb" else "z")
     if up == "y":

@@ -13,6 +13,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, check_lines, read_given
 from planning.json_file import write_atomically
 from reconstruction.colmap import binary, text
 from reconstruction.colmap.camera_models import check_camera
@@ -22,7 +23,7 @@ FileKind = Literal["bin", "txt"]
 
 NAMES = ("cameras", "images", "points3D", "rigs", "frames")
 
-MAX_FILE_BYTES = 8 * 2**30
+COLMAP_FILE, MAX_LINES = FileLimit("a file of a COLMAP model", 8192 * MIB), 5_000_000
 """A model of ten thousand 20-megapixel photos has about 3 GiB of observations."""
 
 Content = TypeVar("Content")
@@ -124,14 +125,10 @@ def _read(
     of_text: Callable[[str, str], Any],
 ) -> Content:
     path = folder / f"{name}.{kind}"
-    try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise InputError(f"{path}: has more than {MAX_FILE_BYTES // 2**30} GiB; expected a COLMAP model")
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    content = read_given(path, COLMAP_FILE)
     if kind == "bin":
         return of_bytes(content, str(path))
+    check_lines(content, MAX_LINES, path)
     found: Content = of_text(content.decode("utf-8", "surrogateescape"), str(path))
     return found
 

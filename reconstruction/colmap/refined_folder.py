@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 
 from planning.errors import InputError
 from planning.findings import Finding
-from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.json_file import expect_format, part_folder, read_json, to_record, write_atomically
 from reconstruction.cameras import PosedPhoto
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import posed_photos
@@ -123,12 +122,12 @@ def write_refined(
         list(refinement.findings),
     )
     try:
-        with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent) as name:
-            made = Path(name) / "model"
+        with part_folder(folder.parent, folder.name) as waiting:
+            made = waiting / "model"
             write_model(made, refinement.model)
             write_atomically(made / FILE, json.dumps(asdict(record), indent=1).encode())
             if folder.exists():
-                folder.replace(Path(name) / "before")
+                folder.replace(waiting / "before")
             made.replace(folder)
     except OSError as error:
         raise InputError(f"{folder}: cannot be written ({error.strerror or error}); name another folder") from error
@@ -164,7 +163,7 @@ def read_refined(folder: Path, photos: Sequence[PosedPhoto]) -> KeptRefinement:
         A file is missing or damaged.
     """
     path = folder / FILE
-    content = read_json(path)
+    content = read_json(path, names_files=True)
     expect_format(content, FORMAT, path)
     record: _Record = to_record(content, _Record, path)
     by_name = {photo.name: photo for photo in photos}

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from planning.effects import Decision, Wish, decide
 from planning.errors import InputError
+from planning.files import read_given
 from planning.findings import Finding, Severity
 from planning.jit import n_threads
 from planning.mesh import join, write_mesh
@@ -31,9 +32,13 @@ from reconstruction.dataset.layers import Scene, draw_layers, normals_to_16_bit,
 from reconstruction.dataset.points import ColouredPoints, start_points
 from reconstruction.dataset.records import write_records
 from reconstruction.dataset.refined_mesh import RefineParameters, refine_mesh
+from reconstruction.photos.decode import PICTURE_FILE, decoded
 from reconstruction.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
+
+DATA_SET, UNFINISHED = "dataset.json", ".unfinished"
+"""The file that is written last; and one that is there as long as others are missing."""
 
 FOLDERS = ("images", "panels", "masks", "normals", "sparse/0")
 
@@ -112,15 +117,14 @@ def prepare(
         raise InputError("there are no photos with a pose to prepare")
     made = _empty(folder)
     try:
-        return _prepare(photos, model, panel_corners(model.site), folder, parameters, monitor)
+        prepared = _prepare(photos, model, panel_corners(model.site), folder, parameters, monitor)
     except BaseException:
-        for name in {part.split("/")[0] for part in FOLDERS} | {"transforms.json", "dataset.json"}:
-            _remove(folder / name)
-        for mesh in ("refined.ply", "points.ply"):
-            _remove(folder / mesh)
+        _clear(folder)
         if made:
             shutil.rmtree(folder, ignore_errors=True)
         raise
+    (folder / UNFINISHED).unlink(missing_ok=True)
+    return prepared
 
 
 def _prepare(
@@ -170,9 +174,10 @@ def _photo(
     parameters: PrepareParameters,
 ) -> PosedPhoto | Finding:
     """Write one photo's layers; a photo that cannot be read is a finding."""
-    content = np.asarray(cv2.imread(str(photo.path), cv2.IMREAD_COLOR)) if photo.path.is_file() else None
     lens = photo.intrinsics
-    if content is None or content.ndim != 3:
+    try:
+        content = decoded(read_given(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
+    except InputError:
         return Finding(
             Severity.WARNING, "photo-unreadable", "the picture cannot be decoded; it was left out", photo.name
         )
@@ -229,15 +234,26 @@ def _same_file(source: Path, target: Path) -> None:
 
 def _empty(folder: Path) -> bool:
     """Make the folder; whether it was not there before."""
+    if (folder / UNFINISHED).is_file() and not (folder / DATA_SET).exists():
+        _clear(folder)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(f"{folder}: is not empty; name a new folder for the data set")
     was_there = folder.exists()
     try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / UNFINISHED).touch()
         for name in FOLDERS:
             (folder / name).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder}: cannot be made ({error.strerror or error})") from error
     return not was_there
+
+
+def _clear(folder: Path) -> None:
+    """Remove what was written of a data set that did not come to its end."""
+    names = {part.split("/")[0] for part in FOLDERS} | {"transforms.json", "refined.ply", "points.ply", DATA_SET}
+    for path in [*(folder / name for name in sorted(names)), *folder.glob(".*.????????.part*"), folder / UNFINISHED]:
+        _remove(path)
 
 
 def _remove(path: Path) -> None:

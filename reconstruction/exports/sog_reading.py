@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
-from planning.json_file import to_record
+from planning.files import MIB, FileLimit, check_zip_directory, open_given
+from planning.json_file import parse_json, to_record
 from reconstruction.exports.ellipsoids import NO_PANEL, Ellipsoids
 from reconstruction.exports.sog import FIRST_TAG, META, PALETTE_COLUMNS, STEPS
 from reconstruction.exports.sog_codebooks import CODES
@@ -22,6 +22,8 @@ from reconstruction.exports.turned_axes import Axes, turned_back
 from reconstruction.splatting.harmonic_colour import N_HARMONICS
 
 Floats = NDArray[np.float32]
+
+SOG_FILE = FileLimit("a SOG file", 2048 * MIB)
 
 MOST_META_BYTES = 1 << 20
 
@@ -88,21 +90,18 @@ def read_sog(path: Path, axes: Axes = "y-down") -> Ellipsoids:
         The file is missing, is no such file, is damaged, or holds more than can be read.
     """
     try:
-        with zipfile.ZipFile(path) as archive:
-            meta = _meta(archive, path)
-            return turned_back(_Reader(archive, meta, path).ellipsoids(), axes)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+        with open_given(path, SOG_FILE) as file:
+            check_zip_directory(file, path)
+            with zipfile.ZipFile(file) as archive:
+                meta = _meta(archive, path)
+                return turned_back(_Reader(archive, meta, path).ellipsoids(), axes)
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError) as error:
         raise InputError(f"{path}: is no SOG file, or damaged ({error})") from error
 
 
 def _meta(archive: zipfile.ZipFile, path: Path) -> _Meta:
     content = _file(archive, META, MOST_META_BYTES, path)
-    try:
-        plain = json.loads(content)
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: {META} is not valid JSON ({error})") from error
+    plain = parse_json(content, Path(f"{path}: {META}"))
     if isinstance(plain, dict) and plain.get("version") != 2:
         raise InputError(f"{path}: expected SOG of version 2, found {str(plain.get('version', 'none'))[:20]}")
     meta = to_record(plain, _Meta, path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import zlib
 from pathlib import Path
 from typing import BinaryIO
@@ -10,12 +11,15 @@ import numpy as np
 from backports import zstd
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, open_given
 from reconstruction.exports import spz_zstd
 from reconstruction.exports.ellipsoids import Ellipsoids
 from reconstruction.exports.spz import GZIP, HEADER
 from reconstruction.exports.spz_packing import MOST_FRACTION_BITS, STREAMS, Bytes, sizes_of, unpacked
 from reconstruction.exports.spz_zstd import AT_ONCE_BYTES, MAGIC
 from reconstruction.exports.turned_axes import Axes, turned_back
+
+SPZ_FILE = FileLimit("a SPZ file", 2048 * MIB)
 
 MOST_GAUSSIANS = 10_000_000
 """2.4 GB of them in memory; no viewer shows as many."""
@@ -42,18 +46,15 @@ def read_spz(path: Path, axes: Axes = "y-up") -> Ellipsoids:
     InputError
         The file is missing, is no such file, says what it does not hold, or holds more than can be read.
     """
-    try:
-        with path.open("rb") as stream:
-            size = path.stat().st_size
-            start = stream.read(4)
-            stream.seek(0)
-            if start == MAGIC:
-                return turned_back(_read_frames(stream, size, path), axes)
-            if start[:2] != b"\x1f\x8b":
-                raise InputError(f"{path}: is no SPZ file (it does not start like one)")
-            return turned_back(_read(_Inflated(stream, path), size, path), axes)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    with open_given(path, SPZ_FILE) as stream:
+        size = os.fstat(stream.fileno()).st_size
+        start = stream.read(4)
+        stream.seek(0)
+        if start == MAGIC:
+            return turned_back(_read_frames(stream, size, path), axes)
+        if start[:2] != b"\x1f\x8b":
+            raise InputError(f"{path}: is no SPZ file (it does not start like one)")
+        return turned_back(_read(_Inflated(stream, path), size, path), axes)
 
 
 class _Inflated:

@@ -9,11 +9,10 @@ had tiles has whole ones at every moment.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -21,8 +20,9 @@ from typing import Any, Literal
 import numpy as np
 
 from planning.errors import InputError
+from planning.files import sha256_given
 from planning.folders import make_folder
-from planning.json_file import read_json, write_atomically
+from planning.json_file import new_file_beside, write_together
 from planning.progress import QUIET, Monitor
 from planning.site import Origin
 from reconstruction.exports.coarser_parts import coarser_part
@@ -58,6 +58,9 @@ CONTENT = "3DTILES_content_gltf"
 """What tilesets tell by it of their files, CesiumJS has to know before it reads the first."""
 
 Layer = Literal["gaussians", "panels"]
+
+_OURS = re.compile(r"[A-Za-z0-9-]+-(?:gaussians|panels)-[0-9a-f]{12}\.glb")
+"""Names of the files of tiles."""
 
 TILESETS: dict[str, tuple[Layer, ...]] = {
     "gaussians.json": ("gaussians",),
@@ -179,23 +182,26 @@ def write_tiles(
     check_scene(scene, folder)
     table = panel_table(scene, attributes, folder)
     make_folder(folder)
-    old = _files_of(folder)
+    old = {path.name for path in folder.glob("*.glb") if _OURS.fullmatch(path.name)}
     made = _Folder(folder, scene, table, options, monitor)
     try:
         tiles = tuple(made.component(component, attributes) for component in scene.components)
         tiles = tuple(tile for tile in tiles if tile.children)
         if not tiles:
             raise InputError(f"{folder}: nothing to write: the scene has neither Gaussians nor panels")
+        around = tiles[0].box.with_others(*(tile.box for tile in tiles[1:]))
+        transform = {} if options.place == "local" else {"transform": _earth_from_enu(scene.origin)}
+        root = _Tile(around, children=tiles, more={"refine": "ADD"} | transform)
+        tilesets = {}
+        for name, layers in TILESETS.items():
+            # CesiumJS takes all content of a tileset for Gaussians where such are compressed.
+            is_compressed = options.gaussians == "spz" and layers == ("gaussians",)
+            needed = (SPLATTING, SPZ) if is_compressed else ()
+            tilesets[folder / name] = _tileset(scene, table, root, layers, needed)
+        write_together(tilesets)
     except BaseException:
         _remove(folder, made.files - old)
         raise
-    around = tiles[0].box.with_others(*(tile.box for tile in tiles[1:]))
-    transform = {} if options.place == "local" else {"transform": _earth_from_enu(scene.origin)}
-    root = _Tile(around, children=tiles, more={"refine": "ADD"} | transform)
-    for name, layers in TILESETS.items():
-        # CesiumJS takes all content of a tileset for Gaussians where such are compressed.
-        is_compressed = options.gaussians == "spz" and layers == ("gaussians",)
-        _write(folder / name, scene, table, root, layers, (SPLATTING, SPZ) if is_compressed else ())
     _remove(folder, old - made.files)
 
 
@@ -254,24 +260,18 @@ class _Folder:
         nodes = made.gaussian_nodes(part, frame) if layer == "gaussians" else made.panel_nodes(part, frame)
         # Of a facade's name only what every file system and every URI has.
         name = re.sub(r"[^A-Za-z0-9]+", "-", part.name).strip("-")[:40] or "part"
-        new = self._folder / f".{name}-{layer}-new.glb"
         try:
-            write_glb(new, made.content(nodes), made.buffer)
-            with new.open("rb") as stream:
-                digest = hashlib.file_digest(stream, "sha256").hexdigest()
-            file = f"{name}-{layer}-{digest[:12]}.glb"
-            self.files.add(file)
-            new.replace(self._folder / file)
+            with new_file_beside(self._folder / f"{name}-{layer}.glb") as new:
+                write_glb(new, made.content(nodes), made.buffer)
+                file = f"{name}-{layer}-{sha256_given(new)[:12]}.glb"
+                self.files.add(file)
+                new.replace(self._folder / file)
         except OSError as error:
             raise InputError(f"{self._folder}: cannot be written ({error.strerror or error})") from error
-        finally:
-            new.unlink(missing_ok=True)
         return file
 
 
-def _write(
-    path: Path, scene: GsScene, table: PanelTable, root: _Tile, layers: Sequence[Layer], needed: Sequence[str]
-) -> None:
+def _tileset(scene: GsScene, table: PanelTable, root: _Tile, layers: Sequence[Layer], needed: Sequence[str]) -> bytes:
     """A tileset of layers, whose files need some extensions; where the scene has no layer, one that shows nothing."""
     text, number = {"type": "STRING", "required": True}, {"type": "SCALAR", "componentType": "UINT32", "required": True}
     schema = table.schema
@@ -293,7 +293,7 @@ def _write(
     if needed:
         content["extensionsUsed"] = [CONTENT]
         content["extensions"] = {CONTENT: {"extensionsUsed": [*needed], "extensionsRequired": [*needed]}}
-    write_atomically(path, json.dumps(content, indent=1, allow_nan=False).encode())
+    return json.dumps(content, indent=1, allow_nan=False).encode()
 
 
 def _box(box: Box) -> list[float]:
@@ -314,30 +314,6 @@ def _earth_from_enu(origin: Origin | None) -> list[float]:
     north = (-math.sin(lat) * math.cos(lon), -math.sin(lat) * math.sin(lon), math.cos(lat))
     up = (math.cos(lat) * math.cos(lon), math.cos(lat) * math.sin(lon), math.sin(lat))
     return [*east, 0.0, *north, 0.0, *up, 0.0, *(float(value) for value in place), 1.0]
-
-
-def _files_of(folder: Path) -> set[str]:
-    """Files of tiles that are in the folder, as its tileset names them."""
-    path = folder / TILESET
-    if not path.is_file():
-        return set()
-    try:
-        content = read_json(path)
-    except InputError:
-        return set()
-    return {uri for uri in _uris(content) if re.fullmatch(r"[A-Za-z0-9-]+-[0-9a-f]{12}\.glb", uri)}
-
-
-def _uris(content: Any) -> Iterator[str]:
-    open_ = [content]
-    while open_:
-        found = open_.pop()
-        if isinstance(found, dict):
-            if isinstance(found.get("uri"), str):
-                yield found["uri"]
-            open_ += found.values()
-        elif isinstance(found, list):
-            open_ += found
 
 
 def _remove(folder: Path, files: set[str]) -> None:

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from importlib import import_module
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 from typing import Any
 
@@ -19,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
-from planning.json_file import check_output
+from planning.files import real_path
+from planning.json_file import check_output, part_folder
 from planning.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene, ellipsoid_blocks, extents_m
 from reconstruction.exports.gltf import INVISIBLE
@@ -100,8 +100,8 @@ def write_usd(
     check_output(path)
     try:
         # Gaussians wait in files for all to be written at once: USD would keep them in memory.
-        with TemporaryDirectory(dir=path.resolve().parent, prefix=".usd-", ignore_cleanup_errors=True) as waiting:
-            made = _Stage(pxr, scene, table, options, attributes, path, Path(waiting))
+        with part_folder(real_path(path).parent, "usd") as waiting:
+            made = _Stage(pxr, scene, table, options, attributes, path, waiting)
             try:
                 made.write(monitor)
             finally:

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, open_given
 from planning.folders import make_folder
 from planning.progress import QUIET, Monitor
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
@@ -40,6 +41,8 @@ SIGN = f'<meta name="generator" content="{FORMAT}">'
 SOURCES = Path(__file__).parent / "data"
 SCRIPTS = ("words", "geometry", "order", "shaders", "picture", "colours", "records", "motion", "loading", "page")
 LAST = "scripting"
+
+PAGE_FILE = FileLimit("a web page", 4096 * MIB)
 
 MAX_TEXT_BYTES = 64 * 2**20
 """Of records and panes."""
@@ -185,7 +188,7 @@ def _check_folder(folder: Path) -> None:
             raise InputError(f"{folder}: cannot be written: this is a file; name a folder")
         page = folder / PAGE
         if page.is_file():
-            with page.open("rb") as stream:
+            with open_given(page, PAGE_FILE) as stream:
                 if SIGN.encode() in stream.read(1000):
                     return
             raise InputError(f"{page}: is a page of somebody else's; name another folder")

@@ -6,7 +6,6 @@ whatever else it carries reaches the page.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 
 from planning.errors import InputError
 from planning.progress import Monitor
+from reconstruction.photos.decode import decoded
 from reconstruction.records.entries import is_address
 from reconstruction.records.stored_files import STARTS, told_name
 
@@ -28,10 +28,6 @@ MAX_PIXELS = 100 * 10**6
 """Larger ones are refused by what their header says: a file of some kilobytes can claim any size."""
 
 MAX_FILE_BYTES = 64 * 2**20
-
-_PNG = b"\x89PNG\r\n\x1a\n"
-_NO_SIZE = {0xC4, 0xC8, 0xCC}
-"""JPEG markers among those of frames (SOF) that are none."""
 
 
 MAX_PICTURE_BYTES = 64 * 2**20
@@ -150,23 +146,8 @@ def small_jpeg(name: str, content: bytes, longest_px: int = LONGEST_PX) -> bytes
     place = f"picture '{name[:80]}'"
     if len(content) > MAX_FILE_BYTES:
         raise InputError(f"{place}: has more than {MAX_FILE_BYTES // 2**20} MiB; save it smaller")
-    size_wh = _size(content)
-    if size_wh is None:
-        raise InputError(f"{place}: expected a JPEG, PNG or WebP file, found something else or a damaged one")
-    if not 0 < size_wh[0] * size_wh[1] <= MAX_PIXELS:
-        raise InputError(
-            f"{place}: claims to have {size_wh[0]} x {size_wh[1]} pixels; expected at most "
-            f"{MAX_PIXELS // 10**6} megapixels, so it is not decoded"
-        )
-    try:
-        picture = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_COLOR)
-    except cv2.error as error:
-        raise InputError(f"{place}: cannot be decoded ({error.err}); copy the file again") from error
-    if picture is None or not picture.size:
-        raise InputError(f"{place}: cannot be decoded; copy the file again")
-    is_good, written = cv2.imencode(
-        ".jpg", _shrunk(np.asarray(picture), longest_px), (cv2.IMWRITE_JPEG_QUALITY, QUALITY)
-    )
+    picture = np.asarray(decoded(content, cv2.IMREAD_COLOR, place, MAX_PIXELS), np.uint8)
+    is_good, written = cv2.imencode(".jpg", _shrunk(picture, longest_px), (cv2.IMWRITE_JPEG_QUALITY, QUALITY))
     if not is_good:
         raise InputError(f"{place}: cannot be written as JPEG")
     return written.tobytes()
@@ -179,41 +160,3 @@ def _shrunk(picture: NDArray[np.uint8], longest_px: int) -> NDArray[np.uint8]:
         return picture
     size_wh = max(1, round(width * factor)), max(1, round(height * factor))
     return np.asarray(cv2.resize(picture, size_wh, interpolation=cv2.INTER_AREA), np.uint8)
-
-
-def _size(content: bytes) -> tuple[int, int] | None:
-    """Width and height that a file's header says; None where there is none."""
-    if content.startswith(_PNG):
-        return struct.unpack(">II", content[16:24]) if len(content) >= 24 and content[12:16] == b"IHDR" else None
-    if content.startswith(b"RIFF") and content[8:12] == b"WEBP":
-        return _size_of_webp(content)
-    if not content.startswith(b"\xff\xd8\xff"):
-        return None
-    place = 2
-    while place + 9 <= len(content) and content[place] == 0xFF:
-        marker = content[place + 1]
-        if marker == 0xFF:  # fill bytes may stand before a marker
-            place += 1
-            continue
-        if 0xC0 <= marker <= 0xCF and marker not in _NO_SIZE:
-            height, width = struct.unpack(">HH", content[place + 5 : place + 9])
-            return width, height
-        place += 2 + int(struct.unpack(">H", content[place + 2 : place + 4])[0])
-    return None
-
-
-def _size_of_webp(content: bytes) -> tuple[int, int] | None:
-    """Of the first chunk: extended, lossless or lossy (RFC 9649)."""
-
-    def number(start: int, n_bytes: int) -> int:
-        return int.from_bytes(content[start : start + n_bytes], "little")
-
-    kind = content[12:16] if len(content) >= 30 else b""
-    if kind == b"VP8X":
-        return number(24, 3) + 1, number(27, 3) + 1
-    if kind == b"VP8L" and content[20] == 0x2F:
-        bits = number(21, 4)
-        return (bits & 0x3FFF) + 1, (bits >> 14 & 0x3FFF) + 1
-    if kind == b"VP8 " and content[23:26] == b"\x9d\x01\x2a":
-        return number(26, 2) & 0x3FFF, number(28, 2) & 0x3FFF
-    return None

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.json_file import write_atomically
 from planning.site import Origin
 from reconstruction.cameras import PosedPhoto
 from reconstruction.photos.write import photo_jpeg, photo_name
@@ -38,7 +39,7 @@ def write_photos(
         path = folder / photo_name(number + 1, taken_at)
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(photo_jpeg(picture, photo, origin, taken_at))
+            write_atomically(path, photo_jpeg(picture, photo, origin, taken_at))
         except OSError as error:
             raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
         paths.append(path)

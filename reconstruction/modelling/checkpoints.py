@@ -15,7 +15,9 @@ from safetensors.torch import load, save
 from torch import Tensor
 
 from planning.errors import InputError
+from planning.files import check_json_size
 from planning.json_file import write_atomically
+from reconstruction.tensor_files import tensor_bytes
 
 FORMAT = "reflight-checkpoint/1"
 
@@ -99,13 +101,12 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
     InputError
         The file is missing, damaged, or none of ours.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    content = tensor_bytes(path, "begin the training anew")
     try:
         tensors = load(content)
-        record = json.loads(_header_text(content))
+        text = _header_text(content)
+        check_json_size(text.encode(), path)
+        record = json.loads(text)
         if not isinstance(record, dict) or record.get("format") != FORMAT:
             raise ValueError(f"expected '{FORMAT}'")
         state = unflatten(record["state"], tensors)

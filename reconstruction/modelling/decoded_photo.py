@@ -127,7 +127,7 @@ def decoded_bytes(lens: Intrinsics, decoding: Decoding, normal_step: int) -> int
 def normal_step_of(folder: Path) -> int:
     """Pixels of photos per pixel of normal maps, along each side, as `dataset.json` has it."""
     path = folder / "dataset.json"
-    return to_record(read_json(path), _Steps, path).normal_step
+    return to_record(read_json(path, names_files=True), _Steps, path).normal_step
 
 
 @dataclass(frozen=True, slots=True)

@@ -160,7 +160,7 @@ def site_record(folder: Path) -> SiteRecord:
         Its description is damaged.
     """
     path = folder / "dataset.json"
-    content = read_json(path)
+    content = read_json(path, names_files=True)
     expect_format(content, DATASET_FORMAT, path)
     found = to_record(content, _Description, path)
     panels = tuple(PanelRecord(panel.id, panel.facade, panel.corners_enu_m, panel.source_id) for panel in found.panels)

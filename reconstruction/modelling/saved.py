@@ -1,7 +1,8 @@
 """A trained model on the disk: a folder with `model.json`, the weights that it names, and the splats for viewers.
 
-The weights' file is named after its content and written first; `model.json` is replaced last, in one step. So a folder
-that had a model has a whole one at every moment, and a run that is interrupted leaves at most a file that none names.
+The weights' file is named after its content and written first; `model.json` is replaced in one step. So a folder that
+had a model has a whole one at every moment. The splats, which only other programs read, are never those of another
+model: the old ones go before `model.json` is replaced, and the new ones come after it.
 """
 
 from __future__ import annotations
@@ -20,13 +21,14 @@ from torch import Tensor
 
 from planning.errors import InputError
 from planning.folders import make_folder
-from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.json_file import expect_format, part_files, read_json, to_record, write_atomically
 from planning.progress import QualityPoint
 from reconstruction.modelling.exposures import Exposures
 from reconstruction.modelling.model import SceneModel
 from reconstruction.modelling.record import ModelRecord, empty_model
 from reconstruction.splatting.ply import Kind, render_mode, write_splats
 from reconstruction.splatting.splats import splats_from_tensors
+from reconstruction.tensor_files import tensor_bytes
 
 FORMAT = "reflight-model/1"
 DESCRIPTION, CHECKPOINT, SPLATS = "model.json", "checkpoint.safetensors", "splats.ply"
@@ -98,12 +100,20 @@ def save_model(trained: TrainedModel, folder: Path) -> None:
     content = save(tensors_of(trained))
     digest = hashlib.sha256(content).hexdigest()
     name = f"weights-{digest[:12]}.safetensors"
-    write_atomically(folder / name, content)
     description = {**description_of(trained), "weights": {"file": name, "sha256": digest}}
-    write_atomically(folder / DESCRIPTION, json.dumps(description, indent=1, allow_nan=False).encode())
-    # Last: it is for other programs, and nothing here reads it.
-    kind: Kind = "2dgs" if trained.model.splats.is_flat else "3dgs"
-    write_splats(folder / SPLATS, trained.model.splats, kind, trained.record.origin_enu_m, _comments(trained.record))
+    was_there = (folder / name).exists()
+    try:
+        write_atomically(folder / name, content)
+        with part_files((folder / DESCRIPTION, folder / SPLATS)) as (described, splats):
+            described.write_bytes(json.dumps(description, indent=1, allow_nan=False).encode())
+            kind: Kind = "2dgs" if trained.model.splats.is_flat else "3dgs"
+            write_splats(splats, trained.model.splats, kind, trained.record.origin_enu_m, _comments(trained.record))
+    except BaseException as error:
+        if not was_there:
+            (folder / name).unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            raise InputError(f"{folder}: the model cannot be written ({error.strerror or error})") from error
+        raise
     for old in folder.glob("weights-*.safetensors"):
         if old.name != name:
             old.unlink(missing_ok=True)
@@ -128,17 +138,35 @@ def read_model(folder: Path) -> TrainedModel:
     InputError
         A file is missing or damaged, or the weights are not those of the description.
     """
+    while True:
+        try:
+            return _read(folder)
+        except _Replaced:
+            continue
+
+
+class _Replaced(Exception):  # noqa: N818
+    """The model was written anew while it was being read."""
+
+
+def _read(folder: Path) -> TrainedModel:
     path = folder / DESCRIPTION
     if not path.is_file():
         advice = "resume its training" if (folder / CHECKPOINT).is_file() else "name one of `train`"
         raise InputError(f"{folder}: holds no finished model; {advice}")
-    content = read_json(path)
+    content = read_json(path, names_files=True)
     expect_format(content, FORMAT, path)
     saved = to_record(content, _File, path)
     if Path(saved.weights.file).name != saved.weights.file or not saved.weights.file:
         raise InputError(f"{path}: weights.file: expected the name of a file beside it, got '{saved.weights.file}'")
     weights = folder / saved.weights.file
-    return _trained(saved, _read_tensors(weights, saved.weights.sha256), weights)
+    try:
+        tensors = _read_tensors(weights, saved.weights.sha256)
+    except InputError as error:
+        if read_json(path, names_files=True) != content:
+            raise _Replaced from error
+        raise
+    return _trained(saved, tensors, weights)
 
 
 def description_of(trained: TrainedModel) -> dict[str, Any]:
@@ -186,10 +214,7 @@ def tensors_of(trained: TrainedModel) -> dict[str, Tensor]:
 
 
 def _read_tensors(path: Path, sha256: str) -> dict[str, Tensor]:
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    content = tensor_bytes(path)
     if hashlib.sha256(content).hexdigest() != sha256:
         raise InputError(f"{path}: is not the file that {DESCRIPTION} was written with; was it changed or cut off?")
     try:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import os
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass
@@ -21,6 +22,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save
 
 from planning.errors import InputError
+from planning.files import check_given, open_given
 from planning.folders import make_folder
 from planning.frames import Vec3
 from planning.json_file import expect_format, read_json, to_record, write_atomically
@@ -35,6 +37,7 @@ from reconstruction.objects.gs_scene import (
     GsScene,
     Kind,
 )
+from reconstruction.tensor_files import TENSORS_FILE
 
 FORMAT = "reflight-gsscene/1"
 DESCRIPTION = "gsscene.json"
@@ -145,6 +148,17 @@ def write_scene(scene: GsScene, folder: Path, monitor: Monitor = QUIET) -> None:
     if not scene.is_whole:
         raise ValueError("scene: expected all of its components")
     make_folder(folder)
+    before = {path.name for path in folder.glob(f"*{SUFFIX}")}
+    try:
+        named = _write_parts(scene, folder, monitor)
+    except BaseException:
+        _remove_parts(folder, before)
+        raise
+    _remove_parts(folder, named)
+
+
+def _write_parts(scene: GsScene, folder: Path, monitor: Monitor) -> set[str]:
+    """Write all files; returns those that the description names."""
     n_parts = len(scene.components) + len(scene.auxiliary)
     components: list[StoredComponent] = []
     for number, component in enumerate(scene.components):
@@ -178,10 +192,14 @@ def write_scene(scene: GsScene, folder: Path, monitor: Monitor = QUIET) -> None:
     )
     content = {"format": FORMAT, **asdict(record)}
     write_atomically(folder / DESCRIPTION, json.dumps(content, indent=1, allow_nan=False).encode())
-    named = {part.file for part in (*components, *auxiliary)}
-    for old in folder.glob(f"*{SUFFIX}"):
-        if old.name not in named and re.search(rf"-[0-9a-f]{{12}}\{SUFFIX}$", old.name):
-            old.unlink(missing_ok=True)
+    return {part.file for part in (*components, *auxiliary)}
+
+
+def _remove_parts(folder: Path, kept: Collection[str]) -> None:
+    """Remove files of parts but some."""
+    for path in folder.glob(f"*{SUFFIX}"):
+        if path.name not in kept and re.search(rf"-[0-9a-f]{{12}}\{SUFFIX}$", path.name):
+            path.unlink(missing_ok=True)
 
 
 class StoredScene:
@@ -197,9 +215,17 @@ class StoredScene:
         self.folder, self._path = folder, folder / DESCRIPTION
         if not self._path.is_file():
             raise InputError(f"{folder}: holds no scene of objects ({DESCRIPTION}); make one with `organise`")
-        content = read_json(self._path)
+        self._scene = self._described()
+
+    def _described(self) -> _Scene:
+        content = read_json(self._path, names_files=True)
         expect_format(content, FORMAT, self._path)
-        self._scene = to_record(content, _Scene, self._path)
+        return to_record(content, _Scene, self._path)
+
+    def _is_another(self) -> bool:
+        """Whether the scene was written anew since it was looked at, so that files of before are gone."""
+        before, self._scene = self._scene, self._described()
+        return self._scene != before
 
     @property
     def component_names(self) -> tuple[str, ...]:
@@ -244,6 +270,14 @@ class StoredScene:
         components
             Names of those that are wanted; None for all.
         """
+        while True:
+            try:
+                return self._read(components, monitor)
+            except InputError:
+                if not self._is_another():
+                    raise
+
+    def _read(self, components: Collection[str] | None, monitor: Monitor) -> GsScene:
         unknown = set(components or ()) - set(self.component_names)
         if unknown:
             known = ", ".join(self.component_names)
@@ -271,6 +305,14 @@ class StoredScene:
 
     def element(self, global_id: str) -> tuple[GsElement, GsGaussian]:
         """An element with its Gaussians; nothing else of the file is read, so its checksum is not looked at."""
+        while True:
+            try:
+                return self._element(global_id)
+            except InputError:
+                if not self._is_another():
+                    raise
+
+    def _element(self, global_id: str) -> tuple[GsElement, GsGaussian]:
         for component in self._scene.components:
             for element in component.elements:
                 if element.global_id == global_id:
@@ -308,14 +350,10 @@ class StoredScene:
     def _checked(self, part: StoredPart) -> dict[str, Array]:
         """All that a file has, if it is the one that was written."""
         path = self.folder / part.file
-        try:
+        with open_given(path, TENSORS_FILE) as stream:
             # A file of another length is not read to its end: it may be a very long one.
-            is_same = path.stat().st_size == part.n_bytes
-            if is_same:
-                with path.open("rb") as stream:
-                    is_same = hashlib.file_digest(stream, "sha256").hexdigest() == part.sha256
-        except OSError as error:
-            raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+            is_same = os.fstat(stream.fileno()).st_size == part.n_bytes
+            is_same = is_same and hashlib.file_digest(stream, "sha256").hexdigest() == part.sha256
         if not is_same:
             raise InputError(f"{path}: is not the file that {DESCRIPTION} was written with; was it changed or cut off?")
         return self._opened(part, lambda file: {name: file.get_tensor(name) for name in file.keys()})  # noqa: SIM118
@@ -325,6 +363,7 @@ class StoredScene:
 
     def _opened(self, part: StoredPart, read: Any) -> dict[str, Array]:
         path = self.folder / part.file
+        check_given(path, TENSORS_FILE)
         try:
             with safe_open(path, framework="numpy") as file:
                 found: dict[str, Array] = read(file)

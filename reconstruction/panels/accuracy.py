@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from planning.errors import InputError
+from planning.files import read_given
 from planning.frames import Vec3
-from planning.json_file import expect_format, read_json, to_record
+from planning.json_file import JSON_FILE, expect_format, parse_json, to_record
 from planning.site import Panel
 
 FACADES_FORMAT = "reflight-facades/1"
@@ -85,13 +85,14 @@ def read_facades(path: Path) -> FoundFacades:
     InputError
         It cannot be read, or a field is missing or wrong.
     """
-    content = read_json(path)
+    return facades_of(read_given(path, JSON_FILE), path)
+
+
+def facades_of(written: bytes, path: Path) -> FoundFacades:
+    """Facades from the content of their file `path`; errors as `read_facades`."""
+    content = parse_json(written, path, names_files=True)
     expect_format(content, FACADES_FORMAT, path)
     file = to_record(content, _File, path)
-    try:
-        written = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
     return FoundFacades(written, {panel.id: panel for facade in file.facades for panel in facade.panels})
 
 

@@ -6,14 +6,21 @@ as frequencies. EXIF's orientation is left out of account: pixels stay where the
 
 from __future__ import annotations
 
-from typing import Literal
+import struct
+import zlib
+from typing import Any, Literal
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, read_given
+from planning.photo_files.jpeg import PHOTO_FILE
 from planning.photo_files.record import PhotoMetadata
+
+# What is wrong with a picture is said in an error, and once.
+cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
 
 Scale = Literal[1, 2, 4, 8]
 """The picture is decoded at one part in so many of its width and height."""
@@ -39,7 +46,15 @@ MAX_PIXELS = 400 * 10**6
 LARGE_PIXELS = 64 * 10**6
 """Larger ones are decoded one at a time."""
 
-MAX_FILE_BYTES = 512 * 2**20
+PICTURE_FILE = FileLimit("a picture", 512 * MIB)
+
+JPEG_START, PNG_START = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
+
+_TIFF = {b"II*\0": "<", b"MM\0*": ">"}
+"""First bytes, and the order of those of numbers."""
+
+_NO_SIZE = {0xC4, 0xC8, 0xCC}
+"""JPEG markers among those of frames (SOF) that are none."""
 
 
 def grey_picture(photo: PhotoMetadata, scale: Scale = 1) -> NDArray[np.uint8]:
@@ -60,26 +75,11 @@ def colour_picture(photo: PhotoMetadata, scale: Scale = 1) -> NDArray[np.uint8]:
 
 def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]:
     place = str(photo.path)
-    n_pixels = photo.width_px * photo.height_px
-    if n_pixels > MAX_PIXELS:
-        raise InputError(
-            f"{place}: claims to be a picture of {photo.width_px} x {photo.height_px} pixels; expected at most "
-            f"{MAX_PIXELS // 10**6} megapixels, so it is not decoded"
-        )
-    try:
-        if photo.path.stat().st_size > MAX_FILE_BYTES:
-            raise InputError(f"{place}: has more than {MAX_FILE_BYTES // 2**20} MiB; expected a photo")
-        content = photo.path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{place}: cannot be read any more ({error.strerror or error})") from error
+    _check_size((photo.width_px, photo.height_px), place, MAX_PIXELS)
+    content = read_given(photo.path, PHOTO_FILE)
     if not photo.is_complete:
         raise InputError(f"{place}: the file was cut off, so that part of the picture is missing; copy it again")
-    try:
-        picture = cv2.imdecode(np.frombuffer(content, np.uint8), flag | cv2.IMREAD_IGNORE_ORIENTATION)
-    except cv2.error as error:
-        raise InputError(f"{place}: the picture cannot be decoded ({error.err}); copy the file again") from error
-    if picture is None or picture.size == 0:
-        raise InputError(f"{place}: the picture cannot be decoded; copy the file again")
+    picture = decoded(content, flag | cv2.IMREAD_IGNORE_ORIENTATION, place)
     expected = -(-photo.height_px // scale), -(-photo.width_px // scale)
     if picture.shape[:2] != expected:
         raise InputError(
@@ -87,3 +87,114 @@ def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]
             f"{picture.shape[1]} x {picture.shape[0]}; the file is damaged: copy it again"
         )
     return np.asarray(picture, np.uint8)
+
+
+def decoded(content: bytes, flags: int, place: str, max_pixels: int = MAX_PIXELS) -> NDArray[Any]:
+    """A picture from the content of a file; how large it will be is read from its header before it is decoded.
+
+    Parameters
+    ----------
+    flags
+        Of OpenCV's `imdecode`.
+    place
+        For messages.
+
+    Raises
+    ------
+    InputError
+        It is no JPEG, PNG, WebP, TIFF or BMP file, is damaged, or claims to have no or too many pixels.
+    """
+    size_wh = picture_size(content)
+    if size_wh is None:
+        raise InputError(f"{place}: cannot be decoded as a picture; expected JPEG, PNG, WebP, TIFF or BMP, whole")
+    _check_size(size_wh, place, max_pixels)
+    if content.startswith(PNG_START) and not _is_whole_png(content):
+        raise InputError(f"{place}: the picture is cut off or damaged; copy the file again")
+    try:
+        picture = cv2.imdecode(np.frombuffer(content, np.uint8), flags)
+    except cv2.error as error:
+        raise InputError(f"{place}: the picture cannot be decoded ({error.err}); copy the file again") from error
+    if picture is None or picture.size == 0:
+        raise InputError(f"{place}: the picture cannot be decoded; copy the file again")
+    return np.asarray(picture)
+
+
+def _check_size(size_wh: tuple[int, int], place: str, max_pixels: int) -> None:
+    if not 0 < size_wh[0] * size_wh[1] <= max_pixels:
+        raise InputError(
+            f"{place}: claims to be a picture of {size_wh[0]} x {size_wh[1]} pixels; expected 1 to "
+            f"{max_pixels // 10**6} megapixels, so it is not decoded"
+        )
+
+
+def picture_size(content: bytes) -> tuple[int, int] | None:
+    """Width and height that a file's header says; None where there is none."""
+    if content.startswith(PNG_START):
+        return struct.unpack(">II", content[16:24]) if len(content) >= 24 and content[12:16] == b"IHDR" else None
+    if content.startswith(b"RIFF") and content[8:12] == b"WEBP":
+        return _size_of_webp(content)
+    if content.startswith(b"BM") and len(content) >= 26:
+        width, height = struct.unpack("<ii", content[18:26])
+        return width, abs(height)
+    if content[:4] in _TIFF:
+        return _size_of_tiff(content, _TIFF[content[:4]])
+    if not content.startswith(JPEG_START):
+        return None
+    place = 2
+    while place + 9 <= len(content) and content[place] == 0xFF:
+        marker = content[place + 1]
+        if marker == 0xFF:  # fill bytes may stand before a marker
+            place += 1
+            continue
+        if 0xC0 <= marker <= 0xCF and marker not in _NO_SIZE:
+            height, width = struct.unpack(">HH", content[place + 5 : place + 9])
+            return width, height
+        place += 2 + int(struct.unpack(">H", content[place + 2 : place + 4])[0])
+    return None
+
+
+def _is_whole_png(content: bytes) -> bool:
+    """Whether all parts of a PNG file have their checksums; its decoder draws on over damage and prints complaints."""
+    place = len(PNG_START)
+    while place + 12 <= len(content):
+        end = place + 8 + int.from_bytes(content[place : place + 4], "big")
+        checksum = int.from_bytes(content[end : end + 4], "big")
+        if end + 4 > len(content) or zlib.crc32(content[place + 4 : end]) != checksum:
+            return False
+        if content[place + 4 : place + 8] == b"IEND":
+            return True
+        place = end + 4
+    return False
+
+
+def _size_of_webp(content: bytes) -> tuple[int, int] | None:
+    """Of the first chunk: extended, lossless or lossy (RFC 9649)."""
+
+    def number(start: int, n_bytes: int) -> int:
+        return int.from_bytes(content[start : start + n_bytes], "little")
+
+    kind = content[12:16] if len(content) >= 30 else b""
+    if kind == b"VP8X":
+        return number(24, 3) + 1, number(27, 3) + 1
+    if kind == b"VP8L" and content[20] == 0x2F:
+        bits = number(21, 4)
+        return (bits & 0x3FFF) + 1, (bits >> 14 & 0x3FFF) + 1
+    if kind == b"VP8 " and content[23:26] == b"\x9d\x01\x2a":
+        return number(26, 2) & 0x3FFF, number(28, 2) & 0x3FFF
+    return None
+
+
+def _size_of_tiff(content: bytes, order: str) -> tuple[int, int] | None:
+    """Of the first picture's directory (TIFF 6.0, section 2); a size is one number of two or four bytes."""
+    sides: dict[int, int] = {}
+    try:
+        (start,) = struct.unpack_from(f"{order}I", content, 4)
+        (n_entries,) = struct.unpack_from(f"{order}H", content, start)
+        for number in range(n_entries):
+            tag, kind, _ = struct.unpack_from(f"{order}HHI", content, start + 2 + 12 * number)
+            if tag in (256, 257):
+                value = f"{order}{'H' if kind == 3 else 'I'}"
+                (sides[tag],) = struct.unpack_from(value, content, start + 10 + 12 * number)
+    except struct.error:
+        return None
+    return (sides[256], sides[257]) if len(sides) == 2 else None

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, check_lines, read_given
 from reconstruction.records.book import RecordBook
 from reconstruction.records.changes import Changes
 from reconstruction.records.csv_cells import read_field, read_value, unguarded
@@ -19,7 +20,7 @@ from reconstruction.records.csv_tables import OBJECT, Column, TableError, column
 from reconstruction.records.entries import COMPUTED, KINDS, Attribute, Entry, Kind
 from reconstruction.records.objects import ObjectRow
 
-MAX_FILE_BYTES = 256 * 2**20
+TABLE_FILE, MAX_LINES = FileLimit("a CSV table", 256 * MIB), 2_000_000
 
 _FIELD = re.compile(r"[a-z_][a-z0-9_, ]{0,60}")
 
@@ -139,12 +140,8 @@ class _Objects:
 
 
 def _read(path: Path) -> _Table:
-    try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise InputError(f"{path}: the file has more than {MAX_FILE_BYTES // 2**20} MiB")
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    content = read_given(path, TABLE_FILE)
+    check_lines(content, MAX_LINES, path)
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -157,6 +154,11 @@ def _read(path: Path) -> _Table:
     try:
         for cells in reader:
             if any(cell.strip() for cell in cells):
+                if lines and len(cells) != len(lines[0][1]):
+                    raise InputError(
+                        f"{path}: line {start}: expected {len(lines[0][1])} cells parted by '{delimiter}', found "
+                        f"{len(cells)}"
+                    )
                 lines.append((start, cells))
             start = reader.line_num + 1
     except csv.Error as error:
@@ -169,11 +171,6 @@ def _read(path: Path) -> _Table:
         raise InputError(f"{path}: line 1: the column '{repeated[:60]}' occurs twice")
     if not any(name in head for name in OBJECT):
         raise InputError(f"{path}: line 1: expected a column 'global_id' or 'name', found {_listed(head)}")
-    wrong = next(((number, len(cells)) for number, cells in lines if len(cells) != len(head)), None)
-    if wrong is not None:
-        raise InputError(
-            f"{path}: line {wrong[0]}: expected {len(head)} cells parted by '{delimiter}', found {wrong[1]}"
-        )
     return _Table(path, delimiter == ";", head, tuple(lines[1:]))
 
 

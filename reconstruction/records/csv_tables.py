@@ -13,7 +13,7 @@ from typing import Any
 
 from planning.errors import InputError
 from planning.folders import make_folder
-from planning.json_file import write_atomically
+from planning.json_file import write_together
 from reconstruction.records.book import RecordBook
 from reconstruction.records.csv_cells import NO, YES, guarded, number_cell
 from reconstruction.records.entries import COMPUTED, KINDS, STANDARD, TYPES, Attribute, AttributeType, Kind
@@ -50,12 +50,10 @@ def write_tables(book: RecordBook, folder: Path, semicolon: bool = False) -> tup
         names = {row.global_id: row for row in book.objects(with_absent=True)}
         tables = [(kind, _table(book, kind, names)) for kind in KINDS]
     make_folder(folder)
-    paths = []
-    for kind, (head, lines) in tables:
-        path = folder / table_name(kind)
-        write_atomically(path, _bytes(head, lines, ";" if semicolon else ","))
-        paths.append(path)
-    return tuple(paths)
+    delimiter = ";" if semicolon else ","
+    files = {folder / table_name(kind): _bytes(head, lines, delimiter) for kind, (head, lines) in tables}
+    write_together(files)
+    return tuple(files)
 
 
 def column_head(column: Column) -> str:

@@ -4,23 +4,31 @@ from __future__ import annotations
 
 import hashlib
 import re
+import time
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, read_given, sha256_given
 from planning.folders import make_folder
 from planning.json_file import write_atomically
 from reconstruction.records.book import RecordBook
 from reconstruction.records.entries import check_stored_name
 from reconstruction.records.limits import SHA256
 
-MAX_PICTURE_BYTES = 64 * 2**20
+PICTURE_FILE = FileLimit("a picture", 64 * MIB)
 """The largest JPEG of a drone has 30 MB."""
 
-MAX_DOCUMENT_BYTES = 256 * 2**20
+DOCUMENT_FILE = FileLimit("a document", 256 * MIB)
 
 STARTS = {".png": b"\x89PNG\r\n\x1a\n", ".jpg": b"\xff\xd8\xff", ".webp": b"RIFF"}
 """First bytes of pictures, by the ending they are stored under."""
+
+STRAY_S = 3600.0
+
+_STORED = re.compile(r"[0-9a-f]{64}(?:\.[a-z0-9]{1,8})?")
 
 _ENDING = re.compile(r"\.[a-z0-9]{1,8}")
 
@@ -41,10 +49,10 @@ def store_picture(book: RecordBook, picture: Path | bytes) -> StoredFile:
     InputError
         It cannot be read, is no PNG, JPEG or WebP, is too large, or cannot be written.
     """
-    content = picture if isinstance(picture, bytes) else _read(picture, MAX_PICTURE_BYTES)
+    content = picture if isinstance(picture, bytes) else read_given(picture, PICTURE_FILE)
     where = "the picture" if isinstance(picture, bytes) else str(picture)
-    if len(content) > MAX_PICTURE_BYTES:
-        raise InputError(f"{where}: has {len(content)} bytes; pictures may have {MAX_PICTURE_BYTES}")
+    if len(content) > PICTURE_FILE.max_bytes:
+        raise InputError(f"{where}: has {len(content)} bytes; pictures may have {PICTURE_FILE.max_bytes}")
     ending = next((ending for ending, start in STARTS.items() if content.startswith(start)), None)
     if ending is None or (ending == ".webp" and content[8:12] != b"WEBP"):
         raise InputError(f"{where}: expected a PNG, JPEG or WebP picture, found other content")
@@ -60,7 +68,7 @@ def store_document(book: RecordBook, path: Path) -> StoredFile:
         It cannot be read, is too large, or cannot be written.
     """
     ending = path.suffix.lower()
-    return _stored(book, _read(path, MAX_DOCUMENT_BYTES), ending if _ENDING.fullmatch(ending) else "")
+    return _stored(book, read_given(path, DOCUMENT_FILE), ending if _ENDING.fullmatch(ending) else "")
 
 
 def shown_place(place: str) -> str:
@@ -89,31 +97,53 @@ def stored_path(book: RecordBook, name: str) -> Path:
     path = book.files / name
     if path.is_symlink() or not path.is_file():
         raise InputError(f"{path}: the file is missing; copy it back beside the records")
-    digest = hashlib.sha256(_read(path, MAX_DOCUMENT_BYTES)).hexdigest()
+    digest = sha256_given(path, DOCUMENT_FILE)
     if digest != path.name.partition(".")[0]:
         raise InputError(f"{path}: is not the file that was stored; copy it back")
     return path
 
 
+def clear_strays(book: RecordBook, least_age_s: float = STRAY_S) -> None:
+    """Remove stored files that no entry refers to, nor any of before: a program ended before it had put its entry.
+
+    Parameters
+    ----------
+    least_age_s
+        Newer ones stay: another program may be about to refer to them.
+    """
+    for path in book.files.glob("*"):
+        is_old = time.time() - path.lstat().st_mtime > least_age_s
+        if is_old and _STORED.fullmatch(path.name) and not _is_known(book, path):
+            path.unlink(missing_ok=True)
+
+
+def discard_stored(book: RecordBook, names: Iterable[str]) -> None:
+    """Remove files that were stored just now for an entry which could not be put, and which no other refers to."""
+    for name in names:
+        is_known = False
+        with suppress(InputError):  # the disk that could not take the entry may not answer at all
+            is_known = _is_known(book, book.files / name)
+        if _STORED.fullmatch(name) and not is_known:
+            with suppress(OSError):
+                (book.files / name).unlink(missing_ok=True)
+
+
+def _is_known(book: RecordBook, path: Path) -> bool:
+    """Whether an entry refers to a file, or did so, and may do so again when changes are taken back."""
+    now = "SELECT 1 FROM defects WHERE picture = ?1 UNION SELECT 1 FROM documents WHERE place = ?1"
+    before = "SELECT 1 FROM changes WHERE instr(old, ?1) OR instr(new, ?1) LIMIT 1"
+    return any(book.database.rows(sql, (path.name,)) for sql in (now, before))
+
+
 def _stored(book: RecordBook, content: bytes, ending: str) -> StoredFile:
     digest = hashlib.sha256(content).hexdigest()
     make_folder(book.files)
+    clear_strays(book)
     path = book.files / f"{digest}{ending}"
     # A link of this name could lead anywhere.
-    if path.is_symlink() or not path.is_file() or path.read_bytes() != content:
+    if path.is_symlink() or not path.is_file() or sha256_given(path) != digest:
         path.unlink(missing_ok=True)
         write_atomically(path, content)
+    else:
+        path.touch()  # it is wanted again: see `clear_strays`
     return StoredFile(path.name, digest)
-
-
-def _read(path: Path, limit: int) -> bytes:
-    try:
-        if not path.is_file():
-            raise InputError(f"{path}: there is no such file")
-        with path.open("rb") as file:
-            content = file.read(limit + 1)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
-    if len(content) > limit:
-        raise InputError(f"{path}: has more than {limit // 2**20} MiB")
-    return content

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.files import read_given
 from planning.json_file import expect_format, read_json, to_record
 from reconstruction.cameras import PosedPhoto
 from reconstruction.colmap.folder import read_model
@@ -20,6 +21,7 @@ from reconstruction.colmap.similarity import Similarity
 from reconstruction.dataset.layers import unit_normals
 from reconstruction.dataset.prepare import layer_path
 from reconstruction.dataset.records import DATASET_FORMAT
+from reconstruction.photos.decode import PICTURE_FILE, decoded
 
 Array = NDArray[np.float64]
 
@@ -138,7 +140,7 @@ def read_photo_set(folder: Path) -> PhotoSet:
     path = folder / "dataset.json"
     if not path.is_file():
         raise InputError(f"{folder}: has no dataset.json; name a folder that `prepare` or `scene render` has finished")
-    content = read_json(path)
+    content = read_json(path, names_files=True)
     expect_format(content, DATASET_FORMAT, path)
     description = to_record(content, _Description, path)
     if not description.panels:
@@ -189,7 +191,7 @@ class _Run(_Capture):
 
 def _run(folder: Path) -> _Run:
     path = folder / SCENE_FILE
-    return to_record(read_json(path), _Run, path) if path.is_file() else _Run()
+    return to_record(read_json(path, names_files=True), _Run, path) if path.is_file() else _Run()
 
 
 def held_out_names(names: Sequence[str], share: float, seed: int) -> tuple[str, ...]:
@@ -218,16 +220,10 @@ def held_out_names(names: Sequence[str], share: float, seed: int) -> tuple[str, 
 
 def _image(path: Path, flags: int, photo: PosedPhoto) -> NDArray[np.uint8] | NDArray[np.uint16]:
     lens = photo.intrinsics
-    try:
-        content = np.frombuffer(path.read_bytes(), np.uint8)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error}); make the folder again") from error
-    image = cv2.imdecode(content, flags) if len(content) else None
-    if image is None:
-        raise InputError(f"{path}: is no picture, or damaged; make the folder again")
+    image = decoded(read_given(path, PICTURE_FILE), flags, str(path))
     if image.shape[:2] != (lens.height_px, lens.width_px):
         raise InputError(
             f"{path}: expected {lens.width_px} x {lens.height_px} pixels as its camera has, got "
             f"{image.shape[1]} x {image.shape[0]}"
         )
-    return image  # type: ignore[return-value]
+    return image

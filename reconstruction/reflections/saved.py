@@ -14,7 +14,7 @@ from safetensors.numpy import load, save
 
 from planning.errors import InputError
 from planning.folders import make_folder
-from planning.json_file import expect_format, read_json, to_record, write_atomically
+from planning.json_file import expect_format, read_json, to_record, write_together
 from planning.progress import QualityPoint
 from reconstruction.reflections.config import Precision, ReflectionConfig
 from reconstruction.reflections.grid_box import GridBox
@@ -23,6 +23,7 @@ from reconstruction.reflections.radiance_grid import RadianceGrid
 from reconstruction.reflections.reflection_mlp import MlpHealth
 from reconstruction.reflections.reflective_panels import ModelName, ReflectivePanels
 from reconstruction.reflections.training import TrainedReflections, untrained_panels
+from reconstruction.tensor_files import tensor_bytes
 
 FORMAT = "reflight-reflections/2"
 WEIGHTS, DESCRIPTION = "reflections.safetensors", "reflections.json"
@@ -47,7 +48,7 @@ class _Saved:
 
 
 def save_reflections(trained: TrainedReflections, folder: Path) -> None:
-    """Write the two files into a folder, which is made where it is missing; the description comes last.
+    """Write the two files into a folder, which is made where it is missing: both or none.
 
     Raises
     ------
@@ -56,7 +57,6 @@ def save_reflections(trained: TrainedReflections, folder: Path) -> None:
     """
     make_folder(folder)
     weights = {name: value.detach().numpy() for name, value in trained.panels.state_dict().items()}
-    write_atomically(folder / WEIGHTS, save(weights))
     content = {
         "format": FORMAT,
         "model": trained.model,
@@ -72,7 +72,8 @@ def save_reflections(trained: TrainedReflections, folder: Path) -> None:
         "box": None if trained.box is None else asdict(trained.box),
         "notes": list(trained.notes),
     }
-    write_atomically(folder / DESCRIPTION, json.dumps(content, indent=1, allow_nan=False).encode())
+    described = json.dumps(content, indent=1, allow_nan=False).encode()
+    write_together({folder / DESCRIPTION: described, folder / WEIGHTS: save(weights)})
 
 
 def read_reflections(folder: Path) -> TrainedReflections:
@@ -130,9 +131,7 @@ def _untrained(saved: _Saved, planes: PanelPlanes, n_photos: int, path: Path) ->
 
 def _weights(path: Path) -> dict[str, NDArray[np.float32]]:
     try:
-        weights = load(path.read_bytes())
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+        weights = load(tensor_bytes(path))
     except (SafetensorError, KeyError, ValueError) as error:
         raise InputError(f"{path}: is no safetensors file, or damaged: {error}") from error
     other = [name for name, value in weights.items() if value.dtype != np.float32]

@@ -6,13 +6,14 @@ import hashlib
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, fields, is_dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import numpy as np
 
 from planning.effects import Decision
 from planning.errors import InputError
+from planning.files import sha256_given
 from planning.json_file import expect_format, read_json, write_atomically
 from reconstruction.scenes.photographers import PhotoJob
 from reconstruction.scenes.record import Scene
@@ -126,7 +127,7 @@ def kept_photos(folder: Path, run: RunRecord) -> Files:
     path = folder / RUN_FILE
     if not path.is_file():
         return {}
-    found = read_json(path)
+    found = read_json(path, names_files=True)
     expect_format(found, SCENE_PHOTOS_FORMAT, path)
     if not isinstance(found, dict) or not isinstance(found.get("files"), dict):
         raise InputError(f"{path}: expected an object with files, found something else; name a new folder")
@@ -166,9 +167,13 @@ def _is_complete(folder: Path, sums: Any) -> bool:
     if not isinstance(sums, dict) or not sums:
         return False
     try:
-        return all(hashlib.sha256((folder / path).read_bytes()).hexdigest() == sha256 for path, sha256 in sums.items())
-    except OSError:
+        return all(_is_inside(path) and sha256_given(folder / path) == sha256 for path, sha256 in sums.items())
+    except InputError:
         return False
+
+
+def _is_inside(path: str) -> bool:
+    return not PurePath(path).is_absolute() and ".." not in PurePath(path).parts
 
 
 def write_run(folder: Path, run: RunRecord, files: Files, is_complete: bool = False) -> None:

@@ -10,7 +10,6 @@ use), and night photos of offices (Hwang, 2023; CC BY 4.0), which are in perspec
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, read_given
+from planning.json_file import read_json
 from reconstruction.scores.pictures import read_labels, read_picture
 from reconstruction.scores.raster import index_image
 
@@ -28,6 +29,8 @@ ECP_WINDOW_BGR = (0, 0, 255)
 """Windows are red in ECP's masks."""
 
 COCO_FILE = "_annotations.coco.json"
+
+TABLE_FILE = FileLimit("a CSV table", 64 * MIB)
 COCO_WINDOW = "window"
 
 
@@ -92,15 +95,13 @@ def coco_photos(folder: Path) -> Iterator[AnnotatedPhoto]:
     """
     path = folder / COCO_FILE
     try:
-        content = json.loads(path.read_text("utf-8"))
+        content = read_json(path)
         windows = {entry["id"] for entry in content["categories"] if entry["name"] == COCO_WINDOW}
         images = sorted(content["images"], key=lambda entry: str(entry["file_name"]))
         polygons: dict[int, list[NDArray[np.float64]]] = {entry["id"]: [] for entry in images}
         for annotation in content["annotations"]:
             if annotation["category_id"] in windows:
                 polygons[annotation["image_id"]] += _coco_polygons(annotation)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(f"{path}: expected annotations in COCO's form, found {error!r}") from error
     for entry in images:
@@ -133,10 +134,9 @@ def _files(folder: Path, pattern: str) -> list[Path]:
 
 def _rectangles(path: Path) -> list[tuple[float, float, float, float]]:
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
+        rows = list(csv.DictReader(read_given(path, TABLE_FILE).decode("utf-8").splitlines()))
         return [(float(row["x0"]), float(row["y0"]), float(row["x1"]), float(row["y1"])) for row in rows]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (csv.Error, ValueError, KeyError, TypeError) as error:
         raise InputError(f"{path}: expected columns x0, y0, x1, y1 of numbers, found {error!r}") from error
 
 

@@ -8,6 +8,7 @@ file or several. Names and checksums go with every score.
 from __future__ import annotations
 
 import hashlib
+import io
 import itertools
 import pickle
 import re
@@ -19,10 +20,11 @@ from typing import Literal
 
 import torch
 from safetensors import SafetensorError
-from safetensors.torch import load_file
+from safetensors.torch import load
 from torch import Tensor
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, read_given
 
 Backbone = Literal["alex", "vgg"]
 
@@ -30,6 +32,9 @@ UNAVAILABLE = "LPIPS unavailable: name the files of a backbone and of its heads"
 
 TORCHVISION = {"alex": "7be5be79", "vgg": "397923af"}
 """How the checksums begin of the backbones that published scores were made with (torchvision's file names)."""
+
+WEIGHTS_FILE = FileLimit("weights", 2048 * MIB, UNAVAILABLE)
+"""VGG16's have 528 MiB."""
 
 DAMAGED = (
     OSError, RuntimeError, EOFError, ValueError, KeyError, TypeError, AttributeError, IndexError,
@@ -151,8 +156,12 @@ def read_lpips_weights(paths: Sequence[Path]) -> LpipsWeights:
         raise InputError(UNAVAILABLE)
     filters: dict[int, dict[str, Tensor]] = {}
     heads: dict[int, Tensor] = {}
-    for path in paths:
-        for name, value in _tensors(path).items():
+    missing = next((path for path in paths if not path.is_file()), None)
+    if missing is not None:
+        raise InputError(f"{missing}: is no file; {UNAVAILABLE}")
+    contents = {path: read_given(path, WEIGHTS_FILE) for path in paths}
+    for path, written in contents.items():
+        for name, value in _tensors(path, written).items():
             # torchvision's names, and those of the authors' package.
             if met := re.search(r"(?:^|\.)(?:features|slice\d)\.(\d+)\.(weight|bias)$", name):
                 filters.setdefault(int(met[1]), {})[met[2]] = value.float()
@@ -168,7 +177,7 @@ def read_lpips_weights(paths: Sequence[Path]) -> LpipsWeights:
     weights = {each.index: (filters[each.index]["weight"], filters[each.index]["bias"]) for each in BACKBONES[backbone]}
     if not all(bool(torch.isfinite(value).all()) for value in (*itertools.chain(*weights.values()), *heads.values())):
         raise InputError(f"{place}: holds numbers that are not finite; get the files again")
-    files = tuple(WeightsFile(path.name, _sha256(path)) for path in paths)
+    files = tuple(WeightsFile(path.name, hashlib.sha256(written).hexdigest()) for path, written in contents.items())
     return LpipsWeights(backbone, weights, tuple(heads[k] for k in range(len(widths))), files)
 
 
@@ -180,22 +189,19 @@ def _is_of(filters: Mapping[int, Mapping[str, Tensor]], convolution: Convolution
     }
 
 
-def _tensors(path: Path) -> dict[str, Tensor]:
-    if not path.is_file():
-        raise InputError(f"{path}: is no file; {UNAVAILABLE}")
+def _tensors(path: Path, written: bytes) -> dict[str, Tensor]:
     try:
         if path.suffix == ".safetensors":
-            return load_file(path)
-        content = torch.load(path, map_location="cpu", weights_only=True)
+            return load(written)
+        content = torch.load(io.BytesIO(written), map_location="cpu", weights_only=True)
     except DAMAGED as error:
         raise InputError(
             f"{path}: cannot be read as weights (safetensors, or tensors that torch.save wrote); get the file again"
         ) from error
     if not isinstance(content, Mapping):
         raise InputError(f"{path}: expected named tensors, found {type(content).__name__}; name a file of weights")
-    return {str(name): value for name, value in content.items() if isinstance(value, Tensor)}
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    found = {str(name): value for name, value in content.items() if isinstance(value, Tensor)}
+    # A tensor of one number may say that it is repeated without end.
+    if sum(value.numel() for value in found.values()) > len(written):
+        raise InputError(f"{path}: says that it has more numbers than it holds; get the file again")
+    return found

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.files import read_given
+from planning.json_file import write_atomically
 from planning.photo_files.metadata import read_photo
-from reconstruction.photos.decode import MAX_PIXELS, colour_picture
-
-JPEG_START, PNG_START = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
+from reconstruction.photos.decode import JPEG_START, PICTURE_FILE, colour_picture, decoded
 
 PICTURE_SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp")
 
@@ -52,7 +52,7 @@ def write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
     coded, data = cv2.imencode(path.suffix, picture, [cv2.IMWRITE_JPEG_QUALITY, 82])
     if not coded:
         raise ValueError(f"{path}: the picture cannot be coded")
-    path.write_bytes(data.tobytes())
+    write_atomically(path, data.tobytes())
 
 
 def pictures_in(folder: Path) -> dict[str, Path]:
@@ -77,28 +77,11 @@ def pictures_in(folder: Path) -> dict[str, Path]:
 
 
 def _decoded(path: Path, flags: int) -> NDArray[Any]:
-    content = _content(path)
-    if content.startswith(PNG_START):
-        width, height = (int.from_bytes(content[at : at + 4], "big") for at in (16, 20))
-        if width * height > MAX_PIXELS:
-            raise InputError(
-                f"{path}: claims to be a picture of {width} x {height} pixels; expected at most "
-                f"{MAX_PIXELS // 10**6} megapixels, so it is not decoded"
-            )
-    try:
-        picture = cv2.imdecode(np.frombuffer(content, np.uint8), flags)
-    except cv2.error as error:
-        raise InputError(f"{path}: cannot be decoded as a picture; it may be too large or damaged") from error
-    if picture is None:
-        raise InputError(f"{path}: cannot be decoded as a picture; expected JPEG, PNG, TIFF or BMP, whole")
-    return np.asarray(picture)
+    return decoded(_content(path), flags, str(path))
 
 
 def _content(path: Path) -> bytes:
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    content = read_given(path, PICTURE_FILE)
     if not content:
         raise InputError(f"{path}: the file is empty; copy it again")
     return content

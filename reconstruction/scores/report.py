@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.json_file import write_atomically
 from reconstruction.scores.metrics import FOUND_IOU, PERCENTILES, PhotoScores, SetScores, Spread
 from reconstruction.scores.pictures import write_picture
 from reconstruction.scores.run import ScoredAnswer
@@ -50,10 +52,11 @@ def photo_row(scores: PhotoScores) -> dict[str, Any]:
 
 def write_table(photos: Sequence[PhotoScores], path: Path) -> None:
     """Write a CSV with a row for each photo."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
-        writer.writerows(photo_row(photo) for photo in photos)
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, COLUMNS)
+    writer.writeheader()
+    writer.writerows(photo_row(photo) for photo in photos)
+    write_atomically(path, text.getvalue().encode())
 
 
 def summary(scores: SetScores) -> dict[str, Any]:

@@ -6,7 +6,6 @@ Only what point clouds and splats need: binary, little-endian, one element `vert
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, open_given, real_path
+from planning.json_file import part_file
+
+SPLATS_FILE = FileLimit("a PLY file", 65536 * MIB)
+"""Read in blocks, so that its length costs no memory."""
 
 MAX_HEADER_BYTES = 64 * 1024
 """A header of splats has about 2 kB."""
@@ -85,12 +89,9 @@ def read_header(path: Path) -> PlyHeader:
     InputError
         The file is missing, is no PLY file, is damaged or cut off, or is of a kind that is not read.
     """
-    try:
-        with path.open("rb") as stream:
-            lines = _header_lines(stream, path)
-            return _parsed(lines, stream.tell(), os.fstat(stream.fileno()).st_size, path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    with open_given(path, SPLATS_FILE) as stream:
+        lines = _header_lines(stream, path)
+        return _parsed(lines, stream.tell(), os.fstat(stream.fileno()).st_size, path)
 
 
 def read_blocks(path: Path, header: PlyHeader, at_once: int = AT_ONCE) -> Iterator[NDArray[Any]]:
@@ -102,16 +103,13 @@ def read_blocks(path: Path, header: PlyHeader, at_once: int = AT_ONCE) -> Iterat
         The file cannot be read, or got shorter meanwhile.
     """
     row = header.row_type
-    try:
-        with path.open("rb") as stream:
-            stream.seek(header.start)
-            for first in range(0, header.n_rows, at_once):
-                block = np.fromfile(stream, row, min(at_once, header.n_rows - first))
-                if len(block) < min(at_once, header.n_rows - first):
-                    raise InputError(f"{path}: ends after {first + len(block)} of its {header.n_rows} points")
-                yield block
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    with open_given(path, SPLATS_FILE) as stream:
+        stream.seek(header.start)
+        for first in range(0, header.n_rows, at_once):
+            block = np.fromfile(stream, row, min(at_once, header.n_rows - first))
+            if len(block) < min(at_once, header.n_rows - first):
+                raise InputError(f"{path}: ends after {first + len(block)} of its {header.n_rows} points")
+            yield block
 
 
 def write_blocks(path: Path, n_rows: int, row: np.dtype[Any], comments: Sequence[str], blocks: Iterable[Any]) -> None:
@@ -132,26 +130,18 @@ def write_blocks(path: Path, n_rows: int, row: np.dtype[Any], comments: Sequence
     lines = ["ply", f"format {BINARY} 1.0", *(f"comment {comment}" for comment in comments), f"element vertex {n_rows}"]
     lines += [f"property {NAMES[row[name].str.replace('|', '')]} {name}" for name in row.names or ()]
     header = ("\n".join([*lines, "end_header"]) + "\n").encode("ascii", "replace")
-    temporary: Path | None = None
     try:
-        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as stream:
-            temporary = Path(stream.name)
-            stream.write(header)
+        with part_file(real_path(path)) as part:
             n_written = 0
-            for block in blocks:
-                stream.write(np.ascontiguousarray(block, row).tobytes())
-                n_written += len(block)
-            stream.flush()
-            os.fsync(stream.fileno())
-        if n_written != n_rows:
-            raise ValueError(f"blocks: expected {n_rows} rows in all, got {n_written}")
-        temporary.chmod(0o644)
-        temporary.replace(path)
+            with part.open("wb") as stream:
+                stream.write(header)
+                for block in blocks:
+                    stream.write(np.ascontiguousarray(block, row).tobytes())
+                    n_written += len(block)
+            if n_written != n_rows:
+                raise ValueError(f"blocks: expected {n_rows} rows in all, got {n_written}")
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
 
 
 def _header_lines(stream: BinaryIO, path: Path) -> list[str]:

@@ -116,7 +116,7 @@ def test_file_too_large_or_not_a_file_is_refused(tmp_path: Path) -> None:
         read_missions(large)
     with pytest.raises(InputError, match="cannot be read"):
         read_missions(tmp_path / "missing.kmz")
-    with pytest.raises(InputError, match="no mission file that is known"):
+    with pytest.raises(InputError, match="found a device or a pipe"):
         read_missions(Path(os.devnull))
 
 

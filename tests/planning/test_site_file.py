@@ -152,7 +152,7 @@ def test_files_that_are_not_sites_are_refused_with_a_reason(tmp_path, text, mess
 
 
 def test_missing_file_and_folder_are_refused_with_a_reason(tmp_path):
-    with pytest.raises(InputError, match="No such file"):
+    with pytest.raises(InputError, match="no such file"):
         read_site(tmp_path / "none.json")
     with pytest.raises(InputError, match="cannot be written"):
         write_site(tmp_path / "no" / "site.json", SCENES["roof"]().site)
@@ -189,7 +189,7 @@ def test_meshes_of_every_kind_read_back_closed(tmp_path, suffix):
         ("a.obj", b"v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\n", "not finite"),
         ("a.obj", b"v 691000 5335000 0\nv 691001 5335000 0\nv 691000 5335001 0\nf 1 2 3\n", "local ENU"),
         ("a.txt", b"", "expected a mesh file"),
-        ("a.glb", b"glTF but not really", "cannot be read"),
+        ("a.glb", b"glTF but not really", "does not begin with its description|is no GLB file"),
     ],
 )
 def test_bad_meshes_are_refused_with_a_reason(tmp_path, name, content, message):

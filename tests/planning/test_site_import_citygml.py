@@ -324,7 +324,7 @@ FETCH = '<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/hostname">]>'
 @pytest.mark.parametrize("doctype", [BOMB, FETCH])
 def test_entities_are_refused(tmp_path: Path, doctype: str) -> None:
     text = PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH))).replace('<?xml version="1.0"?>', doctype)
-    with pytest.raises(InputError, match="defines entities"):
+    with pytest.raises(InputError, match="declares a document type or entities"):
         imported(text, tmp_path)
 
 
@@ -403,7 +403,7 @@ def test_parts_keep_the_level_of_detail_that_each_has(tmp_path: Path) -> None:
 
 def test_deeply_nested_files_are_refused(tmp_path: Path) -> None:
     nested = "<b:x>" * 3000 + "</b:x>" * 3000
-    with pytest.raises(InputError, match="nested too deeply"):
+    with pytest.raises(InputError, match=r"nested more than .* levels deep"):
         imported(PLAIN.model(PLAIN.house(PLAIN.window("w", SOUTH), extra=nested)), tmp_path)
 
 

@@ -82,7 +82,7 @@ def test_entries_from_texts_with_their_files(folder, tmp_path):
             ("defect", {"colour": "red"}, "a defect has no field 'colour'"),
             ("defect", {"kind": "crack"}, "severity: expected a value"),
             ("defect", {**fields, "picture": str(paper)}, "expected a PNG, JPEG or WebP"),
-            ("defect", {**fields, "picture": "/etc"}, "there is no such file"),
+            ("defect", {**fields, "picture": "/etc"}, "expected a picture, found a folder"),
             ("document", {"title": "s", "place": "../x"}, "place: expected an address"),
         ):
             with pytest.raises(InputError, match=words):

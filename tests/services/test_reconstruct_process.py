@@ -168,7 +168,7 @@ def test_what_cannot_be_is_said_and_it_goes_on_working(heard, card, wish, tmp_pa
     shutil.copytree(card.folder, tmp_path / "copy")
     damaged = tmp_path / "copy" / "images" / photo.name
     damaged.write_bytes(damaged.read_bytes()[:20])
-    assert "damaged" in heard.seen(Subject("photo", tmp_path / "copy", photo.name), photo).problem
+    assert "cannot be decoded" in heard.seen(Subject("photo", tmp_path / "copy", photo.name), photo).problem
 
 
 @pytest.mark.slow

@@ -20,6 +20,7 @@ from groundstation.services.reconstruct_places import (
     standing,
     usual_data_set,
 )
+from planning.files import real_path
 from planning.findings import Severity
 from reconstruction.modelling.methods import METHODS
 from reconstruction.reflections.photo_set import held_out_names
@@ -106,7 +107,7 @@ class PlaceDesk(QObject):
         self.out = folder
         self.look_at_out()
         dataset = noted_data_set(folder) if self.standing.is_interrupted else None
-        if dataset is not None and (self.card is None or self.card.folder.resolve() != dataset.resolve()):
+        if dataset is not None and (self.card is None or real_path(self.card.folder) != real_path(dataset)):
             self.read(dataset)
         self.placeChanged.emit()
         self.stateChanged.emit()
@@ -121,7 +122,7 @@ class PlaceDesk(QObject):
     def _read(self, card: DataSetCard) -> None:
         self._is_reading, self.card = False, card
         noted = noted_data_set(self.out)
-        if not self.standing.is_interrupted or (noted is not None and noted.resolve() != card.folder.resolve()):
+        if not self.standing.is_interrupted or (noted is not None and real_path(noted) != real_path(card.folder)):
             self._propose()
         site = self._workspace.document.site
         if site is not None and site.site.n_panels > 0 and not card.shows(site.site):

@@ -11,6 +11,10 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
+from planning.errors import InputError
+from planning.files import read_given
+from reconstruction.photos.decode import PICTURE_FILE, decoded
+
 SIDE_PX = 132
 MOST_KEPT, MOST_WANTED = 1000, 80
 LOOK_MS = 30
@@ -92,11 +96,9 @@ class SmallPictures(QObject):
 def _small(path: Path, longest_px: int) -> QImage | None:
     scale = max(each for each in FLAGS if each == 1 or longest_px // each >= SIDE_PX)
     try:
-        content = np.frombuffer(path.read_bytes(), np.uint8)
-    except OSError:
-        return None
-    picture = cv2.imdecode(content, FLAGS[scale] | cv2.IMREAD_IGNORE_ORIENTATION) if len(content) else None
-    if picture is None:
+        content = read_given(path, PICTURE_FILE)
+        picture = decoded(content, FLAGS[scale] | cv2.IMREAD_IGNORE_ORIENTATION, str(path))
+    except InputError:
         return None
     height, width = picture.shape[:2]
     share = min(1.0, SIDE_PX / max(height, width))

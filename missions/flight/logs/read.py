@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import stat
 from pathlib import Path
 
 from missions.flight.logs.ardupilot import read_dataflash
@@ -12,10 +11,11 @@ from missions.flight.logs.raw import RawLog
 from missions.flight.logs.tlog import looks_like_tlog, read_tlog
 from missions.flight.logs.ulog import looks_like_ulog, read_ulog
 from planning.errors import InputError
+from planning.files import MIB, FileLimit, open_given, read_given
 from planning.progress import QUIET, Monitor
 from planning.site import Site
 
-MAX_LOG_BYTES = 512 * 2**20
+LOG_FILE = FileLimit("a flight log", 512 * MIB, "cut out the flight with a log tool")
 """Larger logs are refused: an hour of ArduPilot's full logging has about 200 MiB."""
 
 HEAD_BYTES = 65536
@@ -35,25 +35,15 @@ def read_log(path: Path, site: Site, heights: HeightSource = "takeoff", monitor:
 def is_log(path: Path) -> bool:
     """Whether a file begins like a flight log; False for one that cannot be read."""
     try:
-        with path.open("rb") as file:
+        with open_given(path, LOG_FILE) as file:
             head = file.read(HEAD_BYTES)
-    except OSError:
+    except InputError:
         return False
     return looks_like_ulog(head) or looks_binary(head) or looks_like_text(head) or looks_like_tlog(head)
 
 
 def _content(path: Path) -> bytes:
-    try:
-        status = path.stat()
-        if not stat.S_ISREG(status.st_mode):
-            raise InputError(f"{path}: expected a flight log, found something that is not a regular file")
-        if status.st_size > MAX_LOG_BYTES:
-            raise InputError(
-                f"{path}: the log has more than {MAX_LOG_BYTES // 2**20} MiB; cut out the flight with a log tool"
-            )
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    content = read_given(path, LOG_FILE)
     if not content:
         raise InputError(f"{path}: the log is empty; copy it from the vehicle again")
     return content

@@ -153,7 +153,8 @@ def _topics(source: ULog) -> dict[str, Columns]:
         with np.errstate(invalid="ignore"):  # damaged numbers may be signalling NaN, which stay NaN
             columns = {name: np.asarray(values, np.float64) for name, values in data.data.items()}
         # Microseconds may count from 1970 in a simulation: subtracted as integers, before any precision is lost.
-        columns["time_s"] = (data.data["timestamp"].astype(np.int64) - first_us) / 1e6
+        past_us = data.data["timestamp"].astype(np.uint64) - np.uint64(first_us % 2**64)
+        columns["time_s"] = past_us.view(np.int64) / 1e6
         known = topics.get(data.name)
         if known is None:
             topics[data.name] = columns

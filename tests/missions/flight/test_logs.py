@@ -202,7 +202,7 @@ def test_what_is_no_log_is_refused(tmp_path: Path, content: bytes, message: str)
 def test_a_missing_file_and_a_folder_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be read"):
         read_log(tmp_path / "none.tlog", SITE)
-    with pytest.raises(InputError, match="not a regular file"):
+    with pytest.raises(InputError, match="found a folder"):
         read_log(tmp_path, SITE)
 
 

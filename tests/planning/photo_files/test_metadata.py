@@ -333,9 +333,9 @@ def test_what_is_no_photo_is_refused_with_its_name(tmp_path, content, words):
 
 
 def test_missing_files_and_folders_are_refused(tmp_path):
-    with pytest.raises(InputError, match="No such file"):
+    with pytest.raises(InputError, match="no such file"):
         read_photo(tmp_path / "none.jpg")
-    with pytest.raises(InputError, match="not a regular file"):
+    with pytest.raises(InputError, match="found a folder"):
         read_photo(tmp_path)
 
 

@@ -122,17 +122,17 @@ def webp_of(kind, start):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "expected a JPEG, PNG or WebP"),
-        (b"<svg onload='alert(1)'/>", "expected a JPEG, PNG or WebP"),
-        (b"GIF89a" + bytes(20), "expected a JPEG, PNG or WebP"),
+        (b"", "expected JPEG, PNG, WebP"),
+        (b"<svg onload='alert(1)'/>", "expected JPEG, PNG, WebP"),
+        (b"GIF89a" + bytes(20), "expected JPEG, PNG, WebP"),
         (png_of(60_000, 60_000), "60000 x 60000"),
         (webp_of(b"VP8X", bytes(4) + b"\xff\xff\xff" * 2), "16777216 x 16777216"),
         (webp_of(b"VP8L", b"\x2f\xff\xff\xff\xff"), "16384 x 16384"),
         (webp_of(b"VP8 ", bytes(3) + b"\x9d\x01\x2a" + b"\xff\xff" * 2), "16383 x 16383"),
-        (webp_of(b"ALPH", b""), "expected a JPEG"),
+        (webp_of(b"ALPH", b""), "expected JPEG"),
         (png_of(0, 5), "0 x 5"),
-        (png_of(10, 10), "cannot be decoded"),
-        (b"\xff\xd8\xff\xe0", "expected a JPEG, PNG or WebP"),
+        (png_of(10, 10), "cut off or damaged"),
+        (b"\xff\xd8\xff\xe0", "expected JPEG, PNG, WebP"),
         (b"\xff\xd8\xff\xc0\x00\x11\x08\xff\xff\xff\xff\x03", "65535 x 65535"),
     ],
 )

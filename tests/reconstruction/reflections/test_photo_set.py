@@ -98,7 +98,7 @@ def test_pictures_that_are_missing_damaged_or_of_another_size_are_refused_by_nam
     one.path.unlink()
     two.path.write_bytes(two.path.read_bytes()[:20])
     cv2.imwrite(str(three.path), np.zeros((30, 41, 3), np.uint8))
-    for photo, words in ((one, "cannot be read"), (two, "damaged"), (three, "40 x 30 pixels .* got 41 x 30")):
+    for photo, words in ((one, "cannot be read"), (two, "cannot be decoded"), (three, "40 x 30 pixels .* got 41 x 30")):
         with pytest.raises(InputError, match=words) as caught:
             found.picture(photo)
         assert photo.name in str(caught.value)
