@@ -99,13 +99,15 @@ def open_given(path: Path, limit: FileLimit) -> Iterator[BufferedReader]:
     # Without blocking: the name may have become a pipe's meanwhile, which waits for its other end for ever.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     try:
-        with open(path, "rb", opener=lambda name, _: os.open(name, flags)) as file:
-            _check_status(path, os.fstat(file.fileno()), limit)
-            yield file
+        file = open(path, "rb", opener=lambda name, _: os.open(name, flags))  # noqa: SIM115  (closed below)
     except (OSError, ValueError) as error:
-        if isinstance(error, ValueError) and "null byte" not in str(error):
-            raise
         raise _not_read(path, error) from error
+    with file:
+        _check_status(path, os.fstat(file.fileno()), limit)
+        try:
+            yield file
+        except OSError as error:
+            raise _not_read(path, error) from error
 
 
 def read_given(path: Path, limit: FileLimit) -> bytes:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from planning.errors import InputError
-from planning.files import MIB, FileLimit, open_given
+from planning.files import MIB, FileLimit, open_given, read_given
 
 IFC_FILE = FileLimit("an IFC file", 4096 * MIB, "export the facade alone")
 
@@ -64,10 +64,7 @@ def mended(path: Path) -> Mended | None:
     InputError
         The file cannot be read.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
+    content = read_given(path, IFC_FILE)
     start, end = content.find(DATA), content.rfind(END_OF_SECTION)
     if not 0 <= start < end:
         return None

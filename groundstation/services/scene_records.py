@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planning.errors import InputError
+from planning.files import read_given
 from planning.progress import QUIET, Monitor
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ def attachments_of(
     from reconstruction.exports.web_pictures import PICTURES, small_jpeg
     from reconstruction.records.book import FILE, RecordBook
     from reconstruction.records.entries import Defect, Document, is_address
-    from reconstruction.records.stored_files import stored_path
+    from reconstruction.records.stored_files import DOCUMENT_FILE, stored_path
 
     names = {each.picture for each in entries if isinstance(each, Defect) and each.picture}
     names |= {each.place for each in entries if isinstance(each, Document) and not is_address(each.place)}
@@ -117,8 +118,8 @@ def attachments_of(
         for number, name in enumerate(sorted(names)):
             monitor.report("reading what is attached", number, len(names))
             found[name] = Attachment()
-            with suppress(InputError, OSError):
-                content = stored_path(book, name).read_bytes()
+            with suppress(InputError):
+                content = read_given(stored_path(book, name), DOCUMENT_FILE)
                 found[name] = Attachment(len(content))
                 if name.endswith(PICTURES):
                     found[name] = Attachment(len(content), small_jpeg(name, content, longest_px))

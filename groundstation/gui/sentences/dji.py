@@ -139,7 +139,6 @@ SENTENCES = (
         "the mission follows the ground as the aircraft senses it, so its heights are not in the file; save it with "
         "fixed heights",
     ),
-    QT_TRANSLATE_NOOP("Sentences", "declares a DTD or entities, which no mission needs; refused as hostile"),
     QT_TRANSLATE_NOOP("Sentences", "not readable as XML ({0}); export the mission again"),
     QT_TRANSLATE_NOOP(
         "Sentences",

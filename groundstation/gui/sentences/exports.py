@@ -110,12 +110,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "corners of a panel hold numbers that are not finite"),
     QT_TRANSLATE_NOOP("Sentences", "picture '{0}'"),
     QT_TRANSLATE_NOOP("Sentences", "has more than {0} MiB; save it smaller"),
-    QT_TRANSLATE_NOOP("Sentences", "expected a JPEG, PNG or WebP file, found something else or a damaged one"),
-    QT_TRANSLATE_NOOP(
-        "Sentences", "claims to have {0} x {1} pixels; expected at most {2} megapixels, so it is not decoded"
-    ),
-    QT_TRANSLATE_NOOP("Sentences", "cannot be decoded ({0}); copy the file again"),
-    QT_TRANSLATE_NOOP("Sentences", "cannot be decoded; copy the file again"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be written as JPEG"),
     QT_TRANSLATE_NOOP("Sentences", "expected a finite number, got {0}"),
     QT_TRANSLATE_NOOP("Sentences", "expected a text, a number, yes or no, or places on a pane; got {0}"),

@@ -166,8 +166,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "expected {0} columns, found {1}"),
     QT_TRANSLATE_NOOP("Sentences", "expected numbers with a decimal point ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "the home position {0}, {1}, {2} m is not on the globe"),
-    QT_TRANSLATE_NOOP("Sentences", "expected a mission file, found something that is not a regular file"),
-    QT_TRANSLATE_NOOP("Sentences", "the file has more than {0} MiB; expected a mission file"),
     QT_TRANSLATE_NOOP("Sentences", "damaged or no zip archive ({0}); a KMZ is one; copy it again"),
     QT_TRANSLATE_NOOP("Sentences", "holds {0} files; expected at most {1}"),
     QT_TRANSLATE_NOOP("Sentences", "holds the path '{0}', which leads out of it; refused as hostile"),

@@ -140,4 +140,65 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "import it first ('site import', or Site > Import), and plan a flight over that"),
     QT_TRANSLATE_NOOP("Sentences", "import it first ('site import', or Site > Import)"),
     QT_TRANSLATE_NOOP("Sentences", "copy it again or make it anew"),
+    QT_TRANSLATE_NOOP("Sentences", "expected {0}, found a folder; name a file"),
+    QT_TRANSLATE_NOOP("Sentences", "expected {0}, found a device or a pipe; name a file"),
+    QT_TRANSLATE_NOOP("Sentences", "the file has more than {0}; expected {1}"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} MiB"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} KiB"),
+    QT_TRANSLATE_NOOP("Sentences", "cannot be read: there is no such file"),
+    QT_TRANSLATE_NOOP("Sentences", "has more than {0} lines; cut out the part that is wanted"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "its content would take about {0} GiB of memory; expected at most {1} GiB; cut out the part that is wanted",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "the list of its files has more than {0}; pack it again with what is needed"),
+    QT_TRANSLATE_NOOP("Sentences", "declares a document type or entities"),
+    QT_TRANSLATE_NOOP("Sentences", "is nested more than {0} levels deep"),
+    QT_TRANSLATE_NOOP("Sentences", "a JSON file"),
+    QT_TRANSLATE_NOOP("Sentences", "a TOML file"),
+    QT_TRANSLATE_NOOP("Sentences", "expected text, found half of a character (a surrogate by itself)"),
+    QT_TRANSLATE_NOOP("Sentences", "a text in it holds half of a character (a surrogate by itself)"),
+    QT_TRANSLATE_NOOP("Sentences", "line {0}: a key has more than {1} parts; none of ours has"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "a triangle names vertex {0}, which is not there (vertices: 0 to {1}); export the mesh again"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "a mesh file"),
+    QT_TRANSLATE_NOOP("Sentences", "reduce it, or cut out the building"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "this mesh would take about {0} GiB of memory; expected at most {1} GiB; reduce it, or export "
+        "the building alone as binary PLY",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "is no GLB file, or cut off; export it again"),
+    QT_TRANSLATE_NOOP("Sentences", "the GLB file does not begin with its description, or is cut off; export it again"),
+    QT_TRANSLATE_NOOP("Sentences", "the description in the GLB file is damaged ({0}); export it again"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "its triangles are compressed ({0}), which is not read; export it without compression"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "its triangles are in another file; export it as one file, with everything in it"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "its triangles are stored as differences from zero (sparse accessors), which is not read"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "a CityGML file"),
+    QT_TRANSLATE_NOOP("Sentences", "cut out the buildings wanted"),
+    QT_TRANSLATE_NOOP("Sentences", "the XML {0}, which a CityGML file has no need of; refused"),
+    QT_TRANSLATE_NOOP("Sentences", "an IFC file"),
+    QT_TRANSLATE_NOOP("Sentences", "export the facade alone"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}, which no mission needs; refused as hostile"),
+    QT_TRANSLATE_NOOP("Sentences", "a file of the signing key"),
+    QT_TRANSLATE_NOOP("Sentences", "a DJI KMZ"),
+    QT_TRANSLATE_NOOP("Sentences", "a web page"),
+    QT_TRANSLATE_NOOP("Sentences", "begin the training anew"),
+    QT_TRANSLATE_NOOP("Sentences", "the model cannot be written ({0})"),
+    QT_TRANSLATE_NOOP("Sentences", "a picture"),
+    QT_TRANSLATE_NOOP("Sentences", "cannot be decoded as a picture; expected JPEG, PNG, WebP, TIFF or BMP, whole"),
+    QT_TRANSLATE_NOOP("Sentences", "the picture is cut off or damaged; copy the file again"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "claims to be a picture of {0} x {1} pixels; expected 1 to {2} megapixels, so it is not decoded"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "a document"),
+    QT_TRANSLATE_NOOP("Sentences", "a safetensors file"),
+    QT_TRANSLATE_NOOP("Sentences", "get the file again"),
+    QT_TRANSLATE_NOOP("Sentences", "is no safetensors file, or damaged (its header has no end); {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "is cut off or damaged ({0} of {1} bytes); {2}"),
 )

@@ -97,7 +97,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "expected a PNG, JPEG or WebP picture, found other content"),
     QT_TRANSLATE_NOOP("Sentences", "the file is missing; copy it back beside the records"),
     QT_TRANSLATE_NOOP("Sentences", "is not the file that was stored; copy it back"),
-    QT_TRANSLATE_NOOP("Sentences", "has more than {0} MiB"),
     QT_TRANSLATE_NOOP("Sentences", "the place could not be looked at ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "{0}; the file is damaged"),
 )

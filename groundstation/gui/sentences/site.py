@@ -7,7 +7,6 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP
 SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "expected one table with an aircraft and its camera, got {0}"),
     QT_TRANSLATE_NOOP("Sentences", "there is no aircraft profile '{0}'; known are: {1}; your own can be a .toml file"),
-    QT_TRANSLATE_NOOP("Sentences", "the file has more than {0} MiB; expected a JSON file"),
     QT_TRANSLATE_NOOP("Sentences", "cannot be read ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "expected JSON in UTF-8, found other bytes at offset {0}"),
     QT_TRANSLATE_NOOP("Sentences", "not valid JSON, line 1: the file is empty"),
