@@ -191,7 +191,25 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "allow it more time"),
     QT_TRANSLATE_NOOP("Sentences", "more time does not help"),
+    QT_TRANSLATE_NOOP("Sentences", "the method flies a pattern of its own"),
     QT_TRANSLATE_NOOP("Sentences", "covers {0} % of what is possible at most, {1} % were asked for"),
+    QT_TRANSLATE_NOOP("Sentences", "covers {0} % of what is possible at most, {1} % were asked for; {2}"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} sections (on {1} panels, the first is '{2}') have no place from which they are known to be seen, and no "
+        "proof that there is none, so that they count as possible; {3}",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} sections (on {1} panels, the first is '{2}') are only seen from places to which no way from home was "
+        "found that keeps {3} m from everything; move home, or lower the minimum distance",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} sections (on {1} panels, the first is '{2}') are only seen from places less than {3} m from other "
+        "viewpoints, which {4} refuses; {5}",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "{0} sections (on {1} panels, the first is '{2}') can be covered; {3}"),
     QT_TRANSLATE_NOOP("Sentences", "the window is closing"),
     QT_TRANSLATE_NOOP("Sentences", "the system ended it, mostly because memory ran out"),
     QT_TRANSLATE_NOOP("Sentences", "exit status {0}"),

@@ -201,21 +201,4 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "get the file again"),
     QT_TRANSLATE_NOOP("Sentences", "is no safetensors file, or damaged (its header has no end); {0}"),
     QT_TRANSLATE_NOOP("Sentences", "is cut off or damaged ({0} of {1} bytes); {2}"),
-    QT_TRANSLATE_NOOP("Sentences", "; the method flies a pattern of its own"),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "have no place from which they are known to be seen, and no proof that there is none, so that "
-        "they count as possible; {0}",
-    ),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "are only seen from places to which no way from home was found that keeps {0} m from everything; "
-        "move home, or lower the minimum distance",
-    ),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "are only seen from places less than {0} m from other viewpoints, which {1} refuses; more time does not help",
-    ),
-    QT_TRANSLATE_NOOP("Sentences", "can be covered; allow it more time"),
-    QT_TRANSLATE_NOOP("Sentences", "{0} sections (on {1} panels, the first is '{2}') {3}"),
 )
