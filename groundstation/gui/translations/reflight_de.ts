@@ -948,10 +948,6 @@ Bild in dieser Entfernung: {4} x {5}</translation>
 <context>
     <name>Desk</name>
     <message>
-        <source>{0}. The settings of the first start are used; the file stays as it is.</source>
-        <translation>{0}. Es gelten die Einstellungen des ersten Starts; die Datei bleibt, wie sie ist.</translation>
-    </message>
-    <message>
         <source>Something is running: the language changes when Reflight is started next.</source>
         <translation>Etwas läuft noch: Die Sprache wechselt beim nächsten Start von Reflight.</translation>
     </message>
@@ -5693,10 +5689,6 @@ Take it over?</source>
         <translation>die Mission folgt dem Boden, wie ihn das Fluggerät misst, ihre Höhen stehen also nicht in der Datei; sie mit festen Höhen speichern</translation>
     </message>
     <message>
-        <source>declares a DTD or entities, which no mission needs; refused as hostile</source>
-        <translation>erklärt eine DTD oder Entitäten, die keine Mission braucht; als feindlich abgelehnt</translation>
-    </message>
-    <message>
         <source>not readable as XML ({0}); export the mission again</source>
         <translation>nicht als XML lesbar ({0}); die Mission neu exportieren</translation>
     </message>
@@ -6155,14 +6147,6 @@ Take it over?</source>
     <message>
         <source>the home position {0}, {1}, {2} m is not on the globe</source>
         <translation>der Startplatz {0}, {1}, {2} m liegt nicht auf der Erde</translation>
-    </message>
-    <message>
-        <source>expected a mission file, found something that is not a regular file</source>
-        <translation>erwartet wurde eine Missionsdatei, gefunden etwas, das keine gewöhnliche Datei ist</translation>
-    </message>
-    <message>
-        <source>the file has more than {0} MiB; expected a mission file</source>
-        <translation>die Datei hat mehr als {0} MiB; erwartet wurde eine Missionsdatei</translation>
     </message>
     <message>
         <source>damaged or no zip archive ({0}); a KMZ is one; copy it again</source>
@@ -7529,6 +7513,14 @@ Take it over?</source>
         <translation>; ist &apos;{0}&apos; gemeint?</translation>
     </message>
     <message>
+        <source>its settings are as at first, and the file stays as it is</source>
+        <translation>die Einstellungen darin sind wie am Anfang, und die Datei bleibt, wie sie ist</translation>
+    </message>
+    <message>
+        <source>its settings are as at first again, and the damaged file is kept as &apos;{0}&apos;</source>
+        <translation>die Einstellungen darin sind wieder wie am Anfang, und die beschädigte Datei liegt als &apos;{0}&apos; daneben</translation>
+    </message>
+    <message>
         <source>expected one of {0}, found an unknown key{1}</source>
         <translation>erwartet wurde eines von {0}, gefunden ein unbekannter Schlüssel{1}</translation>
     </message>
@@ -7557,16 +7549,196 @@ Take it over?</source>
         <translation>noch einmal kopieren oder neu machen</translation>
     </message>
     <message>
+        <source>expected {0}, found a folder; name a file</source>
+        <translation>erwartet wurde {0}, gefunden ein Ordner; eine Datei angeben</translation>
+    </message>
+    <message>
+        <source>expected {0}, found a device or a pipe; name a file</source>
+        <translation>erwartet wurde {0}, gefunden ein Gerät oder eine Pipe; eine Datei angeben</translation>
+    </message>
+    <message>
+        <source>the file has more than {0}; expected {1}</source>
+        <translation>die Datei hat mehr als {0}; erwartet wurde {1}</translation>
+    </message>
+    <message>
+        <source>{0} MiB</source>
+        <translation>{0} MiB</translation>
+    </message>
+    <message>
+        <source>{0} KiB</source>
+        <translation>{0} KiB</translation>
+    </message>
+    <message>
+        <source>cannot be read: there is no such file</source>
+        <translation>nicht lesbar: diese Datei gibt es nicht</translation>
+    </message>
+    <message>
+        <source>has more than {0} lines; cut out the part that is wanted</source>
+        <translation>hat mehr als {0} Zeilen; den gewünschten Teil ausschneiden</translation>
+    </message>
+    <message>
+        <source>its content would take about {0} GiB of memory; expected at most {1} GiB; cut out the part that is wanted</source>
+        <translation>der Inhalt bräuchte etwa {0} GiB Speicher; höchstens {1} GiB werden erwartet; den gewünschten Teil ausschneiden</translation>
+    </message>
+    <message>
+        <source>the list of its files has more than {0}; pack it again with what is needed</source>
+        <translation>die Liste der Dateien darin hat mehr als {0}; nur mit dem Nötigen neu packen</translation>
+    </message>
+    <message>
+        <source>declares a document type or entities</source>
+        <translation>deklariert einen Dokumenttyp oder Entitäten</translation>
+    </message>
+    <message>
+        <source>is nested more than {0} levels deep</source>
+        <translation>ist mehr als {0} Ebenen tief verschachtelt</translation>
+    </message>
+    <message>
+        <source>a JSON file</source>
+        <translation>eine JSON-Datei</translation>
+    </message>
+    <message>
+        <source>a TOML file</source>
+        <translation>eine TOML-Datei</translation>
+    </message>
+    <message>
+        <source>expected text, found half of a character (a surrogate by itself)</source>
+        <translation>erwartet wurde Text, gefunden ein halbes Zeichen (ein einzelnes Surrogat)</translation>
+    </message>
+    <message>
+        <source>a text in it holds half of a character (a surrogate by itself)</source>
+        <translation>ein Text darin enthält ein halbes Zeichen (ein einzelnes Surrogat)</translation>
+    </message>
+    <message>
+        <source>line {0}: a key has more than {1} parts; none of ours has</source>
+        <translation>Zeile {0}: ein Schlüssel hat mehr als {1} Teile; keiner von uns hat so viele</translation>
+    </message>
+    <message>
+        <source>a triangle names vertex {0}, which is not there (vertices: 0 to {1}); export the mesh again</source>
+        <translation>ein Dreieck nennt die Ecke {0}, die es nicht gibt (Ecken: 0 bis {1}); das Netz neu exportieren</translation>
+    </message>
+    <message>
+        <source>a mesh file</source>
+        <translation>eine Netzdatei</translation>
+    </message>
+    <message>
+        <source>reduce it, or cut out the building</source>
+        <translation>verkleinern oder das Gebäude ausschneiden</translation>
+    </message>
+    <message>
+        <source>this mesh would take about {0} GiB of memory; expected at most {1} GiB; reduce it, or export the building alone as binary PLY</source>
+        <translation>dieses Netz bräuchte etwa {0} GiB Speicher; höchstens {1} GiB werden erwartet; verkleinern oder das Gebäude allein als binäres PLY exportieren</translation>
+    </message>
+    <message>
+        <source>is no GLB file, or cut off; export it again</source>
+        <translation>ist keine GLB-Datei oder abgeschnitten; neu exportieren</translation>
+    </message>
+    <message>
+        <source>the GLB file does not begin with its description, or is cut off; export it again</source>
+        <translation>die GLB-Datei beginnt nicht mit ihrer Beschreibung oder ist abgeschnitten; neu exportieren</translation>
+    </message>
+    <message>
+        <source>the description in the GLB file is damaged ({0}); export it again</source>
+        <translation>die Beschreibung in der GLB-Datei ist beschädigt ({0}); neu exportieren</translation>
+    </message>
+    <message>
+        <source>its triangles are compressed ({0}), which is not read; export it without compression</source>
+        <translation>die Dreiecke sind komprimiert ({0}), was nicht gelesen wird; ohne Kompression exportieren</translation>
+    </message>
+    <message>
+        <source>its triangles are in another file; export it as one file, with everything in it</source>
+        <translation>die Dreiecke liegen in einer anderen Datei; als eine Datei mit allem darin exportieren</translation>
+    </message>
+    <message>
+        <source>its triangles are stored as differences from zero (sparse accessors), which is not read</source>
+        <translation>die Dreiecke sind als Abweichungen von null gespeichert (sparse accessors), was nicht gelesen wird</translation>
+    </message>
+    <message>
+        <source>a CityGML file</source>
+        <translation>eine CityGML-Datei</translation>
+    </message>
+    <message>
+        <source>cut out the buildings wanted</source>
+        <translation>die gewünschten Gebäude ausschneiden</translation>
+    </message>
+    <message>
+        <source>the XML {0}, which a CityGML file has no need of; refused</source>
+        <translation>das XML {0}, was eine CityGML-Datei nicht braucht; abgelehnt</translation>
+    </message>
+    <message>
+        <source>an IFC file</source>
+        <translation>eine IFC-Datei</translation>
+    </message>
+    <message>
+        <source>export the facade alone</source>
+        <translation>nur die Fassade exportieren</translation>
+    </message>
+    <message>
+        <source>{0}, which no mission needs; refused as hostile</source>
+        <translation>{0}, was keine Mission braucht; als feindlich abgelehnt</translation>
+    </message>
+    <message>
+        <source>a file of the signing key</source>
+        <translation>eine Datei des Signaturschlüssels</translation>
+    </message>
+    <message>
+        <source>a DJI KMZ</source>
+        <translation>eine DJI-KMZ</translation>
+    </message>
+    <message>
+        <source>a web page</source>
+        <translation>eine Webseite</translation>
+    </message>
+    <message>
+        <source>begin the training anew</source>
+        <translation>das Training neu beginnen</translation>
+    </message>
+    <message>
+        <source>the model cannot be written ({0})</source>
+        <translation>das Modell lässt sich nicht schreiben ({0})</translation>
+    </message>
+    <message>
+        <source>a picture</source>
+        <translation>ein Bild</translation>
+    </message>
+    <message>
+        <source>cannot be decoded as a picture; expected JPEG, PNG, WebP, TIFF or BMP, whole</source>
+        <translation>lässt sich nicht als Bild lesen; JPEG, PNG, WebP, TIFF oder BMP wird erwartet, vollständig</translation>
+    </message>
+    <message>
+        <source>the picture is cut off or damaged; copy the file again</source>
+        <translation>das Bild ist abgeschnitten oder beschädigt; die Datei neu kopieren</translation>
+    </message>
+    <message>
+        <source>claims to be a picture of {0} x {1} pixels; expected 1 to {2} megapixels, so it is not decoded</source>
+        <translation>gibt sich als Bild von {0} x {1} Pixeln aus; 1 bis {2} Megapixel werden erwartet, darum wird es nicht gelesen</translation>
+    </message>
+    <message>
+        <source>a document</source>
+        <translation>ein Dokument</translation>
+    </message>
+    <message>
+        <source>a safetensors file</source>
+        <translation>eine safetensors-Datei</translation>
+    </message>
+    <message>
+        <source>get the file again</source>
+        <translation>die Datei neu beschaffen</translation>
+    </message>
+    <message>
+        <source>is no safetensors file, or damaged (its header has no end); {0}</source>
+        <translation>ist keine safetensors-Datei oder beschädigt (der Kopf hat kein Ende); {0}</translation>
+    </message>
+    <message>
+        <source>is cut off or damaged ({0} of {1} bytes); {2}</source>
+        <translation>ist abgeschnitten oder beschädigt ({0} von {1} Bytes); {2}</translation>
+    </message>
+    <message>
         <source>expected one table with an aircraft and its camera, got {0}</source>
         <translation>Erwartet wurde eine Tabelle mit einem Fluggerät und seiner Kamera, gefunden: {0}</translation>
     </message>
     <message>
         <source>there is no aircraft profile &apos;{0}&apos;; known are: {1}; your own can be a .toml file</source>
         <translation>Es gibt kein Profil eines Fluggeräts &apos;{0}&apos;; bekannt sind: {1}; ein eigenes kann eine .toml-Datei sein</translation>
-    </message>
-    <message>
-        <source>the file has more than {0} MiB; expected a JSON file</source>
-        <translation>die Datei hat mehr als {0} MiB; erwartet wurde eine JSON-Datei</translation>
     </message>
     <message>
         <source>cannot be read ({0})</source>
@@ -8029,14 +8201,6 @@ Take it over?</source>
         <translation>Gebäude {0}</translation>
     </message>
     <message>
-        <source>the file has more than {0} MiB; cut out the buildings wanted</source>
-        <translation>die Datei hat mehr als {0} MiB; die gewünschten Gebäude ausschneiden</translation>
-    </message>
-    <message>
-        <source>the XML defines entities, which a CityGML file has no need of; refused</source>
-        <translation>das XML erklärt Entitäten, die eine CityGML-Datei nicht braucht; abgelehnt</translation>
-    </message>
-    <message>
         <source>not valid XML ({0})</source>
         <translation>kein gültiges XML ({0})</translation>
     </message>
@@ -8167,10 +8331,6 @@ Take it over?</source>
     <message>
         <source>no building element in this file has geometry</source>
         <translation>kein Bauteil in dieser Datei hat Geometrie</translation>
-    </message>
-    <message>
-        <source>the file has more than {0} GiB; export the facade alone</source>
-        <translation>die Datei hat mehr als {0} GiB; die Fassade allein exportieren</translation>
     </message>
     <message>
         <source>expected an IFC file (STEP text that begins with ISO-10303-21)</source>
@@ -9845,10 +10005,6 @@ Take it over?</source>
         <translation>enthält kein Foto (.jpg); nennen Sie den Ordner, der von der Karte der Kamera kopiert wurde</translation>
     </message>
     <message>
-        <source>expected a photo, found something that is not a regular file</source>
-        <translation>ein Foto wird erwartet, gefunden wurde etwas, das keine gewöhnliche Datei ist</translation>
-    </message>
-    <message>
         <source>is no JPEG file; only .jpg photos as the camera wrote them can be read</source>
         <translation>ist keine JPEG-Datei; nur Fotos (.jpg), wie die Kamera sie geschrieben hat, können gelesen werden</translation>
     </message>
@@ -10003,14 +10159,6 @@ Take it over?</source>
     <message>
         <source>{0} of the {1} sections that the plan promised are on no photo</source>
         <translation>{0} der {1} Sektoren, die der Plan versprach, sind auf keinem Foto</translation>
-    </message>
-    <message>
-        <source>claims to be a picture of {0} x {1} pixels; expected at most {2} megapixels, so it is not decoded</source>
-        <translation>gibt sich als Bild von {0} x {1} Pixeln aus; höchstens {2} Megapixel werden erwartet, darum wird es nicht dekodiert</translation>
-    </message>
-    <message>
-        <source>has more than {0} MiB; expected a photo</source>
-        <translation>hat mehr als {0} MiB; ein Foto wird erwartet</translation>
     </message>
     <message>
         <source>cannot be read any more ({0})</source>
@@ -10661,14 +10809,6 @@ Take it over?</source>
         <translation>erwartet werden mindestens zwei Fotos, eines zum Lernen und eines zum Bewerten; vorhanden: {0}</translation>
     </message>
     <message>
-        <source>cannot be read ({0}); make the folder again</source>
-        <translation>kann nicht gelesen werden ({0}); erzeugen Sie den Ordner neu</translation>
-    </message>
-    <message>
-        <source>is no picture, or damaged; make the folder again</source>
-        <translation>ist kein Bild oder beschädigt; erzeugen Sie den Ordner neu</translation>
-    </message>
-    <message>
         <source>expected {0} x {1} pixels as its camera has, got {2} x {3}</source>
         <translation>erwartet werden {0} x {1} Pixel wie bei der Kamera, gefunden {2} x {3}</translation>
     </message>
@@ -10703,14 +10843,6 @@ Take it over?</source>
     <message>
         <source>expected an image of 8 or 16 bit, found {0}</source>
         <translation>erwartet wird ein Bild mit 8 oder 16 Bit, gefunden: {0}</translation>
-    </message>
-    <message>
-        <source>cannot be decoded as a picture; it may be too large or damaged</source>
-        <translation>lässt sich nicht als Bild lesen; es ist vielleicht zu groß oder beschädigt</translation>
-    </message>
-    <message>
-        <source>cannot be decoded as a picture; expected JPEG, PNG, TIFF or BMP, whole</source>
-        <translation>lässt sich nicht als Bild lesen; erwartet wird JPEG, PNG, TIFF oder BMP, vollständig</translation>
     </message>
     <message>
         <source>the file is empty; copy it again</source>
@@ -11069,14 +11201,6 @@ Take it over?</source>
         <translation>die Datei ist leer; eine Sicherung zurückholen</translation>
     </message>
     <message>
-        <source>expected records (a SQLite file), found something else</source>
-        <translation>erwartet werden Einträge (eine SQLite-Datei), gefunden wurde etwas anderes</translation>
-    </message>
-    <message>
-        <source>the file is cut off or too large; take a copy of it back</source>
-        <translation>die Datei ist abgeschnitten oder zu groß; eine Sicherung zurückholen</translation>
-    </message>
-    <message>
         <source>is a SQLite file of another program, not records of ours</source>
         <translation>ist eine SQLite-Datei eines anderen Programms, keine unserer Einträge</translation>
     </message>
@@ -11105,10 +11229,6 @@ Take it over?</source>
         <translation>lässt sich nicht öffnen; ist der Ordner da, und darf darin geschrieben werden?</translation>
     </message>
     <message>
-        <source>the file is damaged; take a copy of it back</source>
-        <translation>die Datei ist beschädigt; eine Sicherung zurückholen</translation>
-    </message>
-    <message>
         <source>the disk does not answer as it should; nothing was changed</source>
         <translation>der Datenträger antwortet nicht wie erwartet; nichts wurde geändert</translation>
     </message>
@@ -11119,6 +11239,18 @@ Take it over?</source>
     <message>
         <source>there are no records yet; make them with &apos;records FOLDER make --objects SITE&apos;</source>
         <translation>es gibt noch keine Einträge; mit &apos;records FOLDER make --objects SITE&apos; anlegen</translation>
+    </message>
+    <message>
+        <source>expected records (a SQLite file), found something else or a file that is cut off</source>
+        <translation>erwartet werden Einträge (eine SQLite-Datei), gefunden wurde etwas anderes oder eine abgeschnittene Datei</translation>
+    </message>
+    <message>
+        <source>the file has more than {0} GiB; take a copy of it back</source>
+        <translation>die Datei hat mehr als {0} GiB; eine Sicherung zurückholen</translation>
+    </message>
+    <message>
+        <source>the file is damaged or cut off; take a copy of it back</source>
+        <translation>die Datei ist beschädigt oder abgeschnitten; eine Sicherung zurückholen</translation>
     </message>
     <message>
         <source>is damaged or cannot be used ({0})</source>
@@ -11275,10 +11407,6 @@ Take it over?</source>
     <message>
         <source>is not the file that was stored; copy it back</source>
         <translation>ist nicht die Datei, die abgelegt wurde; sie zurückholen</translation>
-    </message>
-    <message>
-        <source>has more than {0} MiB</source>
-        <translation>hat mehr als {0} MiB</translation>
     </message>
     <message>
         <source>the place could not be looked at ({0})</source>
@@ -11543,22 +11671,6 @@ Take it over?</source>
     <message>
         <source>has more than {0} MiB; save it smaller</source>
         <translation>hat mehr als {0} MiB; kleiner speichern</translation>
-    </message>
-    <message>
-        <source>expected a JPEG, PNG or WebP file, found something else or a damaged one</source>
-        <translation>eine JPEG-, PNG- oder WebP-Datei erwartet, etwas anderes oder eine beschädigte gefunden</translation>
-    </message>
-    <message>
-        <source>claims to have {0} x {1} pixels; expected at most {2} megapixels, so it is not decoded</source>
-        <translation>will {0} x {1} Pixel haben; höchstens {2} Megapixel erwartet, also nicht entschlüsselt</translation>
-    </message>
-    <message>
-        <source>cannot be decoded ({0}); copy the file again</source>
-        <translation>lässt sich nicht entschlüsseln ({0}); die Datei neu kopieren</translation>
-    </message>
-    <message>
-        <source>cannot be decoded; copy the file again</source>
-        <translation>lässt sich nicht entschlüsseln; die Datei neu kopieren</translation>
     </message>
     <message>
         <source>cannot be written as JPEG</source>
