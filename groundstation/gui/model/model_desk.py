@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -247,6 +247,22 @@ class ModelDesk(QObject):
         except GroundStationError as error:
             self._say(error)
             return ()
+
+    def entries_of_all(self, global_ids: Iterable[str]) -> dict[str, dict[type[Any], tuple[Any, ...]]]:
+        """Entries of several, by kind; of kinds that there are none of nothing."""
+        from reconstruction.records.entries import KINDS
+
+        found: dict[str, dict[type[Any], tuple[Any, ...]]] = {global_id: {} for global_id in global_ids}
+        try:
+            with self._reading() as book:
+                for kind in KINDS if book is not None else ():
+                    for entry in book.entries(kind.record):
+                        if entry.global_id in found:
+                            of_kind = found[entry.global_id]
+                            of_kind[kind.record] = (*of_kind.get(kind.record, ()), entry)
+        except GroundStationError as error:
+            self._say(error)
+        return found
 
     def read_attached(
         self,

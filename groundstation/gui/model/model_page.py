@@ -163,16 +163,25 @@ class ModelPage(QObject):
         return Path(f"{name}{ending}")
 
     def make_report(self, path: Path) -> None:
-        """Write a report of the panels that are marked in the list, or of the one that is chosen."""
-        card = self.desk.card
+        """Write a report of the panels that are marked in the list, or of what records are shown of.
+
+        Of a facade or the building, it has all panels that something is known of.
+        """
+        card, subject = self.desk.card, self.desk.subject
         if card is None:
             return
-        chosen = card.by_global_id.get(self.desk.selected)
-        panels = self.side.marked()
-        if len(panels) < 2:
-            panels = () if chosen is None else (chosen,)
+        panels, facades = self.side.marked(), tuple[PanelRow, ...]()
+        if len(panels) < 2 and subject is not None:
+            facades = tuple(
+                each for each in card.panels if self.desk.level == "building" or each.facade_id == subject.global_id
+            )
+            known = self.desk.entries_of_all(each.global_id for each in facades)
+            panels = tuple(each for each in facades if known[each.global_id])
+            if subject.panel is not None:
+                panels = (subject.panel,)
         is_letter = self._workspace.units is UnitSystem.IMPERIAL
-        self.report.make(panels, path if path.suffix else path.with_suffix(".pdf"), self._workspace.units, is_letter)
+        path = path if path.suffix else path.with_suffix(".pdf")
+        self.report.make(panels, path, self._workspace.units, is_letter, facades)
 
     def _report_done(self, path: Path) -> None:
         self._workspace.say(Severity.NOTE, self.tr("The report is written: {0}").format(path))

@@ -175,7 +175,7 @@ class RecordSide(QWidget):
         has_entry = has_subject and self.entry() is not None
         for button, is_on in ((self.add, has_subject), (self.change, has_entry), (self.remove, has_entry)):
             button.setEnabled(is_on)
-        self.report.setEnabled(self._subject is not None and self._subject.panel is not None)
+        self.report.setEnabled(has_subject)
 
     def _level_chosen(self) -> None:
         self.levelChanged.emit(self.level.currentData())

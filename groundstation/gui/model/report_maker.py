@@ -6,7 +6,7 @@ the building.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from groundstation.gui.model.record_side import KIND_TITLES, line_of
 from groundstation.gui.reconstruct.looks import NUMBERS, image_of
 from groundstation.services.reconstruct_camera import sized
 from groundstation.services.reconstruct_messages import Look, Seen, Subject
-from groundstation.services.scene_card import PanelRow, view_of
+from groundstation.services.scene_card import PanelRow, SceneCard, view_of
 from groundstation.services.scene_records import Attachment
 from groundstation.services.units import UnitSystem, area_unit, length_unit
 from planning.errors import InputError
@@ -41,7 +41,11 @@ PHOTO_SCALE = 3
 
 REPORT = "report"
 
-MARK_PX = 11.0
+MARK_PX, SMALL_MARK_PX = 11.0, 4.0
+"""Radius of marks of defects: of one panel, and of several."""
+
+Pictured = tuple[str, tuple[PanelRow, ...]]
+"""GlobalId of a facade or panel, and the panels that its picture shows."""
 
 Entries = dict[type[Any], tuple[Any, ...]]
 """Records of an object by kind."""
@@ -61,59 +65,80 @@ class ReportMaker(QObject):
     def __init__(self, desk: ModelDesk, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._desk = desk
-        self._left: list[PanelRow] = []
+        self._card: SceneCard | None = None
+        self._left: list[Pictured] = []
         self._panels: tuple[PanelRow, ...] = ()
+        self._facades: dict[str, str] = {}
         self._pictures: dict[str, str | QImage] = {}
         self._entries: dict[str, Entries] = {}
         self._attached: dict[str, Attachment] = {}
-        self._is_reading = False
-        self._path, self._number, self._is_letter = Path(), 0, False
+        self._path, self._is_letter = Path(), False
+        self._number = self._reading = 0
         self._units = UnitSystem.METRIC
         desk.seen.connect(self._take)
 
     @property
     def is_busy(self) -> bool:
         """Whether pictures are waited for, or what is attached."""
-        return bool(self._number) or self._is_reading
+        return bool(self._number or self._reading)
 
-    def make(self, panels: Sequence[PanelRow], path: Path, units: UnitSystem, is_letter: bool = False) -> None:
-        """Begin a report; one that is being made is called off."""
-        self._panels, self._left, self._pictures = tuple(panels), list(panels), {}
-        self._path, self._units, self._is_letter = path, units, is_letter
+    def make(
+        self,
+        panels: Sequence[PanelRow],
+        path: Path,
+        units: UnitSystem,
+        is_letter: bool = False,
+        facades: Sequence[PanelRow] = (),
+    ) -> None:
+        """Begin a report; one that is being made is called off.
+
+        Parameters
+        ----------
+        facades
+            All panels of facades that are shown as a whole.
+        """
+        self._card, self._panels, self._pictures = self._desk.card, tuple(panels), {}
+        whole: dict[str, list[PanelRow]] = {}
+        for panel in facades:
+            whole.setdefault(panel.facade_id, []).append(panel)
+        self._facades = {panel.facade_id: panel.facade for panel in (*facades, *panels)}
+        self._left = [(facade_id, tuple(each)) for facade_id, each in whole.items()]
+        self._left += [(panel.global_id, (panel,)) for panel in panels]
+        self._path, self._units, self._is_letter, self._reading = path, units, is_letter, 0
+        if self._card is not None:
+            subjects = (
+                self._card.global_id,
+                *self._facades,
+                *(each.global_id for _, group in self._left for each in group),
+            )
+            self._entries = self._desk.entries_of_all(dict.fromkeys(subjects))
         self._next()
 
     def _next(self) -> None:
         card = self._desk.card
-        if card is None or not self._left:
+        if card is None or card is not self._card or not self._left:
             self._number = 0
-            if card is not None:
+            if card is not None and card is self._card:
                 self._read()
             return
-        panel = self._left[0]
         self._number = next(NUMBERS)
-        camera = sized(view_of((panel,)), WIDTH_PX, HEIGHT_PX)
+        camera = sized(view_of(self._left[0][1]), WIDTH_PX, HEIGHT_PX)
         self._desk.look(Look(REPORT, self._number, Subject("model", card.folder), camera))
 
     def _read(self) -> None:
-        """Take down what the records say, and read the files that they name."""
-        self._entries = {each: self._entries_of(each) for each in self._subjects()}
+        """Read the files that records name."""
         entries = [entry for kinds in self._entries.values() for each in kinds.values() for entry in each]
-        self._is_reading = True
-        self._desk.read_attached(entries, PHOTO_SCALE * PHOTO_PX, self._write, self._not_read)
+        self._reading = number = next(NUMBERS)
+
+        def read(attached: dict[str, Attachment]) -> None:
+            if self._reading == number:
+                self._reading, self._attached = 0, attached
+                self._write()
+
+        self._desk.read_attached(entries, PHOTO_SCALE * PHOTO_PX, read, self._not_read)
 
     def _not_read(self, _error: BaseException | None) -> None:
-        self._is_reading = False
-
-    def _subjects(self) -> tuple[str, ...]:
-        """GlobalIds of the building, the facades and the panels that the report is about."""
-        card = self._desk.card
-        assert card is not None
-        facades = (panel.facade_id for panel in self._panels)
-        return tuple(dict.fromkeys((card.global_id, *facades, *(panel.global_id for panel in self._panels))))
-
-    def _entries_of(self, global_id: str) -> Entries:
-        found = {kind: self._desk.entries_of(kind, global_id) for kind in KIND_TITLES}
-        return {kind: entries for kind, entries in found.items() if entries}
+        self._reading = 0
 
     def _take(self, seen: Seen | None) -> None:
         if not self._number:
@@ -122,18 +147,19 @@ class ReportMaker(QObject):
             self._number = 0
             self.failed.emit(self.tr("the process that shows models has ended; try again"))
         elif seen.look.place == REPORT and seen.look.number == self._number:
-            panel = self._left.pop(0)
+            global_id, panels = self._left.pop(0)
             if seen.picture is not None:
-                defects = self._desk.entries_of(Defect, panel.global_id)
-                self._pictures[panel.global_id] = marked(image_of(seen.picture), seen, panel, defects)
+                defects = {panel: self._entries[panel.global_id].get(Defect, ()) for panel in panels}
+                self._pictures[global_id] = marked(image_of(seen.picture), seen, defects)
             self._next()
 
-    def _write(self, attached: dict[str, Attachment]) -> None:
-        self._is_reading, self._attached = False, attached
-        photos = {name: QImage.fromData(each.picture) for name, each in attached.items() if each.picture is not None}
+    def _write(self) -> None:
+        photos = {
+            name: QImage.fromData(each.picture) for name, each in self._attached.items() if each.picture is not None
+        }
         document = BriefDocument(self.html(), self._pictures | photos)
-        card = self._desk.card
-        document.setMetaInformation(QTextDocument.MetaInformation.DocumentTitle, "" if card is None else card.name)
+        name = "" if self._card is None else self._card.name
+        document.setMetaInformation(QTextDocument.MetaInformation.DocumentTitle, name)
         try:
             write_pdf(document, self._path, self._is_letter)
         except InputError as error:
@@ -143,18 +169,17 @@ class ReportMaker(QObject):
 
     def html(self) -> str:
         """The page; all that somebody wrote is text in it, and no markup."""
-        card = self._desk.card
+        card = self._card
         assert card is not None
         name = card.name or card.folder.name
         heading = escape(self.tr("Panels of {0}").format(name))
         when = escape(self.tr("Model of {0}").format(card.written_at.date().isoformat()))
         parts = [f"<h1>{heading}</h1><p>{when}</p>"]
-        facades = dict.fromkeys((panel.facade_id, panel.facade) for panel in self._panels)
         about = [(card.global_id, self.tr("The building: {0}").format(name))]
-        about += [(facade_id, self.tr("Facade {0}").format(facade)) for facade_id, facade in facades]
+        about += [(facade_id, self.tr("Facade {0}").format(facade)) for facade_id, facade in self._facades.items()]
         for global_id, title in about:
-            if records := self._records_html(global_id):
-                parts.append(f"<h2>{escape(title)}</h2>{records}")
+            if known := self._picture_html(global_id) + self._records_html(global_id):
+                parts.append(f"<h2>{escape(title)}</h2>{known}")
         has_page = len(parts) > 1
         for panel in self._panels:
             parts.append(self._panel_html(panel, is_first=not has_page))
@@ -173,10 +198,13 @@ class ReportMaker(QObject):
         rows = "".join(f"<tr><td>{escape(name)}&nbsp;</td><td>{escape(value)}</td></tr>" for name, value in facts)
         style = "" if is_first else " style='page-break-before:always'"
         parts = [f"<h2{style}>{escape(panel.name)}</h2><table>{rows}</table>"]
-        if panel.global_id in self._pictures:
-            parts.append(f"<p><img src='{escape(panel.global_id, quote=True)}' width='{SHOWN_PX}'></p>")
-        parts.append(self._records_html(panel.global_id))
+        parts += [self._picture_html(panel.global_id), self._records_html(panel.global_id)]
         return "".join(parts)
+
+    def _picture_html(self, global_id: str) -> str:
+        if global_id not in self._pictures:
+            return ""
+        return f"<p><img src='{escape(global_id, quote=True)}' width='{SHOWN_PX}'></p>"
 
     def _records_html(self, global_id: str) -> str:
         """Records of an object by kind; "" where there are none. Defects have the numbers that the picture has."""
@@ -210,31 +238,40 @@ def _fitted(picture: bytes) -> str:
     return f"width='{size.width()}' height='{size.height()}'"
 
 
-def marked(picture: QImage, seen: Seen, panel: PanelRow, defects: Sequence[Defect]) -> QImage:
-    """A picture with the panel outlined, and its open defects where they are on it."""
-    c0, c1, _, c3 = panel.element.corners_enu_m
+def marked(picture: QImage, seen: Seen, defects: Mapping[PanelRow, Sequence[Defect]]) -> QImage:
+    """A picture with panels outlined, and their open defects where they are.
+
+    Those of one panel have their numbers. Of several, what has no place on its panel is in the panel's middle.
+    """
+    is_one = len(defects) == 1
     found = picture.copy()
     painter = QPainter(found)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    outline = places_in(seen.look.camera, panel.element.corners_enu_m)
-    if outline is not None:
-        painter.setPen(QPen(QColor("#e69f00"), 2.5))
-        painter.drawPolygon(QPolygonF(outline))
-    painter.setPen(QPen(QColor("#ffffff"), 2.5))
     font = painter.font()
     font.setBold(True)
     font.setPixelSize(round(1.2 * MARK_PX))
     painter.setFont(font)
-    for number, defect in enumerate(defects, 1):
-        if defect.u is None or defect.v is None or defect.status != "open":
-            continue
-        u, v = defect.u, defect.v
-        point = tuple(a + u * (b - a) + v * (d - a) for a, b, d in zip(c0, c1, c3, strict=True))
-        place = places_in(seen.look.camera, [point])
-        if place is not None:
-            painter.setBrush(QColor("#b3261e"))
-            painter.drawEllipse(place[0], MARK_PX, MARK_PX)
-            box = QRectF(place[0] - QPointF(MARK_PX, MARK_PX), place[0] + QPointF(MARK_PX, MARK_PX))
-            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, str(number))
+    for panel in defects:
+        outline = places_in(seen.look.camera, panel.element.corners_enu_m)
+        if outline is not None:
+            painter.setPen(QPen(QColor("#e69f00"), 2.5 if is_one else 1.0))
+            painter.drawPolygon(QPolygonF(outline))
+    painter.setPen(QPen(QColor("#ffffff"), 2.5 if is_one else 1.5))
+    painter.setBrush(QColor("#b3261e"))
+    radius = MARK_PX if is_one else SMALL_MARK_PX
+    for panel, of_panel in defects.items():
+        c0, c1, _, c3 = panel.element.corners_enu_m
+        for number, defect in enumerate(of_panel, 1):
+            if defect.status != "open" or (is_one and defect.u is None):
+                continue
+            u, v = 0.5 if defect.u is None else defect.u, 0.5 if defect.v is None else defect.v
+            point = tuple(a + u * (b - a) + v * (d - a) for a, b, d in zip(c0, c1, c3, strict=True))
+            place = places_in(seen.look.camera, [point])
+            if place is None:
+                continue
+            painter.drawEllipse(place[0], radius, radius)
+            if is_one:
+                box = QRectF(place[0] - QPointF(radius, radius), place[0] + QPointF(radius, radius))
+                painter.drawText(box, Qt.AlignmentFlag.AlignCenter, str(number))
     painter.end()
     return found

@@ -143,7 +143,7 @@ def test_facades_and_the_building_have_records_too(opened):
     choose_level(opened, "building")
     assert records.title.text() == card.name
     assert records.add.isEnabled()
-    assert not records.report.isEnabled()
+    assert records.report.isEnabled()
     records.putAsked.emit(Inspection(card.global_id, "2026-02-01", "K. Roth", "all of it"), None)
     assert "2026-02-01: all of it, K. Roth" in tree_texts(opened)
     choose_level(opened, "facade")
@@ -288,6 +288,44 @@ def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application
     opened.make_report(tmp_path / "nowhere" / "panels.pdf")
     pictures_come(application, opened, 4)
     assert "cannot be written" in opened.messages[-1].text
+
+
+def test_a_report_of_a_facade_shows_it_whole_and_the_panels_that_something_is_known_of(application, opened, tmp_path):
+    card, desk = opened.desk.card, opened.desk
+    panels = [each for each in card.panels if each.facade == card.panels[0].facade]
+    desk.put(Inspection(panels[0].facade_id, "2026-03-30", "Moreau"))
+    desk.put(Defect(panels[1].global_id, "crack", 4, "2026-05-04"))
+    desk.put(Defect(card.panels[-1].global_id, "leak of another facade", 4, "2026-05-04"))
+    desk.select(panels[0].global_id)
+    choose_level(opened, "facade")
+    with clicked(choose(tmp_path / "facade.pdf")):
+        opened.records.report.click()
+    asked = looks(opened)[-1]
+    pictures_come(application, opened, 2)
+    html = opened.report.html()
+    assert f"<h2>Facade {panels[0].facade}</h2><p><img src='{panels[0].facade_id}'" in html
+    assert html.count("<img") == 2
+    assert "Moreau" in html
+    assert "crack" in html
+    assert "another facade" not in html
+    inside = asked.camera.pose.points_cam(np.array([each.element.corners_enu_m for each in panels]).reshape(-1, 3))
+    assert (np.abs(inside[:, :2] / inside[:, 2:]) < 0.6).all()
+    choose_level(opened, "building")
+    opened.make_report(tmp_path / "building.pdf")
+    pictures_come(application, opened, 4)
+    assert "another facade" in opened.report.html()
+
+
+def test_another_model_in_the_middle_of_a_report_ends_it(application, opened, tmp_path):
+    opened.desk.select(opened.desk.card.panels[0].global_id)
+    opened.make_report(tmp_path / "r.pdf")
+    look, folder = looks(opened)[-1], tmp_path / "other.gsscene"
+    write_scene(made_scene(((1,),), name="other"), folder)
+    opened.desk.open(folder)
+    turn_until(application, lambda: opened.desk.card.folder == folder)
+    answer(opened, look)
+    assert not opened.report.is_busy
+    assert not (tmp_path / "r.pdf").exists()
 
 
 def pictures_come(application, page, n):
