@@ -274,7 +274,6 @@ def return_home(case: Case) -> Iterator[Finding]:
     gaps = case.measures
     way, limit_m = found.way, min(case.space.min_distance_m, *gaps.solid_gaps.legs_m.values())
     crosses_by_itself = way.crosses_no_fly and min(gaps.no_fly_gaps.legs_m.values(), default=math.inf) > 0.0
-    where = f"{found.above_home_m:g} m above take-off"
     is_capped = found.above_home_m < found.wanted_above_home_m
     if way.gap_m < limit_m - RETURN_TOLERANCE_M and is_capped:
         what = "through the building or an obstacle" if way.gap_m <= 0.0 else f"{way.gap_m:.1f} m from something"
@@ -296,10 +295,16 @@ def return_home(case: Case) -> Iterator[Finding]:
         text = f"an aircraft that returns by itself climbs within {way.gap_m:.1f} m of the building or an obstacle"
         yield Finding(Severity.WARNING, "return-height", text, "", way.gap_m, limit_m, "m")
     elif crosses_by_itself:
-        text = f"an aircraft that returns by itself, {where}, crosses a no-fly zone; fly it back by hand"
+        text = (
+            f"an aircraft that returns by itself, {found.above_home_m:g} m above take-off, crosses a no-fly zone; fly it "
+            "back by hand"
+        )
         yield Finding(Severity.WARNING, "return-height", text, "", found.above_home_m, found.ceiling_above_home_m, "m")
     else:
-        text = f"an aircraft that returns by itself flies {where}, {found.ceiling_above_home_m:.1f} m are allowed"
+        text = (
+            f"an aircraft that returns by itself flies {found.above_home_m:g} m above take-off, "
+            f"{found.ceiling_above_home_m:.1f} m are allowed"
+        )
         yield Finding(Severity.OK, "return-height", text, "", found.above_home_m, found.ceiling_above_home_m, "m")
 
 

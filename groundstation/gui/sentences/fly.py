@@ -374,7 +374,6 @@ SENTENCES = (
         "Sentences",
         "the vehicle has another mission now than the one that was uploaded: pause it, and look what it does",
     ),
-    QT_TRANSLATE_NOOP("Sentences", "{0} m above take-off"),
     QT_TRANSLATE_NOOP("Sentences", "through the building or an obstacle"),
     QT_TRANSLATE_NOOP("Sentences", "{0} m from something"),
     QT_TRANSLATE_NOOP(
@@ -386,10 +385,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP(
         "Sentences", "an aircraft that returns by itself climbs within {0} m of the building or an obstacle"
     ),
-    QT_TRANSLATE_NOOP(
-        "Sentences", "an aircraft that returns by itself, {0}, crosses a no-fly zone; fly it back by hand"
-    ),
-    QT_TRANSLATE_NOOP("Sentences", "an aircraft that returns by itself flies {0}, {1} m are allowed"),
     QT_TRANSLATE_NOOP(
         "Sentences",
         "the return height is above the airspace: expected at most {0} m above take-off, got {1} m; {2} m are right",
@@ -434,4 +429,9 @@ SENTENCES = (
         "the vehicle counts its heights from {0} m below the planned home; it was not started: set its "
         "home anew where it stands",
     ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "an aircraft that returns by itself, {0} m above take-off, crosses a no-fly zone; fly it back by hand",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "an aircraft that returns by itself flies {0} m above take-off, {1} m are allowed"),
 )
