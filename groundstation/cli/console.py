@@ -7,10 +7,13 @@ import shlex
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from groundstation.services.jobs import JobContext, JobEvent, JobProgress, JobRunner
 from planning.findings import Finding, Severity
+
+if TYPE_CHECKING:
+    from missions.flight.outcome import FlightReport
 
 Result = TypeVar("Result")
 
@@ -82,6 +85,17 @@ def print_findings(findings: Iterable[Finding]) -> None:
             print(f"{MARKS[severity]}: {message}", file=sys.stderr)
         if len(texts) > MAX_SHOWN:
             print(f"{MARKS[severity]}: {len(texts) - MAX_SHOWN} more like this (--json lists all)", file=sys.stderr)
+
+
+def flight_status(report: FlightReport) -> int:
+    """Exit status of a flight's report: 1, and a line that says why, where the flight did not end as it should."""
+    from missions.flight.report_rules import ENDED_BADLY
+
+    worst = next((finding for finding in report.findings if finding.code in ENDED_BADLY), None)
+    if worst is None:
+        return 0
+    print(f"error: {worst.place}: {worst.message}", file=sys.stderr)
+    return 1
 
 
 def print_next(*arguments: object) -> None:

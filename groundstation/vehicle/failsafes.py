@@ -1,14 +1,15 @@
 """What the vehicle will do by itself, by its parameters, against what this sortie can bear.
 
-ArduPilot: parameter documentation of Copter 4.5, `failsafe_gcs_check`, `AP_Rally`, and `compute_return_target` of RTL,
-which never returns above the fence's height. PX4: parameter reference 1.16.
+ArduPilot: parameter documentation of Copter 4.5, `failsafe_gcs_check`, `failsafe_radio_on_event`, `AP_BattMonitor`,
+`AP_Rally`, and `compute_return_target` of RTL, which never returns above the fence's height. PX4: parameter reference
+1.16 and its page of safety settings.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 from groundstation.vehicle import fence_limits
@@ -22,10 +23,15 @@ from planning.rally import return_way
 NAMES = {
     Autopilot.ARDUPILOT: (
         *("FS_GCS_ENABLE", "FS_GCS_TIMEOUT", "FS_OPTIONS", "RTL_ALT", "RTL_CONE_SLOPE"),
+        *("FS_THR_ENABLE", "RC_FS_TIMEOUT", "FS_EKF_ACTION", "FS_EKF_THRESH"),
+        *("BATT_CAPACITY", "BATT_FS_LOW_ACT", "BATT_LOW_VOLT", "BATT_LOW_MAH"),
+        *("BATT_FS_CRT_ACT", "BATT_CRT_VOLT", "BATT_CRT_MAH"),
         *("RALLY_INCL_HOME", *fence_limits.NAMES[Autopilot.ARDUPILOT]),
     ),
     Autopilot.PX4: (
         *("NAV_DLL_ACT", "COM_DL_LOSS_T", "COM_DLL_EXCEPT"),
+        *("NAV_RCL_ACT", "COM_RC_LOSS_T", "COM_RCL_EXCEPT", "COM_RC_IN_MODE", "COM_POSCTL_NAVL"),
+        *("COM_LOW_BAT_ACT", "BAT_CRIT_THR", "BAT_EMERGEN_THR"),
         *("RTL_RETURN_ALT", "RTL_TYPE", "RTL_CONE_ANG", "RTL_DESCEND_ALT"),
         *fence_limits.NAMES[Autopilot.PX4],
     ),
@@ -40,6 +46,7 @@ class Deed(Enum):
     RETURN = auto()
     LAND = auto()
     HOVER = auto()
+    DRIFT = auto()
     FALL = auto()
 
 
@@ -60,6 +67,49 @@ LINK_ACTIONS = {
 
 CONTINUE_MISSION, EXCEPT_MISSION = 2, 1
 """Bits of FS_OPTIONS and of COM_DLL_EXCEPT: a mission goes on without the ground station."""
+
+NO_STICKS = 4
+"""COM_RC_IN_MODE with which PX4 takes no sticks."""
+
+REMOTE_CONTROL_ACTIONS = {
+    Autopilot.ARDUPILOT: {
+        0: Deed.GO_ON,
+        1: Deed.RETURN,
+        2: Deed.RETURN,
+        3: Deed.LAND,
+        4: Deed.RETURN,
+        5: Deed.RETURN,
+        6: Deed.RETURN,
+        7: Deed.LAND,
+    },
+    Autopilot.PX4: {0: Deed.GO_ON, 1: Deed.HOVER, 2: Deed.RETURN, 3: Deed.LAND, 5: Deed.FALL, 6: Deed.FALL},
+}
+"""FS_THR_ENABLE and NAV_RCL_ACT."""
+
+BATTERY_ACTIONS_ARDUPILOT = {
+    0: Deed.GO_ON,
+    1: Deed.LAND,
+    2: Deed.RETURN,
+    3: Deed.RETURN,
+    4: Deed.RETURN,
+    5: Deed.FALL,
+    6: Deed.RETURN,
+    7: Deed.LAND,
+}
+"""BATT_FS_LOW_ACT and BATT_FS_CRT_ACT; they act where a voltage or a charge is set for it."""
+
+BATTERY_STAGES_PX4 = {
+    1: (("BAT_CRIT_THR", Deed.RETURN, False), ("BAT_EMERGEN_THR", Deed.LAND, True)),
+    2: (("BAT_CRIT_THR", Deed.LAND, True),),
+    3: (("BAT_CRIT_THR", Deed.RETURN, False), ("BAT_EMERGEN_THR", Deed.LAND, True)),
+}
+"""By COM_LOW_BAT_ACT, 0 only warns: the parameter with the charge, what is done below it, and whether more follows."""
+
+POSITION_ACTIONS = {
+    Autopilot.ARDUPILOT: {0: Deed.DRIFT, 1: Deed.LAND, 2: Deed.DRIFT, 3: Deed.LAND},
+    Autopilot.PX4: {0: Deed.DRIFT, 1: Deed.LAND},
+}
+"""FS_EKF_ACTION (0 only reports, 2 keeps the height) and COM_POSCTL_NAVL."""
 
 FENCE_ACTIONS = {
     Autopilot.ARDUPILOT: {
@@ -104,7 +154,9 @@ class Return:
 def failsafe_checks(
     autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders
 ) -> tuple[PreflightCheck, ...]:
-    """What the vehicle does by itself when the link is lost, when it returns, and at the fence; takes some 0.1 s.
+    """What the vehicle does by itself without link, remote control, charge or position, when it returns, at the fence.
+
+    Takes some 0.1 s.
 
     Parameters
     ----------
@@ -113,10 +165,34 @@ def failsafe_checks(
     """
     return (
         *_link(autopilot, values),
+        *_remote_control(autopilot, values),
+        *_battery(autopilot, values, orders),
+        *_position(autopilot, values),
         *_return(autopilot, values, orders),
         *_fence(autopilot, values, orders),
         *fence_limits.fence_limit_checks(autopilot, values, orders),
     )
+
+
+def _stated(code: str, deed: Deed | None, when: str, set_so: str) -> PreflightCheck:
+    """One line: what happens then, as the parameters have it."""
+    match deed:
+        case Deed.GO_ON:
+            verdict, text = Verdict.OK, f"{when}, and it flies the mission on ({set_so})"
+        case Deed.RETURN:
+            verdict, text = Verdict.OK, f"{when}, and it breaks the mission off and returns ({set_so})"
+        case Deed.LAND:
+            verdict, text = Verdict.WARN, f"{when}, and it lands, whatever is below it ({set_so})"
+        case Deed.HOVER:
+            verdict, text = Verdict.WARN, f"{when}, and it hovers until its battery is low ({set_so})"
+        case Deed.DRIFT:
+            text = f"{when}, and it only keeps its height and drifts with the wind: take over at once ({set_so})"
+            verdict = Verdict.WARN
+        case Deed.FALL:
+            verdict, text = Verdict.BAD, f"{when}, and it stops its motors and falls ({set_so}): set it otherwise"
+        case None:
+            verdict, text = Verdict.WARN, f"{when}, and what the vehicle does is not known ({set_so})"
+    return PreflightCheck(code, verdict, text)
 
 
 def _link(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[PreflightCheck]:
@@ -127,25 +203,103 @@ def _link(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[Preflig
         text = f"what the vehicle does when the link is lost is not known: it has no {name}"
         yield PreflightCheck("link-loss", Verdict.WARN, text)
         return
-    wait_s, set_so = values.get(wait, 0.0), f"{name} {number:g}"
     options, bit = ("FS_OPTIONS", CONTINUE_MISSION) if is_ardupilot else ("COM_DLL_EXCEPT", EXCEPT_MISSION)
     deed = LINK_ACTIONS[autopilot].get(int(number))
     if deed is Deed.GO_ON or int(values.get(options, 0.0)) & bit:
-        verdict, text = Verdict.OK, "without the link it flies the mission on, and lands at home"
-    elif deed is Deed.RETURN:
-        verdict = Verdict.OK
-        text = f"{wait_s:g} s without the link, and it breaks the mission off and returns ({set_so})"
-    elif deed is Deed.LAND:
-        verdict, text = Verdict.WARN, f"{wait_s:g} s without the link, and it lands, whatever is below it ({set_so})"
-    elif deed is Deed.HOVER:
-        verdict = Verdict.WARN
-        text = f"{wait_s:g} s without the link, and it hovers until its battery is low ({set_so})"
-    elif deed is Deed.FALL:
-        verdict = Verdict.BAD
-        text = f"{wait_s:g} s without the link, and it stops its motors and falls ({set_so}): set it otherwise"
+        yield PreflightCheck("link-loss", Verdict.OK, "without the link it flies the mission on, and lands at home")
     else:
-        verdict, text = Verdict.WARN, f"what the vehicle does when the link is lost is not known ({set_so})"
-    yield PreflightCheck("link-loss", verdict, text)
+        yield _stated("link-loss", deed, f"{values.get(wait, 0.0):g} s without the link", f"{name} {number:g}")
+
+
+def _remote_control(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[PreflightCheck]:
+    is_ardupilot = autopilot is Autopilot.ARDUPILOT
+    name, wait = ("FS_THR_ENABLE", "RC_FS_TIMEOUT") if is_ardupilot else ("NAV_RCL_ACT", "COM_RC_LOSS_T")
+    number = values.get(name)
+    if number is None:
+        text = f"what the vehicle does without its remote control is not known: it has no {name}"
+        yield PreflightCheck("rc-loss", Verdict.WARN, text)
+        return
+    if not is_ardupilot and values.get("COM_RC_IN_MODE") == NO_STICKS:
+        text = f"it takes no remote control (COM_RC_IN_MODE {NO_STICKS}): only this ground station can take over"
+        yield PreflightCheck("rc-loss", Verdict.WARN, text)
+        return
+    options = "FS_OPTIONS" if is_ardupilot else "COM_RCL_EXCEPT"
+    goes_on = bool(int(values.get(options, 0.0)) & EXCEPT_MISSION)
+    deed = Deed.GO_ON if goes_on else REMOTE_CONTROL_ACTIONS[autopilot].get(int(number))
+    set_so = f"{options} {values[options]:g}" if goes_on else f"{name} {number:g}"
+    yield _stated("rc-loss", deed, f"{values.get(wait, 1.0):g} s without the remote control", set_so)
+
+
+def _battery(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Iterator[PreflightCheck]:
+    """What it does when its battery is low; where that comes before the sortie is over, that it does."""
+    stages = tuple(_battery_stages(autopilot, values))
+    if not stages:
+        text = "nothing is done by itself when the battery is low: watch it, and land in time"
+        yield PreflightCheck("battery-low", Verdict.WARN, text)
+        return
+    reserve = orders.surroundings[autopilot].rules.battery_reserve
+    left = 1.0 - (orders.battery_needed - reserve)
+    for stage in stages:
+        if stage.level is not None and stage.level > left and stage.deed is not Deed.GO_ON:
+            text = (
+                f"the vehicle breaks the mission off at a charge of {stage.level:.0%}, and the sortie ends with "
+                f"{left:.0%}: set {stage.name} so that it lasts"
+            )
+            yield PreflightCheck("battery-low", Verdict.WARN, text, stage.level, left)
+        else:
+            when = f"battery below {stage.below}"
+            # To land where it is, with the last charge, is what is left.
+            check = _stated("battery-low", stage.deed, when, stage.set_so)
+            yield replace(check, verdict=Verdict.OK) if stage.deed is Deed.LAND and stage.is_last else check
+
+
+@dataclass(frozen=True, slots=True)
+class _Stage:
+    """A level of charge at which the vehicle does something; `level` is its part of a full battery, where it is one."""
+
+    deed: Deed | None
+    below: str
+    name: str
+    set_so: str
+    level: float | None
+    is_last: bool
+
+
+def _battery_stages(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[_Stage]:
+    if autopilot is Autopilot.PX4:
+        number = values.get("COM_LOW_BAT_ACT", 0.0)
+        for threshold, staged, is_last in BATTERY_STAGES_PX4.get(int(number), ()):
+            level = values.get(threshold)
+            if level is not None:
+                yield _Stage(staged, f"{level:.0%}", threshold, f"COM_LOW_BAT_ACT {number:g}", level, is_last)
+        return
+    capacity_mah = values.get("BATT_CAPACITY", 0.0)
+    for kind in ("LOW", "CRT"):
+        name = f"BATT_FS_{kind}_ACT"
+        number, voltage_v = values.get(name, 0.0), values.get(f"BATT_{kind}_VOLT", 0.0)
+        charge_mah = values.get(f"BATT_{kind}_MAH", 0.0)
+        below = [f"{voltage_v:g} V"] if voltage_v > 0.0 else []
+        level = charge_mah / capacity_mah if charge_mah > 0.0 and capacity_mah > 0.0 else None
+        below += [f"{charge_mah:g} mAh"] if charge_mah > 0.0 else []
+        deed = BATTERY_ACTIONS_ARDUPILOT.get(int(number))
+        if below and deed is not Deed.GO_ON:
+            name = f"BATT_{kind}_MAH"
+            yield _Stage(deed, " / ".join(below), name, f"BATT_FS_{kind}_ACT {number:g}", level, kind == "CRT")
+
+
+def _position(autopilot: Autopilot, values: Mapping[str, float]) -> Iterator[PreflightCheck]:
+    """What it does when it does not know any more where it is, which glass can bring about by mirroring satellites."""
+    name = "FS_EKF_ACTION" if autopilot is Autopilot.ARDUPILOT else "COM_POSCTL_NAVL"
+    number = values.get(name)
+    if number is None:
+        text = f"what the vehicle does when it loses its position is not known: it has no {name}"
+        yield PreflightCheck("position-loss", Verdict.WARN, text)
+        return
+    is_off = autopilot is Autopilot.ARDUPILOT and values.get("FS_EKF_THRESH", 1.0) <= 0.0
+    deed = Deed.DRIFT if is_off else POSITION_ACTIONS[autopilot].get(int(number))
+    set_so = f"FS_EKF_THRESH {values['FS_EKF_THRESH']:g}" if is_off else f"{name} {number:g}"
+    check = _stated("position-loss", deed, "position lost", set_so)
+    yield replace(check, verdict=Verdict.OK) if deed is Deed.LAND else check
 
 
 def return_of(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Return | None:

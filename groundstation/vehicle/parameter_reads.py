@@ -1,7 +1,7 @@
 """Several parameters read at once, as a state machine without a link.
 
 ASKING -> ASKING    not all came in time: those that are missing are asked for again
-       -> ended     all came, or some did not come to any attempt: the vehicle does not know them
+       -> ended     all came, or nothing new comes any more: the vehicle does not know the others
 """
 
 from __future__ import annotations
@@ -9,9 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from groundstation.vehicle.parameters import ATTEMPT_S, N_ATTEMPTS, decoded
+from groundstation.vehicle.parameters import ATTEMPT_S, decoded
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address, Message, ParamRequestRead, ParamValue, Received
+
+N_ROUNDS = 5
+"""Rounds in a row in which nothing new comes, before what is missing is taken for unknown to the vehicle."""
 
 
 class ParameterReads:
@@ -39,6 +42,8 @@ class ParameterReads:
         is_ours = isinstance(message, ParamValue) and message.param_id in self._names
         if self.outcome is None and is_ours and received.source.system == self._target.system:
             assert isinstance(message, ParamValue)
+            if message.param_id not in self._values:
+                self._n_sent = 1
             self._values[message.param_id] = decoded(message, self._autopilot)
             if len(self._values) == len(self._names):
                 self.outcome = self._values
@@ -48,7 +53,7 @@ class ParameterReads:
         """Ask again for what is missing, or give up on it."""
         if self.outcome is not None or now_s < self._deadline_s:
             return []
-        if self._n_sent < N_ATTEMPTS:
+        if self._n_sent < N_ROUNDS:
             return self._send(now_s)
         self.outcome = self._values
         return []

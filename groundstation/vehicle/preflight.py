@@ -172,6 +172,17 @@ def _link(state: VehicleState, now_s: float) -> PreflightCheck:
         return PreflightCheck("link", Verdict.WAIT, "no autopilot was heard yet")
     if not state.is_link_alive(now_s):
         return PreflightCheck("link", Verdict.WAIT, f"no heartbeat for {state.heartbeat.age_s(now_s):.0f} s")
+    number = state.address.system if state.address is not None else 0
+    if state.impostor:
+        text = (
+            f"{state.impostor} go by the number {number} on this link: switch one off, or give each a number of its "
+            "own (SYSID_THISMAV, MAV_SYS_ID)"
+        )
+        return PreflightCheck("link", Verdict.BAD, text)
+    if state.others:
+        others = ", ".join(map(str, sorted(state.others)))
+        text = f"{state.autopilot.value} answers, vehicle {number}; others are on the link, too: {others}"
+        return PreflightCheck("link", Verdict.WARN, text)
     return PreflightCheck("link", Verdict.OK, f"{state.autopilot.value} answers")
 
 

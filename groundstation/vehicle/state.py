@@ -148,6 +148,16 @@ class VehicleState:
         Attitude of the camera as the gimbal reports it, against north and the horizon.
     wind_enu_m_s
         Wind that blows towards this direction.
+    others
+        Systems besides it on the link that are vehicles, too.
+    turns_back_s
+        When its own time last went back, by the receiver's clock: once at a restart, again and again where two vehicles
+        go by one number.
+    vehicle_type
+        MAV_TYPE of its first heartbeat.
+    impostor, left_enu_m
+        Why there must be two vehicles with its number, empty where nothing says so; and the place that its positions
+        last jumped away from.
     sensor_problems
         Names of enabled sensors that are not healthy.
     photos
@@ -177,6 +187,11 @@ class VehicleState:
     home_enu_m: Timed[Vec3] | None = None
     mission: Timed[MissionProgress] | None = None
     sensor_problems: Timed[tuple[str, ...]] | None = None
+    others: frozenset[int] = frozenset()
+    turns_back_s: tuple[float, ...] = ()
+    vehicle_type: int | None = None
+    impostor: str = ""
+    left_enu_m: Timed[Vec3] | None = None
     texts: tuple[VehicleText, ...] = ()
     photos: tuple[TakenPhoto, ...] = ()
 
@@ -188,6 +203,18 @@ class VehicleState:
     def is_armed(self) -> bool:
         """Whether its last heartbeat said so."""
         return self.armed is not None and self.armed.value
+
+
+def after_restart(state: VehicleState) -> VehicleState:
+    """What is still known of a vehicle that was restarted."""
+    return VehicleState(
+        address=state.address,
+        autopilot=state.autopilot,
+        vehicle_type=state.vehicle_type,
+        others=state.others,
+        turns_back_s=state.turns_back_s,
+        impostor=state.impostor,
+    )
 
 
 def is_restarted(before: VehicleState, after: VehicleState) -> bool:

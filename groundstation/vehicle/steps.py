@@ -28,7 +28,7 @@ from groundstation.vehicle.setup import (
     simulation_names,
     wanted_parameters,
 )
-from groundstation.vehicle.state import Landed, VehicleState
+from groundstation.vehicle.state import Landed, VehicleState, after_restart
 from groundstation.vehicle.watch import STALE_S
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import CommandLong
@@ -44,12 +44,18 @@ REBOOT_AUTOPILOT = 1.0
 ARMING_S, ARMING_PAUSE_S = 60.0, 2.0
 """How long arming is tried while the autopilot still has something to say against it."""
 
+STARTS, LINK_BACK_S = 4, 30.0
+"""How often a start is tried while the link comes and goes, and the wait for it between two."""
+
 HOME_S = 2.0
 """Wait for a position after arming."""
 
 MODE_S = 5.0
 TAKE_OFF_S = 60.0
 """Wait for the aircraft to leave the ground once its mission was started."""
+
+MOTORS_OFF_M = 3.0
+"""Motors that stop higher than this, with nothing below, have stopped in the air."""
 
 DISARM_S = 20.0
 """Wait for the autopilot to disarm by itself after it has landed."""
@@ -182,7 +188,7 @@ def _reboot(run: FlightRun) -> Steps:
         raise LinkRejected(f"{outcome.text}; {names} take effect after a reboot only: restart the vehicle")
     run.note("reboot", f"the autopilot restarts, so that {names} take effect")
     began_anew = yield from _wait(run, lambda state: (state.boot_time_s or before_s) < before_s, REBOOT_PAUSE_S)
-    run.state = VehicleState(address=address, autopilot=autopilot)
+    run.state = after_restart(run.state)
     is_back = yield from _wait(run, lambda state: state.heartbeat is not None and state.heartbeat.value > 1, REBOOT_S)
     if not is_back:
         raise LinkTimeout(f"{run.link_name}: the vehicle did not come back within {REBOOT_S:g} s of its reboot")
@@ -226,7 +232,7 @@ def _keep_up(run: FlightRun) -> Steps:
     if reason == UNREAD:
         yield from _pause(run, READ_PAUSE_S)
     if reason == RESTARTED:
-        run.state = VehicleState(address=run.state.address, autopilot=run.state.autopilot)
+        run.state = after_restart(run.state)
         yield from _ask_for_telemetry(run, must_answer=False)
         yield from _read_parameters(run)
     yield from read_again(run)
@@ -257,7 +263,24 @@ def _arm(run: FlightRun) -> Steps:
         yield from _pause(run, ARMING_PAUSE_S)
 
 
+class _NotKnownError(LinkRejected):
+    """What is on board is not known any more: it can be read again."""
+
+
 def _start(run: FlightRun) -> Steps:
+    """Start the mission; where a lost link leaves what is on board unknown meanwhile, begin again."""
+    for attempt in range(1, STARTS + 1):
+        try:
+            yield from _start_once(run)
+        except _NotKnownError:
+            if attempt == STARTS:
+                raise
+            yield from _wait(run, lambda state: state.is_link_alive(run.now_s), LINK_BACK_S)
+        else:
+            return
+
+
+def _start_once(run: FlightRun) -> Steps:
     """Start the mission as each autopilot wants it; an order of the pilot meanwhile ends that.
 
     What is on board is read once more before, and nothing may be said against it until the mission flies: somebody else
@@ -318,7 +341,7 @@ def _refuse_what_is_not_ours(run: FlightRun, *, is_armed: bool = False) -> None:
             "home; it was not started: set its home anew where it stands"
         )
     if run.on_board.doubt:
-        raise LinkRejected(
+        raise _NotKnownError(
             f"what is on the vehicle is not known ({run.on_board.doubt}); it was not started: wait until it is read"
         )
 
@@ -349,7 +372,9 @@ def _fly(run: FlightRun) -> Steps:
         raise MissionError(f"the aircraft did not take off{_last_complaint(run)}")
     limit_s = (run.state.boot_time_s or 0.0) + 2.0 * run.orders.mission.aircraft.endurance_s
     landed_s: float | None = None
+    was_up_m = 0.0
     while run.state.is_armed:
+        was_up_m = _up_m(run)
         heartbeat = run.state.heartbeat
         if heartbeat is not None and heartbeat.age_s(run.now_s) > run.options.link_lost_s:
             raise LinkTimeout(
@@ -366,10 +391,26 @@ def _fly(run: FlightRun) -> Steps:
             yield CommandCall("disarming", command, run.own)
             landed_s = run.now_s
         yield None
+    if was_up_m > MOTORS_OFF_M:
+        raise MissionError(
+            f"the motors stopped {was_up_m:.0f} m above take-off: the aircraft fell; look for it{_last_complaint(run)}"
+        )
     if run.camera_reports.count is not None:
         run.camera_reports.ask_count()
     yield from _wait(run, lambda _state: run.camera_reports.is_settled, REPORTS_S)
     run.note("landed", f"{len(run.state.photos)} photos were reported")
+
+
+def _up_m(run: FlightRun) -> float:
+    """Height above take-off of an aircraft in the air with nothing below it; 0 where it may stand on something."""
+    motion, autopilot = run.state.motion, run.state.autopilot
+    if motion is None or autopilot is None or motion.age_s(run.now_s) > STALE_S or not _is_flying(run.state):
+        return 0.0
+    place, around = motion.value.position_enu_m, run.orders.surroundings[autopilot]
+    is_clear = motion.value.height_above_home_m > MOTORS_OFF_M and (
+        around.facade_distance_m(place, place) > MOTORS_OFF_M
+    )
+    return motion.value.height_above_home_m if is_clear else 0.0
 
 
 def _is_flying(state: VehicleState) -> bool:

@@ -21,11 +21,15 @@ COLUMN_M = 3.0
 
 @dataclass(frozen=True, slots=True)
 class ExpectedPhoto:
-    """A photo of the sortie, and the mission item (as numbered on the vehicle) that triggers it."""
+    """A photo of the sortie, and the mission item (as numbered on the vehicle) that triggers it.
+
+    `gimbal_pitch_deg` is where the camera shall look, 0 level and -90 straight down; None where nobody says.
+    """
 
     viewpoint_id: str
     position_enu_m: Vec3
     trigger_seq: int
+    gimbal_pitch_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,7 +64,7 @@ class Surroundings:
         by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
         flown = plan.sorties[sortie - 1]
         photos = tuple(
-            ExpectedPhoto(name, by_id[name].position_enu_m, (trigger_seqs or {})[name])
+            ExpectedPhoto(name, by_id[name].position_enu_m, (trigger_seqs or {})[name], by_id[name].gimbal_pitch_deg)
             for name in flown.viewpoint_ids
             if trigger_seqs and name in trigger_seqs
         )

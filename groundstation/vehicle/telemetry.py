@@ -48,6 +48,16 @@ POSITION_KNOWN, CONSTANT_POSITION = 16, 128
 
 PX4 sets the second with every vehicle that stands still, however well its place is known."""
 
+TURNS_BACK, TURNS_BACK_S = 3, 20.0
+"""A vehicle's own time that goes back so often within so long is that of two: a restart takes seconds."""
+
+JUMP_M, BACK_M, JUMPS_S = 50.0, 5.0, 3.0
+"""Between two positions, ten of which come every second, nothing flies so far, and is back again at once."""
+
+OTHER_KIND = "two vehicles of different kinds"
+TWO_CLOCKS = "two vehicles whose times since power-up differ"
+TWO_PLACES = "two vehicles at different places"
+
 VELOCITY_KNOWN, HEIGHT_KNOWN = 2, 32
 MAX_VARIANCE = 0.8
 """ArduPilot's default FS_EKF_THRESH; 1 is where measurements are thrown away."""
@@ -103,16 +113,20 @@ def _heartbeat(state: VehicleState, message: messages.Heartbeat, received: messa
     if received.source.component != MAV_COMP_ID_AUTOPILOT1 or message.type == MAV_TYPE_GCS or autopilot is None:
         return state
     if state.address not in (None, received.source):
-        return state
+        others = state.others | {received.source.system} - {state.address.system if state.address else 0}
+        return state if others == state.others else replace(state, others=others)
     now_s = received.time_s
+    is_other = state.vehicle_type not in (None, message.type) or state.autopilot not in (None, autopilot)
     count = 1 if state.heartbeat is None else state.heartbeat.value + 1
     return replace(
         state,
         address=received.source,
-        autopilot=autopilot,
+        autopilot=state.autopilot or autopilot,
+        vehicle_type=state.vehicle_type or message.type,
+        impostor=OTHER_KIND if is_other else state.impostor,
         heard=now_s,
         heartbeat=Timed(count, now_s),
-        mode=Timed(mode_name(autopilot, message.custom_mode), now_s),
+        mode=Timed(mode_name(state.autopilot or autopilot, message.custom_mode), now_s),
         armed=Timed(bool(message.base_mode & ARMED_FLAG), now_s),
     )
 
@@ -126,6 +140,7 @@ def _position(
     above_m = message.relative_alt / 1000.0
     velocity = (message.vy / 100.0, message.vx / 100.0, -message.vz / 100.0)
     motion = Motion(frame.enu_m(message.lat, message.lon, above_m), velocity, above_m)
+    state = _with_jump(state, motion, now_s)
     home_m = message.alt / 1000.0 - above_m
     return replace(state, motion=Timed(motion, now_s), home_altitude_amsl_m=home_m, home_heard_s=now_s)
 
@@ -322,7 +337,22 @@ def _with_photo(state: VehicleState, index: int, time_s: float, place: Vec3, sou
 def _with_boot_time(state: VehicleState, time_boot_ms: int, now_s: float) -> VehicleState:
     """State with the vehicle's own time; where that began again, UNIX times are to be compared with it anew."""
     told = replace(state, boot_time_s=time_boot_ms / 1000.0, boot_time_heard_s=now_s)
-    return replace(told, photo_clock=PhotoClock()) if is_restarted(state, told) else told
+    if not is_restarted(state, told):
+        return told
+    turns_back_s = (*(at_s for at_s in state.turns_back_s if now_s - at_s < TURNS_BACK_S), now_s)
+    impostor = TWO_CLOCKS if len(turns_back_s) >= TURNS_BACK else state.impostor
+    return replace(told, photo_clock=PhotoClock(), turns_back_s=turns_back_s, impostor=impostor)
+
+
+def _with_jump(state: VehicleState, motion: Motion, now_s: float) -> VehicleState:
+    """State that knows of a second vehicle, where positions go far away and come back to where they were."""
+    former = None if state.motion is None else state.motion.value
+    if former is None or math.dist(former.position_enu_m, motion.position_enu_m) < JUMP_M:
+        return state
+    left = state.left_enu_m
+    is_back = left is not None and left.age_s(now_s) < JUMPS_S and math.dist(left.value, motion.position_enu_m) < BACK_M
+    impostor = TWO_PLACES if is_back else state.impostor
+    return replace(state, impostor=impostor, left_enu_m=Timed(former.position_enu_m, now_s))
 
 
 def _on_globe(lat_e7: int, lon_e7: int) -> bool:

@@ -41,9 +41,18 @@ PHOTO_NEAR_M = 2.0
 PHOTO_LATE_S = 3.0
 """How much later than the next item a photo may be reported."""
 
+GIMBAL_OFF_DEG = 5.0
+"""How far from where it should a camera may look at a photo; a gimbal that works is right to a degree."""
+
+GIMBAL_PHOTOS = 2
+"""So many of the last three photos that look elsewhere are no accident."""
+
 RTK_FLOAT, FIX_3D = 5, 3
 STALE_S = 5.0
 """Positions and fixes older than this are not known any more."""
+
+NO_POSITION_S = 1.5
+"""Positions come ten times a second, heartbeats once: where one comes so long after the last position, none will."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,6 +173,14 @@ def _link(
     yield Watched("link-lost", Severity.ERROR, text, age_s - LINK_LOST_S, LINK_LOST_S / 2.0, age_s, LINK_LOST_S, "s")
 
 
+def _impostor(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    if state.impostor:
+        text = f"{state.impostor} go by one number on this link: nothing shown here can be relied on; fly it by hand"
+        yield Watched("two-vehicles", Severity.ERROR, text, 1.0, 0.0, 1.0, 0.0)
+
+
 def _distance(
     watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
 ) -> Iterator[Watched]:
@@ -250,6 +267,67 @@ def _gnss(
     yield Watched("gnss", severity, text, wanted - fix_type - 0.5, 0.0, float(fix_type), float(wanted))
 
 
+def _position(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    """The autopilot, or this ground station, does not know any more where an armed aircraft is."""
+    if not state.is_armed or not state.is_link_alive(now_s) or state.heartbeat is None:
+        return
+    if state.landed is not None and state.landed.value is Landed.ON_GROUND:
+        return
+    silent_s = _silent_s(state)
+    problem = "" if state.estimator is None else state.estimator.value.problem
+    if silent_s > NO_POSITION_S:
+        text = (
+            "the aircraft sends no position any more: its distance, airspace, no-fly zones and path are not watched; "
+            "fly it by hand"
+        )
+        excess_s = silent_s - NO_POSITION_S
+        yield Watched("position-lost", Severity.ERROR, text, excess_s, 0.0, silent_s, NO_POSITION_S, "s")
+    elif problem:
+        text = (
+            f"the autopilot has {problem}: its place may be wrong, and so may the warnings of distance, airspace, "
+            "no-fly zones and path; be ready to fly by hand"
+        )
+        yield Watched("position-lost", Severity.ERROR, text, 1.0, 0.0, 1.0, 0.0)
+
+
+def _silent_s(state: VehicleState) -> float:
+    """How long before the last heartbeat the last position came; infinity where none did, 0 without a heartbeat."""
+    if state.heartbeat is None:
+        return 0.0
+    return math.inf if state.motion is None else max(0.0, state.heartbeat.time_s - state.motion.time_s)
+
+
+def _gimbal(
+    watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
+) -> Iterator[Watched]:
+    """A camera that looks elsewhere: a gimbal that is stuck, locked, or was never commanded."""
+    off_deg: list[tuple[float, str]] = []
+    for photo in state.photos[-3:]:
+        near = [
+            (math.dist(photo.position_enu_m, expected.position_enu_m), expected)
+            for expected in around.photos
+            if expected.gimbal_pitch_deg is not None
+        ]
+        away_m, expected = min(near, key=lambda pair: pair[0], default=(math.inf, None))
+        if expected is None or away_m > PHOTO_NEAR_M or photo.gimbal_pitch_deg is None:
+            continue
+        # Several views of one place differ by their angles: the nearest of these counts.
+        there = [each.gimbal_pitch_deg for away, each in near if away <= away_m + PHOTO_NEAR_M]
+        least = min(abs(photo.gimbal_pitch_deg - pitch) for pitch in there if pitch is not None)
+        off_deg.append((least, expected.viewpoint_id))
+    wrong = [each for each in off_deg if each[0] > GIMBAL_OFF_DEG]
+    if len(wrong) >= GIMBAL_PHOTOS:
+        worst, place = max(wrong)
+        text = (
+            f"the camera looked {worst:.0f} degrees off at viewpoint '{place}', and elsewhere at {len(wrong)} of the "
+            f"last {len(off_deg)} photos: the gimbal may be stuck; pause, and look"
+        )
+        excess = worst - GIMBAL_OFF_DEG
+        yield Watched("gimbal", Severity.ERROR, text, excess, 0.0, worst, GIMBAL_OFF_DEG, "deg")
+
+
 def _photos(
     watch: Watch, state: VehicleState, around: Surroundings, now_s: float, rules: WatchRules
 ) -> Iterator[Watched]:
@@ -280,7 +358,10 @@ def _board(
 
 Rule = Callable[[Watch, VehicleState, Surroundings, float, WatchRules], Iterator[Watched]]
 
-_RULES: tuple[Rule, ...] = (_link, _board, _distance, _airspace, _gnss, _battery, _wind, _deviation, _photos)
+_RULES: tuple[Rule, ...] = (
+    *(_link, _impostor, _position, _board, _distance, _airspace, _gnss),
+    *(_battery, _wind, _deviation, _gimbal, _photos),
+)
 
 
 def _passed(watch: Watch, state: VehicleState, around: Surroundings, now_s: float) -> Iterator[tuple[str, float]]:
@@ -299,6 +380,8 @@ def _passed(watch: Watch, state: VehicleState, around: Surroundings, now_s: floa
 def _flying(state: VehicleState, now_s: float) -> Motion | None:
     """Motion of a vehicle that is in the air, where it is known."""
     if state.motion is None or state.motion.age_s(now_s) > STALE_S or not state.is_armed:
+        return None
+    if _silent_s(state) > NO_POSITION_S:
         return None
     if state.landed is not None and state.landed.value is Landed.ON_GROUND:
         return None

@@ -89,6 +89,7 @@ class _RecordContent:
     effects: tuple[Decision, ...] = ()
     counted_before: int | None = None
     counted_after: int | None = None
+    is_disarmed: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +140,7 @@ def _record(content: _RecordContent, place: str) -> FlightRecord:
         content.effects,
         content.counted_before,
         content.counted_after,
+        content.is_disarmed,
     )
 
 
@@ -167,6 +169,7 @@ def _record_to_json(record: FlightRecord) -> dict[str, Any]:
         "effects": msgspec.to_builtins(record.effects),
         "counted_before": record.counted_before,
         "counted_after": record.counted_after,
+        "is_disarmed": record.is_disarmed,
         "track": {field.name: _with_nulls(getattr(record.track, field.name)) for field in fields(Track)},
     }
 

@@ -16,6 +16,9 @@ FIRST_NUMBER = {"camera-feedback": 1, "image-captured": 0}
 """Sources that come over the radio, each photo once, and the number of a camera's first photo there (MAVLink: the index
 in CAMERA_IMAGE_CAPTURED counts from 0). Other numbers (of files, of log entries) may have gaps of their own."""
 
+LEAST_STEPS = 3
+"""Equal steps between photos from which on they are the camera's way of counting."""
+
 UNHEARD_S = 2.0
 """An aircraft at 5 m/s is 10 m further on by then, and may have been at a view meanwhile."""
 
@@ -81,6 +84,12 @@ def n_lost(record: FlightRecord) -> int:
     pairs = itertools.pairwise(range(len(record.photos)))
     between = sum(n_lost_between(record, first, last) for first, last in pairs)
     return n_lost_before(record, 0) + between + n_lost_after(record, len(record.photos) - 1)
+
+
+def counts_by_more(record: FlightRecord) -> bool:
+    """Whether a camera's numbers rise by the same two or more from each photo to the next, of four or more."""
+    steps = {after.index - before.index for before, after in itertools.pairwise(record.photos)}
+    return len(record.photos) > LEAST_STEPS and len(steps) == 1 and min(steps) > 1
 
 
 def _first_number(record: FlightRecord, photo: TakenPhoto) -> int:

@@ -97,8 +97,19 @@ class Matching:
     extra: tuple[PhotoRef, ...]
 
 
-def match_flight(plan: Plan, records: Sequence[FlightRecord], gates: Gates = DEFAULT_GATES) -> Matching:
-    """Tie every planned view to a photo or a reason."""
+def match_flight(
+    plan: Plan,
+    records: Sequence[FlightRecord],
+    gates: Gates = DEFAULT_GATES,
+    are_cut_off: Sequence[bool] = (),
+) -> Matching:
+    """Tie every planned view to a photo or a reason.
+
+    Parameters
+    ----------
+    are_cut_off
+        For each record, whether it ends while the aircraft flies on; none does where this is empty.
+    """
     by_id = {view.id: view for view in plan.viewpoints}
     sorties = [tuple(by_id[identifier] for identifier in sortie.viewpoint_ids) for sortie in plan.sorties]
     flown = tuple(_sortie_flown(record, sorties, gates) for record in records)
@@ -106,7 +117,8 @@ def match_flight(plan: Plan, records: Sequence[FlightRecord], gates: Gates = DEF
     used: set[PhotoRef] = set()
     for number, planned in enumerate(sorties, 1):
         own = [index for index, sortie in enumerate(flown) if sortie == number]
-        found = _match_sortie(number, planned, own, records, gates)
+        ends = Reason.NOT_RECORDED if are_cut_off and any(are_cut_off[index] for index in own) else Reason.FLIGHT_ENDED
+        found = _match_sortie(number, planned, own, records, gates, ends)
         used.update(match.photo for match in found if match.photo is not None)
         views += found
     every = (PhotoRef(r, p) for r, record in enumerate(records) for p in range(len(record.photos)))
@@ -205,9 +217,14 @@ def _aligned(misfits: Floats, gates: Gates = DEFAULT_GATES) -> tuple[list[tuple[
 
 
 def _match_sortie(
-    number: int, views: Sequence[Viewpoint], own: list[int], records: Sequence[FlightRecord], gates: Gates
+    number: int,
+    views: Sequence[Viewpoint],
+    own: list[int],
+    records: Sequence[FlightRecord],
+    gates: Gates,
+    ends: Reason,
 ) -> list[ViewMatch]:
-    """Matches of one sortie's views with the photos of the records that flew it."""
+    """Matches of one sortie's views with the photos of the records that flew it; `ends` is why the last have none."""
     refs = [PhotoRef(index, photo) for index in own for photo in range(len(records[index].photos))]
     photos = [records[ref.record].photos[ref.photo] for ref in refs]
     misfits = _misfits(views, photos, gates)
@@ -217,7 +234,7 @@ def _match_sortie(
     missing = [view for view in range(len(views)) if view not in found]
     if missing:
         left = np.flatnonzero(misfits.min(axis=0, initial=np.inf) > 1.0).tolist()  # the others are of some view
-        reasons = _reasons(views, missing, [records[index] for index in own], set(photo_of), gates)
+        reasons = _reasons(views, missing, [records[index] for index in own], set(photo_of), gates, ends)
         for view in missing:
             near = _near_miss(views[view], [photos[photo] for photo in left], gates)
             reason = reasons[view] if near is None else near[0]
@@ -291,6 +308,7 @@ def _reasons(
     records: Sequence[FlightRecord],
     taken: set[int],
     gates: Gates,
+    ends: Reason,
 ) -> dict[int, Reason]:
     """Why views without any photo near them have none."""
     if not records:
@@ -305,5 +323,5 @@ def _reasons(
         if view in reached:
             reasons[view] = Reason.NO_PHOTO
         else:
-            reasons[view] = Reason.FLIGHT_ENDED if view > last else Reason.NOT_REACHED
+            reasons[view] = ends if view > last else Reason.NOT_REACHED
     return reasons

@@ -15,7 +15,8 @@ class Reason(StrEnum):
     `NOT_FLOWN`: no record belongs to its sortie. `NOT_REACHED`: the aircraft passed it by. `NO_PHOTO`: it was there,
     but the camera did not answer. `REPORT_LOST`: the camera counted a photo there, but its report did not arrive; from
     where it was taken is not known. `TOO_FAR` and `WRONG_ANGLE`: a photo was taken, but not of this view.
-    `FLIGHT_ENDED`: the sortie was over before. `NO_TRACK`: the record does not say where the aircraft was.
+    `FLIGHT_ENDED`: the sortie was over before. `NOT_RECORDED`: the record ends before, while the aircraft flies on.
+    `NO_TRACK`: the record does not say where the aircraft was.
     """
 
     TAKEN = "taken"
@@ -26,6 +27,7 @@ class Reason(StrEnum):
     TOO_FAR = "too-far"
     WRONG_ANGLE = "wrong-angle"
     FLIGHT_ENDED = "flight-ended"
+    NOT_RECORDED = "not-recorded"
     NO_TRACK = "no-track"
 
 

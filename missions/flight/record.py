@@ -103,6 +103,8 @@ class FlightRecord:
         Decisions of the simulator; empty for real flights.
     counted_before, counted_after
         Photos that the camera had counted before and after the flight; None where it did not say.
+    is_disarmed
+        Whether the record goes on to where the motors were stopped; None where it does not say.
     """
 
     sortie: int
@@ -114,3 +116,4 @@ class FlightRecord:
     effects: tuple[Decision, ...] = ()
     counted_before: int | None = None
     counted_after: int | None = None
+    is_disarmed: bool | None = None

@@ -18,7 +18,7 @@ from missions.flight.matching import DEFAULT_GATES, Gates, Matching, PhotoRef, V
 from missions.flight.outcome import FlightReport, SortieOutcome, Summary, ViewOutcome
 from missions.flight.poses import taken_poses
 from missions.flight.record import FlightRecord, TakenPhoto, Track
-from missions.flight.report_rules import DEFAULT_LIMITS, Limits, flight_findings
+from missions.flight.report_rules import DEFAULT_LIMITS, Limits, flight_findings, left_in_air_m
 from planning.checks.case import Case
 from planning.checks.measures import pose_of
 from planning.evaluate import Sight, section_counts, sights
@@ -60,7 +60,8 @@ def report_case(
     monitor: Monitor = QUIET,
 ) -> FlightReport:
     """Compare a flight with a plan that is measured already."""
-    matching = match_flight(case.plan, records, gates)
+    are_cut_off = [record.is_disarmed is False and left_in_air_m(case, record) is not None for record in records]
+    matching = match_flight(case.plan, records, gates, are_cut_off)
     shots = _shots(case, records, matching)
     monitor.report("comparing the flight", 2, 4)
     by_id = {view.id: view for view in case.plan.viewpoints}

@@ -7,11 +7,16 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from missions.flight.lost_reports import n_lost
+import numpy as np
+from numpy.typing import NDArray
+
+from missions.flight.lost_reports import counts_by_more, n_lost
 from missions.flight.outcome import Reason, SortieOutcome, Summary, ViewOutcome
 from missions.flight.record import FlightRecord
 from planning.checks.case import Case, judge
 from planning.findings import Finding, Severity
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +62,7 @@ REASONS = {
     Reason.TOO_FAR: "photo taken too far away",
     Reason.WRONG_ANGLE: "photo looks elsewhere",
     Reason.FLIGHT_ENDED: "the flight ended before",
+    Reason.NOT_RECORDED: "the record ends before, in the air",
     Reason.NO_TRACK: "the record does not say where the aircraft was",
 }
 
@@ -72,6 +78,7 @@ def flight_findings(
     """All findings of all rules."""
     return (
         *_sorties_known(records, sorties),
+        *_endings(case, records, sorties),
         *_views_taken(views, sorties),
         *_reports_lost(records, views),
         *_poses(views, limits),
@@ -93,6 +100,60 @@ def _sorties_known(records: Sequence[FlightRecord], sorties: Sequence[SortieOutc
         elif record.sortie not in (0, outcome.sortie):
             text = f"recorded as sortie {record.sortie}, but it flew sortie {outcome.sortie}; it counts as what it flew"
             yield Finding(Severity.WARNING, "sortie-swapped", text, place)
+
+
+ENDED_BADLY = frozenset(("motors-off", "ends-in-air", "battery-empty"))
+"""Codes of findings that say that a flight did not end as flights should."""
+
+UP_M = 2.0
+"""An aircraft higher than this above the ground and away from everything has not landed."""
+
+EMPTY = 0.01
+"""Charge at or below which a battery was flown empty."""
+
+
+def _endings(case: Case, records: Sequence[FlightRecord], sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
+    """Motors that stopped in the air, records that end there, and batteries that were flown empty."""
+    for record, outcome in zip(records, sorties, strict=True):
+        up_m = left_in_air_m(case, record)
+        if up_m is not None and record.is_disarmed:
+            text = f"the motors stopped {up_m:.0f} m above take-off: the aircraft fell; look for it, and for the cause"
+            yield Finding(Severity.ERROR, "motors-off", text, _place(outcome), up_m, UP_M, "m")
+        elif up_m is not None:
+            text = (
+                f"the record ends {up_m:.0f} m above take-off with the motors running; what came after is not in it: "
+                "take the autopilot's own log"
+            )
+            yield Finding(Severity.ERROR, "ends-in-air", text, _place(outcome), up_m, UP_M, "m")
+        known = record.track.battery[record.track.battery >= 0.0]
+        if len(known) and known[-1] <= EMPTY:
+            text = f"the battery was empty at the end ({known[-1]:.0%}): the aircraft could have fallen"
+            yield Finding(Severity.ERROR, "battery-empty", text, _place(outcome), 100.0 * float(known[-1]), 0.0, "%")
+
+
+def left_in_air_m(case: Case, record: FlightRecord) -> float | None:
+    """Height above take-off at which a record leaves an aircraft in the air; None where it landed, or it does not say.
+
+    It has landed on the ground, on something of the site, or beside home or a rally point.
+    """
+    points = record.track.position_enu_m[np.isfinite(record.track.position_enu_m).all(axis=1)]
+    if record.is_disarmed is None or len(points) == 0:
+        return None
+    site, last = case.site_model.site, points[-1]
+    places = np.array([site.home_enu_m, points[0], *(point.position_enu_m for point in site.rally_points)])
+    lowest_z = min(float(places[:, 2].min()), site.airspace.ground_z_m)
+    is_low = last[2] - lowest_z <= UP_M
+    is_at_place = bool(((np.abs(places[:, 2] - last[2]) <= UP_M) & (_level_m(places, last) <= LANDED_NEAR_M)).any())
+    on_something = bool(record.is_disarmed) and float(case.space.solids.clearance_m(last[None])[0]) <= UP_M
+    return None if is_low or is_at_place or on_something else float(last[2] - site.home_enu_m[2])
+
+
+LANDED_NEAR_M = 10.0
+"""Around home and rally points, within which a landing at their height is one there."""
+
+
+def _level_m(places: Floats, point: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(places[:, :2] - point[:2], axis=1))
 
 
 def _place(outcome: SortieOutcome) -> str:
@@ -123,7 +184,9 @@ def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome])
 
 
 def _reports_lost(records: Sequence[FlightRecord], views: Sequence[ViewOutcome]) -> Iterator[Finding]:
-    n = sum(map(n_lost, records))
+    silent = any(view.reason in (Reason.REPORT_LOST, Reason.NO_PHOTO) for view in views)
+    # A camera that keeps two files of each photo counts by two, and none of them was lost.
+    n = sum(n_lost(record) for record in records if silent or not counts_by_more(record))
     if n:
         n_of_views = sum(view.reason is Reason.REPORT_LOST for view in views)
         text = (

@@ -296,8 +296,8 @@ def return_home(case: Case) -> Iterator[Finding]:
         yield Finding(Severity.WARNING, "return-height", text, "", way.gap_m, limit_m, "m")
     elif crosses_by_itself:
         text = (
-            f"an aircraft that returns by itself, {found.above_home_m:g} m above take-off, crosses a no-fly zone; fly it "
-            "back by hand"
+            f"an aircraft that returns by itself, {found.above_home_m:g} m above take-off, crosses a no-fly zone; fly "
+            "it back by hand"
         )
         yield Finding(Severity.WARNING, "return-height", text, "", found.above_home_m, found.ceiling_above_home_m, "m")
     else:

@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from planning.checks import check_plan
 from planning.errors import InputError
 from planning.findings import Severity
 from planning.planner import plan_flight
-from planning.rally import clear_height_z_m, rally_findings, return_way
+from planning.rally import clear_height_z_m, rally_findings, return_height, return_way
 from planning.request import PlanRequest
 from planning.site import Airspace, NoFlyZone, RallyPoint
 from planning.site_file import is_planned_on, read_site, site_sha256, site_to_json, write_site
@@ -157,3 +159,53 @@ def test_a_return_needs_a_destination():
     space = unchecked_space(kiosk(), DISTANCE_M)
     with pytest.raises(ValueError, match="home at least"):
         return_way(space, np.zeros((2, 3)), (), 10.0)
+
+
+# The height of a return
+
+
+def walled_off(ceiling_m):
+    """Home on one side of the building, a path on the other; and where the airspace ends."""
+    return kiosk(airspace=Airspace((-60.0, -60.0, 2.0), (60.0, 60.0, ceiling_m), 0.0), home_enu_m=(0.0, -40.0, 0.0))
+
+
+BEHIND = np.array([[0.0, 30.0, 5.0], [4.0, 30.0, 5.0]])
+
+
+@given(st.floats(9.0, 60.0), st.floats(5.0, 15.0))
+def test_a_return_stays_in_the_airspace_and_is_as_high_as_wanted_where_there_is_room(ceiling_m, distance_m):
+    model = walled_off(ceiling_m)
+    found = return_height(model, unchecked_space(model, distance_m), [BEHIND])
+    assert found.z_m <= ceiling_m + 1e-9
+    assert found.above_home_m == pytest.approx(found.z_m - model.site.home_enu_m[2])
+    if ceiling_m >= np.ceil(found.wanted_above_home_m):
+        assert found.wanted_above_home_m <= found.above_home_m < found.wanted_above_home_m + 1.0
+        assert found.way.gap_m >= distance_m - 1e-6
+    else:
+        assert ceiling_m - found.z_m < 0.1 + 1e-9
+
+
+def test_where_the_airspace_ends_too_low_to_return_over_the_building_the_plan_is_not_ready():
+    """45.0 m against 44.8 m was ready, and then a danger."""
+    plan = plan_flight(walled_off(40.0), PlanRequest(n_views=4, method="orbit")).plan
+    top_m = clear_height_z_m(walled_off(40.0), 0.0)
+
+    def said(ceiling_m):
+        findings = check_plan(plan, walled_off(ceiling_m))
+        return next(finding for finding in findings if finding.code == "return-height")
+
+    good = said(40.0)
+    assert (good.severity, good.limit) == (Severity.OK, 40.0)
+    assert good.value <= 40.0
+    tight = said(top_m + plan.constraints.min_distance_m - 0.2)
+    assert tight.severity is Severity.OK, "20 cm lower, and it still keeps its distance but for its tolerance"
+    assert tight.value < top_m + plan.constraints.min_distance_m
+    low = said(top_m + 3.0)
+    assert low.severity is Severity.ERROR
+    assert "raise its ceiling" in low.message
+    assert low.value > low.limit
+
+
+def test_a_return_height_needs_a_path():
+    with pytest.raises(ValueError, match="at least one path"):
+        return_height(kiosk(), unchecked_space(kiosk(), DISTANCE_M), [])

@@ -135,7 +135,8 @@ def test_what_changes_while_the_motors_are_started_stops_them(orders):
 
     toy.obey = obey_and_swap
     _, outcome = fly(orders, toy)
-    assert "what is on the vehicle is not known" in str(outcome.error)
+    assert "not the one that was uploaded" in str(outcome.error)
+    assert (400, 0.0, 0.0) in toy.commands, "disarmed at once"
     assert not toy.has_flown
     assert not toy.is_armed
 

@@ -9,8 +9,8 @@ from groundstation.vehicle.conduct import conduct
 from groundstation.vehicle.failsafes import NAMES, failsafe_checks, return_of
 from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.orders import rally_messages, sortie_orders
-from groundstation.vehicle.parameter_reads import ParameterReads
-from groundstation.vehicle.parameters import ATTEMPT_S, N_ATTEMPTS
+from groundstation.vehicle.parameter_reads import N_ROUNDS, ParameterReads
+from groundstation.vehicle.parameters import ATTEMPT_S
 from groundstation.vehicle.preflight import Verdict
 from groundstation.vehicle.run_records import RunOptions
 from missions.build import missions_from_plan
@@ -73,6 +73,68 @@ def test_what_happens_when_the_link_is_lost_is_told(planned, autopilot, changes,
     check = found(orders_of(planned), autopilot, "link-loss", **changes)
     assert check.verdict is verdict
     assert words in check.text
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "code", "changes", "verdict", "words"),
+    [
+        (
+            ARDUPILOT,
+            "rc-loss",
+            {},
+            Verdict.OK,
+            "1 s without the remote control, and it breaks the mission off and returns",
+        ),
+        (ARDUPILOT, "rc-loss", {"FS_THR_ENABLE": 0.0}, Verdict.OK, "flies the mission on (FS_THR_ENABLE 0)"),
+        (ARDUPILOT, "rc-loss", {"FS_OPTIONS": 1.0}, Verdict.OK, "flies the mission on (FS_OPTIONS 1)"),
+        (ARDUPILOT, "rc-loss", {"FS_THR_ENABLE": 3.0}, Verdict.WARN, "lands, whatever is below it"),
+        (PX4, "rc-loss", {}, Verdict.OK, "0.5 s without the remote control, and it breaks the mission off"),
+        (PX4, "rc-loss", {"NAV_RCL_ACT": 1.0}, Verdict.WARN, "hovers"),
+        (PX4, "rc-loss", {"NAV_RCL_ACT": 6.0}, Verdict.BAD, "stops its motors and falls"),
+        (PX4, "rc-loss", {"NAV_RCL_ACT": 6.0, "COM_RCL_EXCEPT": 1.0}, Verdict.OK, "flies the mission on"),
+        (PX4, "rc-loss", {"COM_RC_IN_MODE": 4.0}, Verdict.WARN, "takes no remote control"),
+        (ARDUPILOT, "battery-low", {}, Verdict.WARN, "nothing is done by itself when the battery is low"),
+        (ARDUPILOT, "battery-low", {"BATT_FS_LOW_ACT": 2.0}, Verdict.OK, "below 10.5 V, and it breaks the mission off"),
+        (ARDUPILOT, "battery-low", {"BATT_FS_LOW_ACT": 2.0, "BATT_LOW_VOLT": 0.0}, Verdict.WARN, "nothing is done"),
+        (ARDUPILOT, "battery-low", {"BATT_FS_LOW_ACT": 1.0}, Verdict.WARN, "lands, whatever is below it"),
+        (
+            ARDUPILOT,
+            "battery-low",
+            {"BATT_FS_CRT_ACT": 1.0, "BATT_CRT_VOLT": 9.9},
+            Verdict.OK,
+            "below 9.9 V, and it lands",
+        ),
+        (ARDUPILOT, "battery-low", {"BATT_FS_LOW_ACT": 5.0}, Verdict.BAD, "falls"),
+        (PX4, "battery-low", {}, Verdict.WARN, "nothing is done by itself"),
+        (PX4, "battery-low", {"COM_LOW_BAT_ACT": 3.0}, Verdict.OK, "below 7%, and it breaks the mission off"),
+        (PX4, "battery-low", {"COM_LOW_BAT_ACT": 2.0}, Verdict.OK, "below 7%, and it lands"),
+        (ARDUPILOT, "position-loss", {}, Verdict.OK, "it lands, whatever is below it (FS_EKF_ACTION 1)"),
+        (ARDUPILOT, "position-loss", {"FS_EKF_ACTION": 2.0}, Verdict.WARN, "drifts with the wind: take over at once"),
+        (ARDUPILOT, "position-loss", {"FS_EKF_THRESH": 0.0}, Verdict.WARN, "(FS_EKF_THRESH 0)"),
+        (PX4, "position-loss", {}, Verdict.WARN, "drifts with the wind"),
+        (PX4, "position-loss", {"COM_POSCTL_NAVL": 1.0}, Verdict.OK, "lands"),
+    ],
+)
+def test_what_happens_without_remote_control_charge_or_position_is_told(
+    planned, autopilot, code, changes, verdict, words
+):
+    check = found(orders_of(planned), autopilot, code, **changes)
+    assert words in check.text
+    assert check.verdict is verdict
+
+
+def test_a_battery_limit_that_ends_the_mission_early_is_told(planned):
+    """A sortie that leaves 70 % is broken off where the vehicle returns at 80 %."""
+    orders = orders_of(planned)
+    reserve = orders.surroundings[ARDUPILOT].rules.battery_reserve
+    orders = replace(orders, battery_needed=0.3 + reserve)
+    limits = {"BATT_FS_LOW_ACT": 2.0, "BATT_LOW_VOLT": 0.0, "BATT_CAPACITY": 3300.0}
+    early = found(orders, ARDUPILOT, "battery-low", **limits, BATT_LOW_MAH=0.8 * 3300.0)
+    assert early.verdict is Verdict.WARN
+    assert "at a charge of 80%, and the sortie ends with 70%: set BATT_LOW_MAH" in early.text
+    assert found(orders, ARDUPILOT, "battery-low", **limits, BATT_LOW_MAH=0.2 * 3300.0).verdict is Verdict.OK
+    px4 = {"COM_LOW_BAT_ACT": 3.0, "BAT_CRIT_THR": 0.75}
+    assert "set BAT_CRIT_THR" in found(orders, PX4, "battery-low", **px4).text
 
 
 @pytest.mark.parametrize("autopilot", Autopilot)
@@ -247,7 +309,7 @@ def test_several_parameters_are_read_at_once_and_unknown_ones_are_given_up():
         assert {message.param_id for message in asked} <= {"A", "C"}
         n_asked += bool(asked)
     assert reads.outcome == {"B": 2.0}
-    assert n_asked == N_ATTEMPTS
+    assert n_asked == N_ROUNDS
 
 
 SETS = RunOptions(sets_parameters=True, connect_s=10.0, ready_s=20.0)

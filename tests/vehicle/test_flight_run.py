@@ -1,6 +1,6 @@
 """A sortie from the first heartbeat to the landing, and everything that can come between."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -13,13 +13,14 @@ from groundstation.vehicle.state import LINK_LOST_S
 from missions.build import missions_from_plan
 from missions.heights import altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.messages import Address, GimbalDeviceAttitudeStatus, Heartbeat, Received
 from planning.errors import LinkError, LinkRejected, LinkTimeout, MissionError, OperationCancelled
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import single_panel
 from planning.site import NoFlyZone
 from tests.planning.revision.cases import QUICK
-from tests.vehicle.toy import Toy, ToyLink
+from tests.vehicle.toy import GROUND, STEP_S, Toy, ToyLink
 
 BOTH = pytest.mark.parametrize("autopilot", list(Autopilot))
 
@@ -406,3 +407,112 @@ def test_a_cancelled_sortie_is_cancelled_and_its_link_closed(orders):
         fly(orders, toy, link=link, monitor=Cancelling())
     assert link.is_closed
     assert toy.is_flying, "nothing is ordered without the pilot"
+
+
+# Vehicles that are not what they seem
+
+
+@dataclass
+class TwoToys:
+    """A link on which two vehicles go by one number."""
+
+    toys: tuple[Toy, Toy]
+    address: Address = GROUND
+
+    def send(self, message):
+        for toy in self.toys:
+            toy.hear(message)
+
+    def receive(self, timeout_s):
+        if not any(toy.out for toy in self.toys):
+            for toy in self.toys:
+                toy.step(min(max(timeout_s, 0.001), STEP_S))
+        said = sorted((toy for toy in self.toys if toy.out), key=lambda toy: len(toy.out))
+        return Received(said[-1].out.popleft(), Address(1, 1), said[-1].now_s) if said else None
+
+    def close(self):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("differs", "words"),
+    [
+        ({"autopilot": Autopilot.PX4}, "different kinds"),
+        ({"boot_s": -3000.0}, "times since power-up differ"),
+        ({"place": (10_000_000, 20_000_000, 0)}, "at different places"),
+    ],
+)
+def test_two_vehicles_with_one_number_are_noticed_and_neither_is_started(orders, differs, words):
+    one, other = toy_at_home(orders), toy_at_home(orders, **{k: v for k, v in differs.items() if k == "autopilot"})
+    for name, value in differs.items():
+        setattr(other, name, value)
+    run = FlightRun(orders, OPTIONS, "toys")
+    outcome = conduct(run, TwoToys((one, other)), lambda: one.now_s)
+    assert words in run.state.impostor
+    assert not outcome.succeeded
+    assert not one.has_flown
+    assert not other.has_flown
+
+
+def test_another_vehicle_with_its_own_number_is_told_and_left_alone(orders):
+    toy = toy_at_home(orders)
+    link = ToyLink(toy)
+    receive = link.receive
+
+    def receive_both(timeout_s):
+        received = receive(timeout_s)
+        if received is not None and isinstance(received.message, Heartbeat) and toy.now_s > 3.0:
+            toy.other_heard = not getattr(toy, "other_heard", False)
+            return replace(received, source=Address(2, 1)) if toy.other_heard else received
+        return received
+
+    link.receive = receive_both
+    texts = []
+    fly(orders, toy, link=link, show=lambda view: texts.extend(check.text for check in view.checks))
+    assert any("others are on the link, too: 2" in text for text in texts)
+
+
+def test_motors_that_stop_in_the_air_are_no_landing(orders):
+    toy = toy_at_home(orders)
+
+    def show(view):
+        if view.phase is Phase.FLYING and len(view.state.photos) == 3:
+            toy.is_armed = toy.is_flying = False
+
+    _, outcome = fly(orders, toy, show=show)
+    assert isinstance(outcome.error, MissionError)
+    assert "the motors stopped" in str(outcome.error)
+    assert "the aircraft fell" in str(outcome.error)
+    assert outcome.record.is_disarmed is True
+    assert "landed" not in codes(outcome)
+
+
+def test_positions_that_stop_in_flight_are_warned_of_within_three_seconds(orders):
+    toy = toy_at_home(orders)
+    since = []
+    warned = []
+
+    def show(view):
+        if view.phase is Phase.FLYING and view.state.photos:
+            toy.tells_all = False
+            since.append(view.time_s)
+        if "position-lost" in view.watch.codes():
+            warned.append(view.time_s)
+
+    fly(orders, toy, show=show)
+    assert 0.0 < warned[0] - since[0] <= 3.0
+
+
+def test_a_stuck_gimbal_is_warned_of_at_the_second_photo(orders):
+    toy = toy_at_home(orders)
+    toy.say = lambda message, say=toy.say: say(
+        replace(message, q=(0.9239, 0.0, -0.3827, 0.0)) if isinstance(message, GimbalDeviceAttitudeStatus) else message
+    )
+    n_photos = []
+
+    def show(view):
+        if "gimbal" in view.watch.codes():
+            n_photos.append(len(view.state.photos))
+
+    fly(orders, toy, show=show)
+    assert n_photos[0] in (2, 3)

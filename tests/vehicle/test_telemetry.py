@@ -100,9 +100,10 @@ def test_only_an_autopilot_we_know_is_a_vehicle(message, source):
     assert heard(message, source=source) == VehicleState()
 
 
-def test_a_second_vehicle_on_the_link_changes_nothing():
+def test_a_second_vehicle_on_the_link_changes_nothing_but_is_known_of():
     first = connected()
-    assert heard(heartbeat(PX4), Attitude(0, 1, 1, 1), state=first, source=Address(2, 1)) == first
+    both = heard(heartbeat(PX4), Attitude(0, 1, 1, 1), state=first, source=Address(2, 1))
+    assert both == replace(first, others=frozenset({2}))
 
 
 def test_the_link_is_alive_until_heartbeats_stay_away():

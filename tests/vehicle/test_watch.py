@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from groundstation.vehicle.state import (
     Angles,
     BatteryLevel,
+    EstimatorHealth,
     GnssFix,
     Landed,
     MissionProgress,
@@ -260,3 +261,61 @@ def test_distances_ahead_are_those_of_many_points_on_the_way(around, outwards):
     slow = min(around.facade_distance_m(tuple(p), tuple(p)) for p in points)
     assert around.facade_distance_m(tuple(a), tuple(b)) == pytest.approx(slow, abs=0.01)
     assert math.isfinite(slow)
+
+
+# Where it is, and where it looks
+
+
+@pytest.mark.parametrize(("silent_s", "is_lost"), [(0.1, False), (1.4, False), (1.6, True), (30.0, True)])
+def test_positions_that_stay_away_while_heartbeats_come_are_told(around, outwards, silent_s, is_lost):
+    """Within 3 s: a heartbeat every second, and rules that are looked at twice a second."""
+    centre, normal = outwards
+    near = flying(centre + 6.0 * normal)
+    state = replace(near, motion=replace(near.motion, time_s=100.0 - silent_s))
+    found = {warning.code: warning for warning in watched(Watch(), state, around, 100.0).warnings}
+    assert ("position-lost" in found) is is_lost
+    assert ("facade-distance" in found) is not is_lost, "what is not known is not watched"
+    if is_lost:
+        assert found["position-lost"].severity is Severity.ERROR
+        assert (
+            "distance, airspace, no-fly zones and path are not watched; fly it by hand" in found["position-lost"].text
+        )
+
+
+def test_a_link_that_is_lost_is_no_position_that_is_lost(around, outwards):
+    centre, normal = outwards
+    state = flying(centre + 20.0 * normal)
+    for now_s in np.arange(100.0, 110.0, 0.5):
+        told = {warning.code for warning in watched(Watch(), state, around, now_s).warnings}
+        assert "position-lost" not in told
+
+
+@pytest.mark.parametrize("problem", ["no position yet", "its measurements contradict each other"])
+def test_an_estimate_that_fails_in_flight_is_told(around, outwards, problem):
+    centre, normal = outwards
+    state = flying(centre + 20.0 * normal, estimator=Timed(EstimatorHealth(problem), 100.0))
+    (found,) = watched(Watch(), state, around, 100.0).warnings
+    assert (found.code, found.severity) == ("position-lost", Severity.ERROR)
+    assert problem in found.text
+    landed = replace(state, landed=Timed(Landed.ON_GROUND, 100.0))
+    assert "position-lost" not in {warning.code for warning in watched(Watch(), landed, around, 100.0).warnings}
+
+
+@given(stuck_deg=st.floats(-90.0, 30.0), planned=st.lists(st.floats(-60.0, 20.0), min_size=2, max_size=8))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_stuck_gimbal_is_told_at_the_second_photo_that_looks_elsewhere(around, outwards, stuck_deg, planned):
+    centre, normal = outwards
+    places = [tuple(map(float, centre + (20.0 + 8.0 * n) * normal)) for n in range(len(planned))]
+    expected = tuple(ExpectedPhoto(f"v{n}", places[n], 4 * n, pitch) for n, pitch in enumerate(planned))
+    space = replace(around, photos=expected)
+    photos: tuple[TakenPhoto, ...] = ()
+    n_off = []
+    for n, pitch in enumerate(planned):
+        photos = (*photos, TakenPhoto(n, float(n), places[n], 0.0, stuck_deg))
+        n_off.append(abs(pitch - stuck_deg) > 5.0)
+        told = {w.code for w in watched(Watch(), flying(places[n], photos=photos), space, 100.0).warnings}
+        assert ("gimbal" in told) is (sum(n_off[-3:]) >= 2)
+    # One that follows is never spoken of.
+    right = tuple(TakenPhoto(n, float(n), places[n], 0.0, pitch + 0.5) for n, pitch in enumerate(planned))
+    told = {w.code for w in watched(Watch(), flying(places[-1], photos=right), space, 100.0).warnings}
+    assert "gimbal" not in told

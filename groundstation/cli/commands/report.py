@@ -57,7 +57,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Read, compare and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
+    from groundstation.cli.console import flight_status, print_json, run_job
     from groundstation.services.flight_report import report_files
 
     reported = run_job(
@@ -70,7 +70,8 @@ def run(options: argparse.Namespace) -> int:
         print_json(_summary(reported, options.out))
     else:
         _print_text(reported, options)
-    return 0
+    assert reported.flight.report is not None
+    return flight_status(reported.flight.report)
 
 
 def _summary(reported: ReportedFlight, out: Path | None) -> dict[str, Any]:

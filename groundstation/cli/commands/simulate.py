@@ -82,14 +82,15 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Fly and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
+    from groundstation.cli.console import flight_status, print_json, run_job
 
     flown = run_job("simulate", lambda context: _fly(options, context))
     if options.json:
         print_json(_summary(flown, options))
     else:
         _print_text(flown, options)
-    return 0
+    assert flown.flight.report is not None
+    return flight_status(flown.flight.report)
 
 
 def _fly(options: argparse.Namespace, monitor: Monitor) -> Flown:

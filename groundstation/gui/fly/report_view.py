@@ -151,6 +151,7 @@ class ReportView(QWidget):
             Reason.TOO_FAR: self.tr("taken too far away"),
             Reason.WRONG_ANGLE: self.tr("looks elsewhere"),
             Reason.FLIGHT_ENDED: self.tr("flight ended before"),
+            Reason.NOT_RECORDED: self.tr("not recorded any more"),
             Reason.NO_TRACK: self.tr("place not known"),
         }
 

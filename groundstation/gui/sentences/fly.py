@@ -311,11 +311,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "{0} does not hold a signing key of {1} hex digits; set it anew"),
     QT_TRANSLATE_NOOP("Sentences", "the passphrase for signing is empty; expected the one that the vehicle was given"),
     QT_TRANSLATE_NOOP("Sentences", "without the link it flies the mission on, and lands at home"),
-    QT_TRANSLATE_NOOP("Sentences", "{0} s without the link, and it breaks the mission off and returns ({1})"),
-    QT_TRANSLATE_NOOP("Sentences", "{0} s without the link, and it lands, whatever is below it ({1})"),
-    QT_TRANSLATE_NOOP("Sentences", "{0} s without the link, and it hovers until its battery is low ({1})"),
-    QT_TRANSLATE_NOOP("Sentences", "{0} s without the link, and it stops its motors and falls ({1}): set it otherwise"),
-    QT_TRANSLATE_NOOP("Sentences", "what the vehicle does when the link is lost is not known ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "what the vehicle does when the link is lost is not known: it has no {0}"),
     QT_TRANSLATE_NOOP("Sentences", "how high the vehicle returns is not known; look before it is told to return"),
     QT_TRANSLATE_NOOP("Sentences", "{0} m above take-off, to the nearest of home and the rally points ({1})"),
@@ -434,4 +429,69 @@ SENTENCES = (
         "an aircraft that returns by itself, {0} m above take-off, crosses a no-fly zone; fly it back by hand",
     ),
     QT_TRANSLATE_NOOP("Sentences", "an aircraft that returns by itself flies {0} m above take-off, {1} m are allowed"),
+    QT_TRANSLATE_NOOP("Sentences", "the record ends before, in the air"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "the motors stopped {0} m above take-off: the aircraft fell; look for it, and for the cause"
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the record ends {0} m above take-off with the motors running; what came after is not in it: "
+        "take the autopilot's own log",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "the battery was empty at the end ({0}): the aircraft could have fallen"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}, and it flies the mission on ({1})"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}, and it breaks the mission off and returns ({1})"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}, and it lands, whatever is below it ({1})"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}, and it hovers until its battery is low ({1})"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "{0}, and it only keeps its height and drifts with the wind: take over at once ({1})"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "{0}, and it stops its motors and falls ({1}): set it otherwise"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}, and what the vehicle does is not known ({1})"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} s without the link"),
+    QT_TRANSLATE_NOOP("Sentences", "what the vehicle does without its remote control is not known: it has no {0}"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "it takes no remote control (COM_RC_IN_MODE {0}): only this ground station can take over"
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "{0} s without the remote control"),
+    QT_TRANSLATE_NOOP("Sentences", "nothing is done by itself when the battery is low: watch it, and land in time"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the vehicle breaks the mission off at a charge of {0}, and the sortie ends with {1}: set {2} so that it lasts",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "battery below {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "COM_LOW_BAT_ACT {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} mAh"),
+    QT_TRANSLATE_NOOP("Sentences", "BATT_FS_{0}_ACT {1}"),
+    QT_TRANSLATE_NOOP("Sentences", "what the vehicle does when it loses its position is not known: it has no {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "FS_EKF_THRESH {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "position lost"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} go by the number {1} on this link: switch one off, or give each a number of its own "
+        "(SYSID_THISMAV, MAV_SYS_ID)",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "{0} answers, vehicle {1}; others are on the link, too: {2}"),
+    QT_TRANSLATE_NOOP("Sentences", "the motors stopped {0} m above take-off: the aircraft fell; look for it{1}"),
+    QT_TRANSLATE_NOOP("Sentences", "two vehicles of different kinds"),
+    QT_TRANSLATE_NOOP("Sentences", "two vehicles whose times since power-up differ"),
+    QT_TRANSLATE_NOOP("Sentences", "two vehicles at different places"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "{0} go by one number on this link: nothing shown here can be relied on; fly it by hand"
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the aircraft sends no position any more: its distance, airspace, no-fly zones and path are not "
+        "watched; fly it by hand",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the autopilot has {0}: its place may be wrong, and so may the warnings of distance, airspace, "
+        "no-fly zones and path; be ready to fly by hand",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the camera looked {0} degrees off at viewpoint '{1}', and elsewhere at {2} of the last {3} "
+        "photos: the gimbal may be stuck; pause, and look",
+    ),
 )

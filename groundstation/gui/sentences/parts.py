@@ -39,6 +39,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "{0:n} photo taken too far away"),
     QT_TRANSLATE_NOOP("Sentences", "{0:n} photo looks elsewhere"),
     QT_TRANSLATE_NOOP("Sentences", "{0:n} the flight ended before"),
+    QT_TRANSLATE_NOOP("Sentences", "{0:n} the record ends before, in the air"),
     QT_TRANSLATE_NOOP("Sentences", "{0:n} the record does not say where the aircraft was"),
     QT_TRANSLATE_NOOP("Sentences", "minimum distance (m) {0} instead of {1}"),
     QT_TRANSLATE_NOOP("Sentences", "section step (degrees) {0} instead of {1}"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,8 +73,8 @@ def flights_of(log: RawLog, site: Site, label: str, heights: HeightSource = "tak
         text = "the log tells when photos were triggered, not that they were taken"
         findings.append(Finding(Severity.WARNING, "triggers-only", text))
     records = []
-    for start_s, end_s in _intervals(log, place.time_s):
-        record = _record(log, place, photos, start_s, end_s)
+    for interval in _intervals(log, place.time_s):
+        record = _record(log, place, photos, interval)
         if record is not None:
             records.append(record)
     if not records:
@@ -181,22 +181,32 @@ def _height_findings(rows: Floats, site: Site, points: Floats, heights: HeightSo
     return [Finding(Severity.NOTE, "height-reference", text, "", median_m, HEIGHT_DIFFERENCE_M, "m")]
 
 
-def _intervals(log: RawLog, time_s: Floats) -> list[tuple[float, float]]:
+class _Interval(NamedTuple):
+    """When the motors ran, and whether the log goes on to where they were stopped; None where it does not say."""
+
+    start_s: float
+    end_s: float
+    is_disarmed: bool | None
+
+
+def _intervals(log: RawLog, time_s: Floats) -> list[_Interval]:
     """When the motors ran; the whole log where it does not say."""
     armed = sorted(log.armed)
     if not any(is_armed for _, is_armed in armed):
-        return [(float(time_s[0]), float(time_s[-1]) + ARMED_LATE_S)]
-    intervals: list[tuple[float, float]] = []
+        return [_Interval(float(time_s[0]), float(time_s[-1]) + ARMED_LATE_S, None)]
+    intervals: list[_Interval] = []
     for (start_s, is_armed), (end_s, _) in zip(armed, [*armed[1:], (np.inf, False)], strict=True):
         if is_armed:
-            earliest_s = intervals[-1][1] if intervals else -np.inf
+            earliest_s = intervals[-1].end_s if intervals else -np.inf
             start_s = max(start_s - ARMED_LATE_S, earliest_s)
-            intervals.append((start_s, min(end_s, float(time_s[-1])) + ARMED_LATE_S))
+            late_s = min(end_s, float(time_s[-1])) + ARMED_LATE_S
+            intervals.append(_Interval(start_s, late_s, bool(np.isfinite(end_s))))
     return intervals
 
 
-def _record(log: RawLog, place: _Place, photos: list[RawPhoto], start_s: float, end_s: float) -> FlightRecord | None:
+def _record(log: RawLog, place: _Place, photos: list[RawPhoto], interval: _Interval) -> FlightRecord | None:
     """The flight between two times; None where there was none."""
+    start_s, end_s, is_disarmed = interval
     within = (place.time_s >= start_s) & (place.time_s <= end_s)
     time_s, positions = place.time_s[within], place.position_enu_m[within]
     # A report that was lost and asked for again comes late.
@@ -220,6 +230,7 @@ def _record(log: RawLog, place: _Place, photos: list[RawPhoto], start_s: float, 
         duration_s=_duration_s(time_s, positions[:, 2] - place.site.home_enu_m[2]),
         counted_before=next((n for at_s, n in reversed(log.counted) if at_s <= start_s + ARMED_LATE_S), None),
         counted_after=next((n for at_s, n in log.counted if at_s >= end_s - ARMED_LATE_S), None),
+        is_disarmed=is_disarmed,
     )
 
 

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from missions.flight.outcome import FlightReport, Reason
 from missions.flight.record import FlightRecord, TakenPhoto, Track
 from missions.flight.report import Limits, closest, report_case
+from missions.flight.report_rules import ENDED_BADLY
 from missions.flight.report_text import report_text, report_to_json
 from planning.checks.case import Case
 from planning.findings import Finding, Severity
@@ -235,6 +236,54 @@ def test_an_aborted_sortie_is_judged_by_neither_duration_nor_success() -> None:
     assert "duration" not in {finding.code for finding in made.findings}
     assert made.summary.duration_flown_s is None
     assert problems(made.findings)["views-taken"].severity is Severity.ERROR
+
+
+@pytest.mark.parametrize(
+    ("is_disarmed", "code", "reason", "words"),
+    [
+        (True, "motors-off", Reason.FLIGHT_ENDED, "the motors stopped"),
+        (False, "ends-in-air", Reason.NOT_RECORDED, "take the autopilot's own log"),
+        (None, "", Reason.FLIGHT_ENDED, ""),
+    ],
+)
+def test_a_record_that_leaves_the_aircraft_in_the_air_says_so(
+    is_disarmed: bool | None, code: str, reason: Reason, words: str
+) -> None:
+    """What came after the end of a record is not known: the flight did not end there."""
+    record = replace(cut_at(flown()[0], flown()[0].photos[5].time_s + 0.5), is_disarmed=is_disarmed)
+    made = report((record,))
+    assert {view.reason for view in made.views[6:]} == {reason}
+    found = {finding.code: finding for finding in made.findings if finding.code in ENDED_BADLY}
+    assert set(found) == ({code} if code else set())
+    if code:
+        assert found[code].severity is Severity.ERROR
+        assert words in found[code].message
+        assert found[code].value == pytest.approx(record.track.position_enu_m[-1, 2], abs=0.01)
+
+
+@pytest.mark.parametrize("is_disarmed", [True, False, None])
+def test_a_flight_that_landed_did_not_end_in_the_air(is_disarmed: bool | None) -> None:
+    made = report(tuple(replace(record, is_disarmed=is_disarmed) for record in flown()))
+    assert not ENDED_BADLY & {finding.code for finding in made.findings}
+
+
+@pytest.mark.parametrize(("left", "is_empty"), [(0.0, True), (0.01, True), (0.02, False), (0.3, False)])
+def test_a_battery_flown_empty_is_an_error(left: float, is_empty: bool) -> None:
+    falling = np.linspace(0.9, left, len(flown()[0].track.time_s))
+    found = problems(report(tracked(battery=falling)).findings)
+    assert ("battery-empty" in found) is is_empty
+    assert "battery" in found or left >= case().plan.rules.battery_reserve
+
+
+def test_a_camera_that_counts_by_two_lost_nothing() -> None:
+    """It keeps two files of each photo."""
+
+    def by_two(taken: tuple[TakenPhoto, ...]) -> tuple[TakenPhoto, ...]:
+        return tuple(replace(photo, index=2 * photo.index, source="camera-feedback") for photo in taken)
+
+    assert "reports-lost" not in problems(report(photos(by_two)).findings)
+    gap = photos(lambda taken: by_two(tuple(photo for photo in taken if photo.index != 4)))
+    assert "reports-lost" in problems(report(gap).findings)
 
 
 def test_a_record_of_a_single_moment_at_time_zero_is_no_trouble() -> None:
