@@ -84,6 +84,16 @@ def type_into(line: QLineEdit, text: str) -> None:
     QTest.keyClicks(line, text)
 
 
+def scroll_to(widget: QWidget) -> None:
+    """Bring a widget into view, as the wheel does, in every scroll area that it is in."""
+    area = widget.parentWidget()
+    while area is not None:
+        if isinstance(area, QScrollArea):
+            area.ensureWidgetVisible(widget)
+        area = area.parentWidget()
+    QApplication.processEvents()
+
+
 def click_on(window: QWidget, widget: QWidget, at: QPoint | None = None) -> None:
     """Click a widget where a user can, scrolling to it: it is enabled, on the screen, and nothing lies over it."""
     above = widget.parentWidget()

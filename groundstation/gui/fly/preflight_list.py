@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.own_words import own_words
 from groundstation.services.units import UnitSystem
@@ -164,8 +164,8 @@ class _Row:
         self.words.setWordWrap(True)
         self.side.setObjectName(f"check-{number}")
         self.buttons: dict[Mend, QPushButton] = {}
-        self.line = QHBoxLayout()
-        self.line.addStretch(1)
+        self.line = QVBoxLayout()
+        self.line.setAlignment(Qt.AlignmentFlag.AlignLeft)
         layout = QVBoxLayout(self.side)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(2)

@@ -19,7 +19,18 @@ from groundstation.vehicle.preflight import Mend
 from groundstation.vehicle.run_records import Phase
 from missions.mavlink.autopilots import Autopilot
 from planning.findings import Severity
-from tests.gui.driving import click_on, clicked, close_desk, escape, press, shut, turn_until, turn_until_idle, type_into
+from tests.gui.driving import (
+    click_on,
+    clicked,
+    close_desk,
+    escape,
+    press,
+    scroll_to,
+    shut,
+    turn_until,
+    turn_until_idle,
+    type_into,
+)
 from tests.services.live_cases import Reopening, planned
 
 ONE_IN = 100
@@ -523,6 +534,7 @@ def mend(application, page, code, way):
     """Press the button beside a check."""
     turn_until(application, lambda: (found := page.checks.button(code, way)) is not None and found.isVisible())
     button = page.checks.button(code, way)
+    scroll_to(button)
     click_on(button.window(), button)
 
 
