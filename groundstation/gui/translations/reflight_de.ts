@@ -4269,6 +4269,18 @@ Blickrichtung: {3}</translation>
         <translation>Verbindung verloren</translation>
     </message>
     <message>
+        <source>Remote control lost</source>
+        <translation>Fernsteuerung verloren</translation>
+    </message>
+    <message>
+        <source>Battery low</source>
+        <translation>Akku schwach</translation>
+    </message>
+    <message>
+        <source>Position lost</source>
+        <translation>Position verloren</translation>
+    </message>
+    <message>
         <source>Return</source>
         <translation>Heimkehr</translation>
     </message>
@@ -5138,6 +5150,10 @@ Take it over?</source>
     <message>
         <source>flight ended before</source>
         <translation>Flug endete vorher</translation>
+    </message>
+    <message>
+        <source>not recorded any more</source>
+        <translation>nicht mehr aufgezeichnet</translation>
     </message>
     <message>
         <source>place not known</source>
@@ -6399,6 +6415,10 @@ Take it over?</source>
     <message>
         <source>{0:n} the flight ended before</source>
         <translation>{0:n} der Flug endete vorher</translation>
+    </message>
+    <message>
+        <source>{0:n} the record ends before, in the air</source>
+        <translation>{0:n} die Aufzeichnung endet vorher, in der Luft</translation>
     </message>
     <message>
         <source>{0:n} the record does not say where the aircraft was</source>
@@ -9201,24 +9221,148 @@ Take it over?</source>
         <translation>Ohne Verbindung fliegt es die Mission weiter und landet am Startplatz</translation>
     </message>
     <message>
-        <source>{0} s without the link, and it breaks the mission off and returns ({1})</source>
-        <translation>Nach {0} s ohne Verbindung bricht es die Mission ab und kehrt zurück ({1})</translation>
+        <source>an aircraft that returns by itself, {0} m above take-off, crosses a no-fly zone; fly it back by hand</source>
+        <translation>ein Fluggerät, das selbst zurückkehrt, {0} m über dem Startplatz, kreuzt eine Flugverbotszone; von Hand zurückfliegen</translation>
     </message>
     <message>
-        <source>{0} s without the link, and it lands, whatever is below it ({1})</source>
-        <translation>Nach {0} s ohne Verbindung landet es, was immer darunter ist ({1})</translation>
+        <source>an aircraft that returns by itself flies {0} m above take-off, {1} m are allowed</source>
+        <translation>ein Fluggerät, das selbst zurückkehrt, fliegt {0} m über dem Startplatz, {1} m sind erlaubt</translation>
     </message>
     <message>
-        <source>{0} s without the link, and it hovers until its battery is low ({1})</source>
-        <translation>Nach {0} s ohne Verbindung schwebt es, bis sein Akku schwach ist ({1})</translation>
+        <source>the record ends before, in the air</source>
+        <translation>die Aufzeichnung endet vorher, in der Luft</translation>
     </message>
     <message>
-        <source>{0} s without the link, and it stops its motors and falls ({1}): set it otherwise</source>
-        <translation>Nach {0} s ohne Verbindung hält es die Motoren an und stürzt ab ({1}): anders einstellen</translation>
+        <source>the motors stopped {0} m above take-off: the aircraft fell; look for it, and for the cause</source>
+        <translation>die Motoren blieben {0} m über dem Startplatz stehen: Das Fluggerät ist abgestürzt; es suchen, und die Ursache</translation>
     </message>
     <message>
-        <source>what the vehicle does when the link is lost is not known ({0})</source>
-        <translation>was das Fluggerät bei verlorener Verbindung tut, ist nicht bekannt ({0})</translation>
+        <source>the record ends {0} m above take-off with the motors running; what came after is not in it: take the autopilot&apos;s own log</source>
+        <translation>die Aufzeichnung endet {0} m über dem Startplatz mit laufenden Motoren; was danach kam, steht nicht darin: das Log des Autopiloten nehmen</translation>
+    </message>
+    <message>
+        <source>the battery was empty at the end ({0}): the aircraft could have fallen</source>
+        <translation>der Akku war am Ende leer ({0}): Das Fluggerät hätte abstürzen können</translation>
+    </message>
+    <message>
+        <source>{0}, and it flies the mission on ({1})</source>
+        <translation>{0}, und es fliegt die Mission weiter ({1})</translation>
+    </message>
+    <message>
+        <source>{0}, and it breaks the mission off and returns ({1})</source>
+        <translation>{0}, und es bricht die Mission ab und kehrt zurück ({1})</translation>
+    </message>
+    <message>
+        <source>{0}, and it lands, whatever is below it ({1})</source>
+        <translation>{0}, und es landet, was auch immer darunter ist ({1})</translation>
+    </message>
+    <message>
+        <source>{0}, and it hovers until its battery is low ({1})</source>
+        <translation>{0}, und es schwebt, bis sein Akku schwach ist ({1})</translation>
+    </message>
+    <message>
+        <source>{0}, and it only keeps its height and drifts with the wind: take over at once ({1})</source>
+        <translation>{0}, und es hält nur die Höhe und treibt mit dem Wind: sofort übernehmen ({1})</translation>
+    </message>
+    <message>
+        <source>{0}, and it stops its motors and falls ({1}): set it otherwise</source>
+        <translation>{0}, und es schaltet die Motoren ab und stürzt ab ({1}): anders einstellen</translation>
+    </message>
+    <message>
+        <source>{0}, and what the vehicle does is not known ({1})</source>
+        <translation>{0}, und was das Fluggerät tut, ist nicht bekannt ({1})</translation>
+    </message>
+    <message>
+        <source>{0} s without the link</source>
+        <translation>{0} s ohne Verbindung</translation>
+    </message>
+    <message>
+        <source>what the vehicle does without its remote control is not known: it has no {0}</source>
+        <translation>was das Fluggerät ohne seine Fernsteuerung tut, ist nicht bekannt: es hat kein {0}</translation>
+    </message>
+    <message>
+        <source>it takes no remote control (COM_RC_IN_MODE {0}): only this ground station can take over</source>
+        <translation>es nimmt keine Fernsteuerung an (COM_RC_IN_MODE {0}): nur diese Bodenstation kann übernehmen</translation>
+    </message>
+    <message>
+        <source>{0} s without the remote control</source>
+        <translation>{0} s ohne Fernsteuerung</translation>
+    </message>
+    <message>
+        <source>nothing is done by itself when the battery is low: watch it, and land in time</source>
+        <translation>bei schwachem Akku geschieht nichts von selbst: ihn beobachten und rechtzeitig landen</translation>
+    </message>
+    <message>
+        <source>the vehicle breaks the mission off at a charge of {0}, and the sortie ends with {1}: set {2} so that it lasts</source>
+        <translation>das Fluggerät bricht die Mission bei einer Ladung von {0} ab, und der Einsatz endet mit {1}: {2} so setzen, dass sie reicht</translation>
+    </message>
+    <message>
+        <source>battery below {0}</source>
+        <translation>Akku unter {0}</translation>
+    </message>
+    <message>
+        <source>COM_LOW_BAT_ACT {0}</source>
+        <translation>COM_LOW_BAT_ACT {0}</translation>
+    </message>
+    <message>
+        <source>{0} mAh</source>
+        <translation>{0} mAh</translation>
+    </message>
+    <message>
+        <source>BATT_FS_{0}_ACT {1}</source>
+        <translation>BATT_FS_{0}_ACT {1}</translation>
+    </message>
+    <message>
+        <source>what the vehicle does when it loses its position is not known: it has no {0}</source>
+        <translation>was das Fluggerät tut, wenn es seine Position verliert, ist nicht bekannt: es hat kein {0}</translation>
+    </message>
+    <message>
+        <source>FS_EKF_THRESH {0}</source>
+        <translation>FS_EKF_THRESH {0}</translation>
+    </message>
+    <message>
+        <source>position lost</source>
+        <translation>Position verloren</translation>
+    </message>
+    <message>
+        <source>{0} go by the number {1} on this link: switch one off, or give each a number of its own (SYSID_THISMAV, MAV_SYS_ID)</source>
+        <translation>{0} tragen auf dieser Verbindung die Nummer {1}: eines ausschalten, oder jedem eine eigene Nummer geben (SYSID_THISMAV, MAV_SYS_ID)</translation>
+    </message>
+    <message>
+        <source>{0} answers, vehicle {1}; others are on the link, too: {2}</source>
+        <translation>{0} antwortet, Fluggerät {1}; weitere sind auf der Verbindung: {2}</translation>
+    </message>
+    <message>
+        <source>the motors stopped {0} m above take-off: the aircraft fell; look for it{1}</source>
+        <translation>die Motoren blieben {0} m über dem Startplatz stehen: Das Fluggerät ist abgestürzt; es suchen{1}</translation>
+    </message>
+    <message>
+        <source>two vehicles of different kinds</source>
+        <translation>zwei Fluggeräte verschiedener Art</translation>
+    </message>
+    <message>
+        <source>two vehicles whose times since power-up differ</source>
+        <translation>zwei Fluggeräte, deren Zeiten seit dem Einschalten verschieden sind</translation>
+    </message>
+    <message>
+        <source>two vehicles at different places</source>
+        <translation>zwei Fluggeräte an verschiedenen Orten</translation>
+    </message>
+    <message>
+        <source>{0} go by one number on this link: nothing shown here can be relied on; fly it by hand</source>
+        <translation>{0} tragen auf dieser Verbindung eine Nummer: Auf nichts, was hier steht, ist Verlass; von Hand fliegen</translation>
+    </message>
+    <message>
+        <source>the aircraft sends no position any more: its distance, airspace, no-fly zones and path are not watched; fly it by hand</source>
+        <translation>das Fluggerät sendet keine Position mehr: Abstand, Luftraum, Flugverbotszonen und Weg werden nicht überwacht; von Hand fliegen</translation>
+    </message>
+    <message>
+        <source>the autopilot has {0}: its place may be wrong, and so may the warnings of distance, airspace, no-fly zones and path; be ready to fly by hand</source>
+        <translation>der Autopilot meldet: {0}; sein Ort kann falsch sein, und damit die Warnungen zu Abstand, Luftraum, Flugverbotszonen und Weg; bereit sein, von Hand zu fliegen</translation>
+    </message>
+    <message>
+        <source>the camera looked {0} degrees off at viewpoint &apos;{1}&apos;, and elsewhere at {2} of the last {3} photos: the gimbal may be stuck; pause, and look</source>
+        <translation>die Kamera sah bei Aufnahmepunkt &apos;{1}&apos; um {0} Grad daneben, und bei {2} der letzten {3} Fotos anderswohin: Der Gimbal klemmt vielleicht; anhalten und nachsehen</translation>
     </message>
     <message>
         <source>what the vehicle does when the link is lost is not known: it has no {0}</source>
@@ -9365,10 +9509,6 @@ Take it over?</source>
         <translation>das Fluggerät hat jetzt eine andere Mission als die hochgeladene: anhalten und nachsehen, was es tut</translation>
     </message>
     <message>
-        <source>{0} m above take-off</source>
-        <translation>{0} m über dem Startplatz</translation>
-    </message>
-    <message>
         <source>through the building or an obstacle</source>
         <translation>durch das Gebäude oder ein Hindernis</translation>
     </message>
@@ -9383,14 +9523,6 @@ Take it over?</source>
     <message>
         <source>an aircraft that returns by itself climbs within {0} m of the building or an obstacle</source>
         <translation>ein Fluggerät, das selbst zurückkehrt, steigt {0} m neben dem Gebäude oder einem Hindernis auf</translation>
-    </message>
-    <message>
-        <source>an aircraft that returns by itself, {0}, crosses a no-fly zone; fly it back by hand</source>
-        <translation>ein Fluggerät, das selbst zurückkehrt, {0}, kreuzt eine Flugverbotszone; von Hand zurückfliegen</translation>
-    </message>
-    <message>
-        <source>an aircraft that returns by itself flies {0}, {1} m are allowed</source>
-        <translation>ein Fluggerät, das selbst zurückkehrt, fliegt {0}, {1} m sind erlaubt</translation>
     </message>
     <message>
         <source>the return height is above the airspace: expected at most {0} m above take-off, got {1} m; {2} m are right</source>
