@@ -18,7 +18,7 @@ from planning.findings import Finding, Severity
 from planning.frames import Vec3
 from planning.plan import Plan
 from planning.rally import CLEARANCE_M, clear_height_z_m, return_height
-from planning.site import Origin, SiteModel
+from planning.site import Origin, Site, SiteModel
 from planning.space import unchecked_space
 
 
@@ -116,9 +116,66 @@ def _encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions)
     rth_height_m, findings = dji_return_height(plan, missions, options)
     dji_options = DjiOptions(rth_height_m, created_ms, options.height_reference, options.link_loss)
     contents = [kmz_bytes(mission, dji_options) for mission in missions]
+    if options.site is not None and options.height_reference is HeightReference.ABOVE_TAKEOFF:
+        for mission in missions:
+            check = takeoff_check(plan, options.site.site, mission.number)
+            if check is not None:
+                note = Finding(Severity.NOTE, "takeoff-check", str(check), "", check.above_takeoff_m, None, "m")
+                findings += _in_sortie([note], mission, missions)
     for mission, content in zip(missions, contents, strict=True):
         findings += _in_sortie(check_dji(parts_of_kmz(content)), mission, missions)
     return EncodedFiles(tuple(contents), tuple(findings))
+
+
+@dataclass(frozen=True, slots=True)
+class TakeoffCheck:
+    """What a pilot sees at the first waypoint, before any photo, where the aircraft took off from the planned height.
+
+    Heights of DJI missions count from the take-off place, and nothing on board knows how high that is.
+
+    Parameters
+    ----------
+    above_takeoff_m
+        Of the first waypoint, at which the aircraft stops: what the remote controller shows.
+    facade, is_upper_edge
+        The edge of a facade that lies nearest in height; empty where the site has no panels.
+    above_edge_m
+        Of the first waypoint; negative below it.
+    """
+
+    sortie: int
+    above_takeoff_m: float
+    facade: str
+    is_upper_edge: bool
+    above_edge_m: float
+
+    def __str__(self) -> str:
+        if not self.facade:
+            return (
+                f"before any photo the aircraft stops {self.above_takeoff_m:.1f} m above take-off; where it does not, "
+                "land: it took off from another height than planned"
+            )
+        return (
+            f"before any photo the aircraft stops {self.above_takeoff_m:.1f} m above take-off, "
+            f"{abs(self.above_edge_m):.1f} m {'above' if self.above_edge_m >= 0.0 else 'below'} the "
+            f"{'upper' if self.is_upper_edge else 'lower'} edge of facade '{self.facade}'; where it does not, land: it "
+            "took off from another height than planned"
+        )
+
+
+def takeoff_check(plan: Plan, site: Site, number: int) -> TakeoffCheck | None:
+    """The check of a sortie, counted from 1; None where it has no path."""
+    path, home_z_m = plan.sorties[number - 1].path_enu_m, site.home_enu_m[2]
+    if len(path) < 2:
+        return None
+    first_z_m = path[1][2]
+    edges: list[tuple[float, str, bool]] = []
+    for facade in site.facades:
+        heights = [corner[2] for panel in facade.panels for corner in panel.corners_enu_m]
+        if heights:
+            edges += [(max(heights), facade.id, True), (min(heights), facade.id, False)]
+    edge_z_m, facade_id, is_upper = min(edges, key=lambda edge: abs(edge[0] - first_z_m), default=(0.0, "", False))
+    return TakeoffCheck(number, first_z_m - home_z_m, facade_id, is_upper, first_z_m - edge_z_m)
 
 
 def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:

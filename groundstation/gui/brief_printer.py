@@ -115,6 +115,16 @@ WORDS = (
     QT_TRANSLATE_NOOP("Brief", "Wind at flight height is below {0}"),
     QT_TRANSLATE_NOOP("Brief", "The mission on the remote controller is this plan (photos: {0})"),
     QT_TRANSLATE_NOOP("Brief", "Focus, exposure and white balance are fixed on the facade"),
+    QT_TRANSLATE_NOOP(
+        "Brief",
+        "Sortie {0}: before any photo the aircraft stops {1}. Where it does not, land: it took off from another height "
+        "than planned",
+    ),
+    QT_TRANSLATE_NOOP("Brief", "{0} above take-off"),
+    QT_TRANSLATE_NOOP("Brief", "{0} above {1}"),
+    QT_TRANSLATE_NOOP("Brief", "{0} below {1}"),
+    QT_TRANSLATE_NOOP("Brief", "the upper edge of facade {0}"),
+    QT_TRANSLATE_NOOP("Brief", "the lower edge of facade {0}"),
 )
 """All that a brief says, for the translators; `brief_html` holds the same texts."""
 

@@ -17,6 +17,7 @@ from groundstation.services.map_shapes import plan_shapes, site_shapes
 from groundstation.services.profiles import height_limits, plan_profiles
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, speed_unit
 from missions.dji.write import LinkLoss
+from missions.encode import TakeoffCheck
 from planning.findings import Severity
 from planning.plan import Plan
 from planning.site import SiteModel
@@ -229,6 +230,22 @@ def _steps(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[str]:
     yield say("Wind at flight height is below {0}").format(speed.text(brief.max_wind_m_s))
     yield say("The mission on the remote controller is this plan (photos: {0})").format(brief.n_photos)
     yield say("Focus, exposure and white balance are fixed on the facade")
+    for sortie in brief.sorties:
+        if sortie.takeoff_check is not None:
+            yield _takeoff_check(sortie.takeoff_check, units, say)
+
+
+def _takeoff_check(check: TakeoffCheck, units: UnitSystem, say: Say) -> str:
+    length = length_unit(units)
+    seen = say("{0} above take-off").format(length.text(check.above_takeoff_m))
+    if check.facade:
+        edge = say("the upper edge of facade {0}") if check.is_upper_edge else say("the lower edge of facade {0}")
+        side = say("{0} above {1}") if check.above_edge_m >= 0.0 else say("{0} below {1}")
+        seen += ", " + side.format(length.text(abs(check.above_edge_m)), edge.format(check.facade))
+    return say(
+        "Sortie {0}: before any photo the aircraft stops {1}. Where it does not, land: it took off from another height "
+        "than planned"
+    ).format(check.sortie, seen)
 
 
 def _table(rows: Iterable[tuple[str, str]]) -> str:

@@ -10,11 +10,11 @@ from groundstation.services.finding_texts import by_severity
 from groundstation.services.waypoints import WaypointRow, waypoint_rows
 from missions.build import missions_from_plan
 from missions.dji.write import LinkLoss
-from missions.encode import ExportOptions, dji_return_height
+from missions.encode import ExportOptions, TakeoffCheck, dji_return_height, takeoff_check
 from planning.errors import GroundStationError
 from planning.findings import Finding, Severity, is_flyable
 from planning.plan import Plan
-from planning.site import SiteModel
+from planning.site import Site, SiteModel
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +40,8 @@ class SortieBrief:
         Of its highest point.
     smallest_clearance_m
         To building, panels and obstacles along the path; None where no check measured it.
+    takeoff_check
+        What the pilot sees at its first waypoint; None where it has no path.
     """
 
     number: int
@@ -50,6 +52,7 @@ class SortieBrief:
     max_above_takeoff_m: float
     max_altitude_amsl_m: float
     smallest_clearance_m: float | None
+    takeoff_check: TakeoffCheck | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +134,7 @@ def flight_brief(
         aircraft=plan.aircraft.name,
         camera=plan.camera.name,
         takeoff=_takeoff(site_model),
-        sorties=tuple(_sortie(number, plan, rows, clearances) for number in range(1, len(plan.sorties) + 1)),
+        sorties=tuple(_sortie(number, plan, site, rows, clearances) for number in range(1, len(plan.sorties) + 1)),
         n_photos=len(plan.viewpoints),
         max_above_ground_m=highest_z - site.airspace.ground_z_m,
         min_distance_m=plan.constraints.min_distance_m,
@@ -160,7 +163,9 @@ def _takeoff(site_model: SiteModel) -> TakeoffPlace:
     return TakeoffPlace(lat, lon, height, amsl_m, site.home_enu_m[2] - site.airspace.ground_z_m)
 
 
-def _sortie(number: int, plan: Plan, rows: Sequence[WaypointRow], clearances: dict[str, float | None]) -> SortieBrief:
+def _sortie(
+    number: int, plan: Plan, site: Site, rows: Sequence[WaypointRow], clearances: dict[str, float | None]
+) -> SortieBrief:
     sortie = plan.sorties[number - 1]
     own = [row for row in rows if row.sortie == number]
     near = [
@@ -177,6 +182,7 @@ def _sortie(number: int, plan: Plan, rows: Sequence[WaypointRow], clearances: di
         max_above_takeoff_m=max((row.height_above_takeoff_m or 0.0 for row in own), default=0.0),
         max_altitude_amsl_m=max((row.altitude_amsl_m or -math.inf for row in own), default=-math.inf),
         smallest_clearance_m=min(near, default=None),
+        takeoff_check=takeoff_check(plan, site, number),
     )
 
 

@@ -20,6 +20,7 @@ from groundstation.vehicle.conduct import conduct
 from groundstation.vehicle.duration import items_duration_s, timed_by_items
 from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
+from groundstation.vehicle.preflight import OVERRULABLE
 from groundstation.vehicle.run_records import RunOptions, RunOutcome, RunView
 from missions.build import missions_from_plan
 from missions.encode import ExportOptions, default_autopilot
@@ -264,7 +265,10 @@ class _Case:
         vehicle = SimulatedVehicle(self.autopilot, airframe, origin, orders.home_enu_m)
         direct = DirectLink(vehicle)
         truth, pace = TruthRecorder(vehicle), _Pace(wish.speedup)
-        options = RunOptions(autopilot=self.autopilot, sets_parameters=True, needs_rtk=wish.needs_rtk)
+        # Nothing real moves: what needs a pilot's word elsewhere is only told.
+        options = RunOptions(
+            autopilot=self.autopilot, sets_parameters=True, needs_rtk=wish.needs_rtk, overrules=OVERRULABLE
+        )
         run = FlightRun(orders, options, "simulation")
 
         def look(view: RunView) -> None:

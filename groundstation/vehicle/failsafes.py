@@ -124,6 +124,8 @@ FENCE_ACTIONS = {
 }
 """FENCE_ACTION and GF_ACTION."""
 
+SAME_HEIGHT_M = 0.05
+
 HOME_ONLY = (2, 4)
 """Values of RTL_TYPE with which PX4 passes rally points over."""
 
@@ -348,6 +350,8 @@ def _return(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrd
     if not n_rally or found.destinations_enu_m == (orders.home_enu_m,):
         where = f"{found.height_m:g} m above take-off, to home"
     advice = f"set {found.height_name} so that it returns {orders.return_height_m:g} m above take-off"
+    if abs(found.height_m - orders.return_height_m) < SAME_HEIGHT_M:
+        advice = "it climbs there on its way, and no other height mends that; be ready to fly it back by hand"
     ceiling_m = float(around.space.high_enu_m[2]) - orders.home_enu_m[2]
     if found.height_m > ceiling_m + DISTANCE_TOLERANCE_M:
         text = f"it returns above the airspace, which ends {ceiling_m:.1f} m above take-off ({where}): {advice}"

@@ -122,7 +122,8 @@ def test_a_return_height_below_the_building_is_refused_and_nothing_written(refli
 def test_a_name_that_other_programs_do_not_look_for_is_told(reflight, pane, tmp_path):
     done = reflight("export", pane / "plan.json", "--format", "dji-kmz", "-o", tmp_path / "m.zip")
     assert done.status == 0
-    assert done.err == "warning: m.zip: other programs look for dji-kmz files with names that end in .kmz\n"
+    first = done.err.splitlines()[0]
+    assert first == "warning: m.zip: other programs look for dji-kmz files with names that end in .kmz"
 
 
 @pytest.mark.parametrize(("file_format", "name"), [("dji-kmz", "m.kml"), ("csv", "m.xlsx"), ("mavlink-plan", "m.kmz")])
@@ -166,7 +167,8 @@ def test_the_site_beside_the_plan_is_found_among_other_files(reflight, sorties, 
     (tmp_path / "b.json").symlink_to("nowhere")
     (tmp_path / "c.json").write_bytes(b"\xff")
     done = reflight("export", tmp_path / "plan.json", "--format", "dji-kmz", "-o", tmp_path / "m.kmz")
-    assert (done.status, done.err) == (0, "")
+    assert done.status == 0
+    assert done.err.startswith("note: before any photo the aircraft stops"), "it knows what stands where"
     alone = tmp_path / "alone"
     alone.mkdir()
     shutil.copy(sorties / "plan.json", alone)

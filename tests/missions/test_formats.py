@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 
 from missions.build import missions_from_plan
-from missions.encode import ExportOptions, encode
+from missions.encode import ExportOptions, encode, takeoff_check
 from missions.formats import export, read_missions, sortie_path
 from missions.heights import altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
@@ -274,7 +274,23 @@ class TestReturnHeight:
     def test_without_the_site_a_warning_says_that_only_the_path_is_cleared(self) -> None:
         findings = encode(example_plan(), None, None, FileFormat.DJI_KMZ, FIXED).findings
         assert [(f.code, f.severity) for f in findings] == [("return-height", Severity.WARNING)]
-        assert encode(example_plan(), None, None, FileFormat.DJI_KMZ, replace(FIXED, site=site_model())).findings == ()
+        with_site = encode(example_plan(), None, None, FileFormat.DJI_KMZ, replace(FIXED, site=site_model()))
+        assert {(f.code, f.severity) for f in with_site.findings} == {("takeoff-check", Severity.NOTE)}
+
+    def test_each_sortie_says_what_is_seen_at_its_first_waypoint(self) -> None:
+        """Heights count from take-off, and an aircraft does not know how high that lies."""
+        plan, site = example_plan(), site_model().site
+        panels = [corner[2] for panel in site.panels for corner in panel.corners_enu_m]
+        for number, sortie in enumerate(plan.sorties, 1):
+            check = takeoff_check(plan, site, number)
+            assert check is not None
+            first_z_m = sortie.path_enu_m[1][2]
+            assert check.above_takeoff_m == pytest.approx(first_z_m - HOME[2])
+            assert abs(check.above_edge_m) == pytest.approx(min(abs(first_z_m - z) for z in panels))
+            edge_z_m = max(panels) if check.is_upper_edge else min(panels)
+            assert check.above_edge_m == pytest.approx(first_z_m - edge_z_m)
+            assert f"stops {check.above_takeoff_m:.1f} m above take-off" in str(check)
+            assert f"edge of facade '{site.facades[0].id}'" in str(check)
 
 
 def test_no_fly_zones_of_the_site_become_fences(tmp_path: Path) -> None:

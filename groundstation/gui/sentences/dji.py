@@ -147,4 +147,29 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "{0} is '{1}'"),
     QT_TRANSLATE_NOOP("Sentences", "waypoint {0:n}"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "before any photo the aircraft stops {0} m above take-off; where it does not, land: it took off "
+        "from another height than planned",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "before any photo the aircraft stops {0} m above take-off, {1} m above the upper edge of facade "
+        "'{2}'; where it does not, land: it took off from another height than planned",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "before any photo the aircraft stops {0} m above take-off, {1} m above the lower edge of facade "
+        "'{2}'; where it does not, land: it took off from another height than planned",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "before any photo the aircraft stops {0} m above take-off, {1} m below the upper edge of facade "
+        "'{2}'; where it does not, land: it took off from another height than planned",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "before any photo the aircraft stops {0} m above take-off, {1} m below the lower edge of facade "
+        "'{2}'; where it does not, land: it took off from another height than planned",
+    ),
 )

@@ -494,4 +494,7 @@ SENTENCES = (
         "the camera looked {0} degrees off at viewpoint '{1}', and elsewhere at {2} of the last {3} "
         "photos: the gimbal may be stuck; pause, and look",
     ),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "it climbs there on its way, and no other height mends that; be ready to fly it back by hand"
+    ),
 )

@@ -12,6 +12,7 @@ from groundstation.services.flight_brief import flight_brief
 from groundstation.services.map_shapes import plan_shapes, site_shapes
 from groundstation.services.units import UnitSystem
 from missions.dji.write import LinkLoss
+from missions.encode import takeoff_check
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from tests.missions.plans import HONG_KONG, example_plan
@@ -105,8 +106,11 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
     empty = flight_brief(kiosk(obstacles=()), replace(plan, sorties=(), viewpoints=()), (), "today")
     bare = replace(full, findings=(), is_flyable=True, link_loss=LinkLoss.GO_HOME)
     warned = replace(full, findings=errors[1:], is_flyable=True)
+    low = replace(takeoff_check(plan, MODEL.site, 1), is_upper_edge=False, above_edge_m=-2.0)
+    high = replace(low, is_upper_edge=True, above_edge_m=2.0)
+    sorties = tuple(replace(full.sorties[0], takeoff_check=check) for check in (low, high))
     pictures = brief_pictures(MODEL, plan, UNITS, say)
-    for brief in (full, empty, bare, warned):
+    for brief in (full, empty, bare, warned, replace(full, sorties=sorties)):
         brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), say)
     assert said <= set(WORDS)
     assert set(WORDS) - said == {"Page {0} of {1}"}
