@@ -363,6 +363,30 @@
         <source>Focus, exposure and white balance are fixed on the facade</source>
         <translation>Fokus, Belichtung und Weißabgleich sind auf der Fassade fest eingestellt</translation>
     </message>
+    <message>
+        <source>Sortie {0}: before any photo the aircraft stops {1}. Where it does not, land: it took off from another height than planned</source>
+        <translation>Einsatz {0}: Vor jedem Foto hält das Fluggerät {1} an. Wo nicht, landen: Es ist von einer anderen Höhe als geplant gestartet</translation>
+    </message>
+    <message>
+        <source>{0} above take-off</source>
+        <translation>{0} über dem Startplatz</translation>
+    </message>
+    <message>
+        <source>{0} above {1}</source>
+        <translation>{0} über {1}</translation>
+    </message>
+    <message>
+        <source>{0} below {1}</source>
+        <translation>{0} unter {1}</translation>
+    </message>
+    <message>
+        <source>the upper edge of facade {0}</source>
+        <translation>der Oberkante der Fassade {0}</translation>
+    </message>
+    <message>
+        <source>the lower edge of facade {0}</source>
+        <translation>der Unterkante der Fassade {0}</translation>
+    </message>
 </context>
 <context>
     <name>BriefDialog</name>
@@ -5721,6 +5745,26 @@ Take it over?</source>
         <translation>Wegpunkt {0:n}</translation>
     </message>
     <message>
+        <source>before any photo the aircraft stops {0} m above take-off; where it does not, land: it took off from another height than planned</source>
+        <translation>vor jedem Foto hält das Fluggerät {0} m über dem Startplatz an; wo nicht, landen: Es ist von einer anderen Höhe als geplant gestartet</translation>
+    </message>
+    <message>
+        <source>before any photo the aircraft stops {0} m above take-off, {1} m above the upper edge of facade &apos;{2}&apos;; where it does not, land: it took off from another height than planned</source>
+        <translation>vor jedem Foto hält das Fluggerät {0} m über dem Startplatz an, {1} m über der Oberkante der Fassade &apos;{2}&apos;; wo nicht, landen: Es ist von einer anderen Höhe als geplant gestartet</translation>
+    </message>
+    <message>
+        <source>before any photo the aircraft stops {0} m above take-off, {1} m above the lower edge of facade &apos;{2}&apos;; where it does not, land: it took off from another height than planned</source>
+        <translation>vor jedem Foto hält das Fluggerät {0} m über dem Startplatz an, {1} m über der Unterkante der Fassade &apos;{2}&apos;; wo nicht, landen: Es ist von einer anderen Höhe als geplant gestartet</translation>
+    </message>
+    <message>
+        <source>before any photo the aircraft stops {0} m above take-off, {1} m below the upper edge of facade &apos;{2}&apos;; where it does not, land: it took off from another height than planned</source>
+        <translation>vor jedem Foto hält das Fluggerät {0} m über dem Startplatz an, {1} m unter der Oberkante der Fassade &apos;{2}&apos;; wo nicht, landen: Es ist von einer anderen Höhe als geplant gestartet</translation>
+    </message>
+    <message>
+        <source>before any photo the aircraft stops {0} m above take-off, {1} m below the lower edge of facade &apos;{2}&apos;; where it does not, land: it took off from another height than planned</source>
+        <translation>vor jedem Foto hält das Fluggerät {0} m über dem Startplatz an, {1} m unter der Unterkante der Fassade &apos;{2}&apos;; wo nicht, landen: Es ist von einer anderen Höhe als geplant gestartet</translation>
+    </message>
+    <message>
         <source>minimum distance (m)</source>
         <translation>Mindestabstand (m)</translation>
     </message>
@@ -6278,7 +6322,7 @@ Take it over?</source>
     </message>
     <message>
         <source>{0} photos that the imported mission takes in passing are stops in these files, so the sortie takes {1} s instead of {2} s</source>
-        <translation>{0} Fotos, die die importierte Mission im Vorbeiflug macht, sind in diesen Dateien Halte, sodass der Einzelflug {1} s statt {2} s dauert</translation>
+        <translation>{0} Fotos, die die importierte Mission im Vorbeiflug macht, sind in diesen Dateien Halte, sodass der Einsatz {1} s statt {2} s dauert</translation>
     </message>
     <message>
         <source>starts</source>
@@ -9363,6 +9407,10 @@ Take it over?</source>
     <message>
         <source>the camera looked {0} degrees off at viewpoint &apos;{1}&apos;, and elsewhere at {2} of the last {3} photos: the gimbal may be stuck; pause, and look</source>
         <translation>die Kamera sah bei Aufnahmepunkt &apos;{1}&apos; um {0} Grad daneben, und bei {2} der letzten {3} Fotos anderswohin: Der Gimbal klemmt vielleicht; anhalten und nachsehen</translation>
+    </message>
+    <message>
+        <source>it climbs there on its way, and no other height mends that; be ready to fly it back by hand</source>
+        <translation>es steigt auf seinem Weg dort auf, und keine andere Höhe hilft; bereit sein, es von Hand zurückzufliegen</translation>
     </message>
     <message>
         <source>what the vehicle does when the link is lost is not known: it has no {0}</source>
