@@ -24,7 +24,8 @@ from planning.site import Origin
 HEAD_BYTES = 4096
 """Enough of a file to see what it is."""
 
-_Reader = Callable[[Path], tuple[ReadMission, ...]]
+_Reader = Callable[[Path, bool], tuple[ReadMission, ...]]
+"""Takes the file, and whether to refuse what an aircraft would refuse."""
 
 
 def export(
@@ -76,8 +77,15 @@ def sortie_path(path: Path, number: int) -> Path:
     return path if number == 1 else path.with_name(f"{path.stem}-{number}{path.suffix}")
 
 
-def read_missions(path: Path) -> tuple[ReadMission, ...]:
+def read_missions(path: Path, *, strict: bool = False) -> tuple[ReadMission, ...]:
     """The sorties of a mission file of any format, or of a folder with the two unpacked parts of a DJI mission.
+
+    A mission is read for what it would do, also where an aircraft might refuse it: findings tell.
+
+    Parameters
+    ----------
+    strict
+        Refuse what an aircraft would refuse.
 
     Raises
     ------
@@ -89,8 +97,8 @@ def read_missions(path: Path) -> tuple[ReadMission, ...]:
     if path.is_dir():
         from missions.dji.read import read_dji
 
-        return read_dji(path)
-    return _reader(path)(path)
+        return read_dji(path, strict=strict)
+    return _reader(path)(path, strict)
 
 
 def is_mission(head: bytes) -> bool:
@@ -120,14 +128,14 @@ def _reader_of(head: bytes) -> _Reader | None:
 
     text = _without_mark(head)
     if head.startswith(b"PK") or b"/wpmz/" in head:
-        return read_dji
+        return lambda path, strict: read_dji(path, strict=strict)
     if text.startswith(b"<"):
-        return read_kml
+        return lambda path, _strict: read_kml(path)
     if text.startswith(b"{"):
         return _read_plan_json
     if text.startswith(b"QGC WPL"):
         return _read_wpl
-    return read_csv if is_csv_table(head) else None
+    return (lambda path, _strict: read_csv(path)) if is_csv_table(head) else None
 
 
 def _without_mark(head: bytes) -> bytes:
@@ -135,15 +143,15 @@ def _without_mark(head: bytes) -> bytes:
     return head.removeprefix(b"\xef\xbb\xbf").lstrip()
 
 
-def _read_plan_json(path: Path) -> tuple[ReadMission, ...]:
+def _read_plan_json(path: Path, strict: bool) -> tuple[ReadMission, ...]:
     from missions.mavlink.plan_json import read_plan_json
     from missions.mavlink.read import read_mavlink
 
-    return (read_mavlink(path, read_plan_json(path), FileFormat.MAVLINK_PLAN),)
+    return (read_mavlink(path, read_plan_json(path), FileFormat.MAVLINK_PLAN, strict=strict),)
 
 
-def _read_wpl(path: Path) -> tuple[ReadMission, ...]:
+def _read_wpl(path: Path, strict: bool) -> tuple[ReadMission, ...]:
     from missions.mavlink.read import read_mavlink
     from missions.mavlink.wpl import read_wpl
 
-    return (read_mavlink(path, read_wpl(path), FileFormat.MAVLINK_WPL),)
+    return (read_mavlink(path, read_wpl(path), FileFormat.MAVLINK_WPL, strict=strict),)

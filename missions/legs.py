@@ -73,6 +73,16 @@ def point_between(
     return float(lat), float(lon)
 
 
+def are_too_many(length: float, spacing: float) -> bool:
+    """Whether a camera that triggers every `spacing` would take more photos on a leg than any camera can."""
+    return spacing > 0.0 and not length / spacing <= MAX_SHOTS
+
+
+def too_many_shots(length: float, spacing: float) -> str:
+    """What is to be said then."""
+    return f"a camera trigger every {spacing:g} would take {length / spacing:.3g} photos on one leg; it is not followed"
+
+
 def shots_on_leg(travelled: float, length: float, spacing: float) -> list[float]:
     """Where on a leg a camera triggers that triggers every `spacing`, as fractions of the leg in (0, 1].
 
@@ -91,8 +101,8 @@ def shots_on_leg(travelled: float, length: float, spacing: float) -> list[float]
     """
     if length <= 0.0 or spacing <= 0.0:
         return []
-    if length / spacing > MAX_SHOTS:
-        raise MissionError(f"a camera trigger every {spacing:g} would take {length / spacing:.3g} photos on one leg")
+    if are_too_many(length, spacing):
+        raise MissionError(too_many_shots(length, spacing))
     # A shot within 1e-9 of a spacing after the end is that of the end itself, moved by rounding.
     first, last = np.floor(travelled / spacing + 1e-9) + 1.0, np.floor((travelled + length) / spacing + 1e-9)
     shots = (np.arange(first, last + 1.0) * spacing - travelled) / length

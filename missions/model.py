@@ -13,11 +13,12 @@ Heights have three references and three names, never mixed:
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from planning.findings import Finding
+from planning.findings import Finding, Severity
 from planning.plan import Aircraft, Camera, FlightRules
 from planning.site import Origin
 
@@ -211,6 +212,8 @@ class ReadMission:
         it flies home after the last waypoint; 0 where the file does not say.
     speed_m_s
         Cruise speed; None where the file does not say.
+    transit_speed_m_s
+        Speed to the first waypoint and home from the last; None where it is the cruise speed.
     stated_s
         Time from the first to the last waypoint as the file states it; None where it does not.
     findings
@@ -227,6 +230,7 @@ class ReadMission:
     climb_above_takeoff_m: float = 0.0
     return_above_takeoff_m: float = 0.0
     speed_m_s: float | None = None
+    transit_speed_m_s: float | None = None
     stated_s: float | None = None
     findings: tuple[Finding, ...] = ()
 
@@ -234,3 +238,27 @@ class ReadMission:
     def n_photos(self) -> int:
         """Number of photos."""
         return sum(len(waypoint.photos) for waypoint in self.waypoints)
+
+
+def as_remark(finding: Finding) -> Finding:
+    """A check's error, which grounds a file but not the evaluation of what it would do, as a warning."""
+    if finding.severity is not Severity.ERROR:
+        return finding
+    return replace(finding, severity=Severity.WARNING, message=f"the vehicle would refuse it: {finding.message}")
+
+
+MAX_REASONS = 3
+"""Kinds of errors that a refusal spells out; the others are counted."""
+
+
+def reasons(errors: Sequence[Finding]) -> str:
+    """One example of each kind of error, and how often it occurs."""
+    kinds: dict[str, list[Finding]] = {}
+    for error in errors:
+        kinds.setdefault(error.code, []).append(error)
+    told = []
+    for found in list(kinds.values())[:MAX_REASONS]:
+        place = found[0].place.strip(", ")
+        times = f" ({len(found)} times)" if len(found) > 1 else ""
+        told.append(f"{place}: {found[0].message}{times}" if place else f"{found[0].message}{times}")
+    return "; ".join(told) + (f"; and {len(kinds) - MAX_REASONS} other kinds" if len(kinds) > MAX_REASONS else "")

@@ -36,6 +36,10 @@ STRAIGHT_RAD = math.radians(1.0)
 SHARPEST_TURN_RAD = math.radians(175.0)
 """Corners that turn less are none; those that turn more are stops."""
 
+CORNER_SHARE = 0.5
+"""Of the acceleration, around corners. Ten routes of FlightHub 2 with 3 to 860 such turns state times that ours meets
+within 6 % with it; with all of the acceleration ours are up to 12 % shorter."""
+
 TAKEOFF_MOVED_M = 20.0
 """A take-off point of the file this far from the site's home is worth a warning; a launch area is smaller."""
 
@@ -167,7 +171,8 @@ def _check_is_near(mission: ReadMission, home: tuple[float, float, float]) -> No
     if nearest_m > MAX_DISTANCE_M:
         raise InputError(
             f"{mission.path}: the mission '{mission.name}' is {nearest_m / 1000.0:.1f} km from the site's home; "
-            f"expected at most {MAX_DISTANCE_M / 1000.0:g} km; is it the right site?"
+            f"expected at most {MAX_DISTANCE_M / 1000.0:g} km; is it the right site? Imported without one, the mission "
+            "gets a bare site of its own, to look at it"
         )
 
 
@@ -283,7 +288,8 @@ def _time_as_told(
     speeds = [waypoint.speed_m_s or speed_m_s for waypoint in mission.waypoints]
     route_s = flown_s(list(map(RoutePoint, points, stays, speeds)), limits)
     ways = ([*before, points[0]], [points[-1], *after])
-    way_s = sum(flown_s(timed_route(way, [Stay()] * len(way), speed_m_s), limits) for way in ways)
+    transit_m_s = mission.transit_speed_m_s or speed_m_s
+    way_s = sum(flown_s(timed_route(way, [Stay()] * len(way), transit_m_s), limits) for way in ways)
     duration_s = rules.takeoff_landing_s + way_s + route_s
     if not mission.stated_s:
         return duration_s, ()
@@ -295,7 +301,7 @@ def _time_as_told(
 
 
 class RoutePoint(NamedTuple):
-    """A waypoint to be timed; the speed is that of the leg behind it."""
+    """A waypoint to be timed; the speed is that along the leg behind it, also where this climbs."""
 
     place_enu_m: Vec3
     stay: Stay
@@ -321,8 +327,7 @@ def flown_s(route: Sequence[RoutePoint], limits: MotionLimits) -> float:
     if not len(legs):
         return rests_s
     speeds = [
-        speed_limits_m_s(leg, replace(limits, horizontal_m_s=min(limits.horizontal_m_s, point.speed_m_s)))
-        for leg, point in zip(legs, kept, strict=False)
+        min(point.speed_m_s, float(speed_limits_m_s(leg, limits))) for leg, point in zip(legs, kept, strict=False)
     ]
     cuts = [None if point.stay.is_stop else point.stay.passing_m for point in kept]
     return rests_s + _legs_s(legs, np.array(speeds, np.float64), cuts, limits)
@@ -368,7 +373,7 @@ def _legs_s(legs: Array, speed_m_s: Array, cuts_m: Sequence[float | None], limit
         elif turn < SHARPEST_TURN_RAD:
             cut[k] = min(wanted, length[k - 1] / 2.0, length[k] / 2.0)
             radius = cut[k] / math.tan(turn / 2.0)
-            corner_m_s[k], arc[k] = min(slower, math.sqrt(a * radius)), radius * turn
+            corner_m_s[k], arc[k] = min(slower, math.sqrt(CORNER_SHARE * a * radius)), radius * turn
     straight = np.maximum(length - cut[:-1] - cut[1:], 0.0)
     for k in range(1, n + 1):
         corner_m_s[k] = min(corner_m_s[k], math.sqrt(corner_m_s[k - 1] ** 2 + 2.0 * a * straight[k - 1]))

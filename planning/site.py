@@ -220,7 +220,8 @@ class RallyPoint:
 class Site:
     """The content of `site.json`: everything about a place but the meshes, which it names by path.
 
-    A site without panels has a building mesh: the coarse model on which photos of a first flight show them.
+    A site without panels has a building mesh: the coarse model on which photos of a first flight show them. Or it is
+    bare: a place alone, to look at missions that were imported.
     """
 
     name: str
@@ -232,12 +233,13 @@ class Site:
     obstacles: tuple[Obstacle, ...] = ()
     rally_points: tuple[RallyPoint, ...] = ()
     format: str = SITE_FORMAT
+    is_bare: bool = False
 
     def __post_init__(self) -> None:
         if self.format != SITE_FORMAT:
             raise ValueError(f"format: expected '{SITE_FORMAT}', got '{self.format}'")
         check_point(self.home_enu_m, "home_enu_m")
-        if self.building_mesh is None and self.n_panels == 0:
+        if self.building_mesh is None and self.n_panels == 0 and not self.is_bare:
             raise ValueError(
                 "facades: expected at least one panel, or a building_mesh on which panels can be found, got neither; "
                 "add panels, or name the mesh of the building"

@@ -64,6 +64,8 @@ def site_to_json(site: Site) -> dict[str, Any]:
         del content["building_mesh"]
     if not content["rally_points"]:
         del content["rally_points"]
+    if not content["is_bare"]:
+        del content["is_bare"]
     content["obstacles"] = [_without_none(obstacle) for obstacle in content["obstacles"]]
     for facade in content["facades"]:
         facade["panels"] = [_without_none(panel) for panel in facade["panels"]]

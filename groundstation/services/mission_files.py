@@ -7,24 +7,30 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from groundstation.services.given_files import FileKind, expecting
 from groundstation.services.project_file import check_not_index
 from missions.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot, encode
 from missions.formats import read_missions, sortie_path, write_files
-from missions.model import FileFormat, ReadMission
+from missions.legs import distance_m
+from missions.model import FileFormat, GeoPoint, ReadMission
 from missions.to_plan import viewpoints_and_sorties
+from planning.belonging import MAX_DISTANCE_M
 from planning.catalogue import DEFAULT_PROFILE, profile
 from planning.checks import check_plan
 from planning.errors import GroundStationError, InputError
 from planning.evaluate import coverage
 from planning.files import real_path
 from planning.findings import Finding, Severity
-from planning.plan import Constraints, FlightRules, Plan
+from planning.geodesy.geoid import undulation_m
+from planning.mesh import empty_mesh
+from planning.plan import Constraints, Coverage, FlightRules, Plan
 from planning.planner import share_out_anew
 from planning.prepare import prepare
 from planning.progress import QUIET, Monitor
-from planning.site import SiteModel
-from planning.site_file import is_planned_on
+from planning.site import Airspace, Origin, Site, SiteModel
+from planning.site_file import is_planned_on, site_sha256
 
 MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
 
@@ -36,6 +42,10 @@ SUFFIXES = {
     FileFormat.CSV: (".csv",),
 }
 """How the names of files end that other programs offer to open."""
+
+BARE_MARGIN_M = 40.0
+FLOOR_M = 2.0
+"""Of the airspace of a site made for missions alone, above home; as for imported buildings."""
 
 IMPORTED = "imported"
 """Method written into plans that come from mission files."""
@@ -161,8 +171,13 @@ def _shared_out(plan: Plan, site_model: SiteModel, max_views: int) -> Plan:
     return share_out_anew(plan, site_model, max_views)
 
 
-def read_mission_files(paths: Sequence[Path]) -> tuple[ReadMission, ...]:
+def read_mission_files(paths: Sequence[Path], *, strict: bool = False) -> tuple[ReadMission, ...]:
     """The sorties of mission files of one flight.
+
+    Parameters
+    ----------
+    strict
+        Refuse what an aircraft would refuse.
 
     Raises
     ------
@@ -173,12 +188,59 @@ def read_mission_files(paths: Sequence[Path]) -> tuple[ReadMission, ...]:
     for number, path in enumerate(paths):
         if resolved[number] in resolved[:number]:
             raise InputError(f"{path}: this mission file is named twice; name the file of each sortie once")
-    return tuple(mission for path in paths for mission in _read_given_missions(path))
+    return tuple(mission for path in paths for mission in _read_given_missions(path, strict))
 
 
-def _read_given_missions(path: Path) -> tuple[ReadMission, ...]:
+def _read_given_missions(path: Path, strict: bool) -> tuple[ReadMission, ...]:
     with expecting(FileKind.MISSION, path):
-        return read_missions(path)
+        return read_missions(path, strict=strict)
+
+
+def bare_site(missions: Sequence[ReadMission]) -> tuple[SiteModel, tuple[Finding, ...]]:
+    """A site of missions alone, without building or panels, to look at where they fly.
+
+    Home is where the first mission takes off as its file says, else below its first waypoint. The airspace reaches
+    `BARE_MARGIN_M` further than the missions. Where the file does not say how high the take-off lies, heights above
+    take-off count from sea level, and other heights from just below the lowest of them; a finding tells.
+
+    Raises
+    ------
+    InputError
+        The missions are too far apart for one site.
+    """
+    first = missions[0]
+    start, findings = first.waypoints[0], []
+    heights_m = [w.height_ellipsoid_m for m in missions for w in m.waypoints if w.height_ellipsoid_m is not None]
+    takeoff = first.takeoff
+    if (
+        takeoff is not None
+        and distance_m(takeoff.lat_deg, takeoff.lon_deg, start.lat_deg, start.lon_deg) < MAX_DISTANCE_M
+    ):
+        home = takeoff
+    else:
+        geoid_m = float(undulation_m(start.lat_deg, start.lon_deg))
+        home = GeoPoint(start.lat_deg, start.lon_deg, min(heights_m) - FLOOR_M if heights_m else geoid_m)
+        text = (
+            "its file does not say where it takes off, so home is below its first waypoint, at an assumed height; what "
+            "depends on that height is only to look at"
+        )
+        findings.append(Finding(Severity.WARNING, "bare-site", text, first.name))
+    origin = Origin(round(home.lat_deg, 9), round(home.lon_deg, 9), round(home.height_ellipsoid_m, 3))
+    here = (0.0, 0.0, 0.0)
+    parts = viewpoints_and_sorties(missions, origin, here)
+    path = np.array([point for sortie in parts.sorties for point in sortie.path_enu_m])
+    low, high = path.min(axis=0) - BARE_MARGIN_M, path.max(axis=0) + BARE_MARGIN_M
+    low[2] = min(FLOOR_M, float(path[:, 2].min()))
+    box = [(round(float(x), 3), round(float(y), 3), round(float(z), 3)) for x, y, z in (low, high)]
+    site = Site(
+        name=first.path.stem,
+        origin=origin,
+        facades=(),
+        airspace=Airspace(box[0], box[1], 0.0),
+        home_enu_m=here,
+        is_bare=True,
+    )
+    return SiteModel(site, empty_mesh(), (), site_sha256(site)), tuple(findings)
 
 
 def missions_as_plan(
@@ -187,8 +249,15 @@ def missions_as_plan(
     profile_id: str = DEFAULT_PROFILE,
     constraints: Constraints = Constraints(),
     monitor: Monitor = QUIET,
+    *,
+    strict: bool = False,
 ) -> tuple[Plan, tuple[Finding, ...]]:
     """Mission files of one flight as a plan, with the coverage that it has on this site.
+
+    Parameters
+    ----------
+    strict
+        Refuse missions that an aircraft would refuse.
 
     Raises
     ------
@@ -198,10 +267,28 @@ def missions_as_plan(
         Nothing on this site can be covered under the constraints.
     """
     monitor.report("reading the mission", 0, 1)
+    return plan_of_missions(read_mission_files(paths, strict=strict), site_model, profile_id, constraints, monitor)
+
+
+def plan_of_missions(
+    missions: Sequence[ReadMission],
+    site_model: SiteModel,
+    profile_id: str = DEFAULT_PROFILE,
+    constraints: Constraints = Constraints(),
+    monitor: Monitor = QUIET,
+) -> tuple[Plan, tuple[Finding, ...]]:
+    """Missions that were read as a plan; on a site without panels there is nothing that they could cover.
+
+    Raises
+    ------
+    InputError
+        They belong to another place.
+    InfeasibleError
+        Nothing on this site can be covered under the constraints.
+    """
     chosen, rules = profile(profile_id), FlightRules()
-    read, site = read_mission_files(paths), site_model.site
-    parts = viewpoints_and_sorties(read, site.origin, site.home_enu_m, rules, chosen.aircraft)
-    prepared = prepare(site_model, chosen.camera, constraints, monitor=monitor)
+    site = site_model.site
+    parts = viewpoints_and_sorties(missions, site.origin, site.home_enu_m, rules, chosen.aircraft)
     plan = Plan(
         site=site.name,
         site_sha256=site_model.sha256,
@@ -209,14 +296,20 @@ def missions_as_plan(
         seed=0,
         camera=chosen.camera,
         aircraft=chosen.aircraft,
-        constraints=prepared.constraints,
+        constraints=replace(constraints, occlusion="off"),
         viewpoints=parts.viewpoints,
         sorties=parts.sorties,
-        coverage=coverage(prepared.problem.model, parts.viewpoints, prepared.problem.reachability),
+        coverage=Coverage(0, 0, 0),
         origin=site.origin,
         home_enu_m=site.home_enu_m,
         rules=rules,
-        effects=prepared.effects,
         profile=chosen.id,
     )
-    return plan, parts.findings
+    if site.n_panels == 0:
+        return plan, parts.findings
+    prepared = prepare(site_model, chosen.camera, constraints, monitor=monitor)
+    found = coverage(prepared.problem.model, parts.viewpoints, prepared.problem.reachability)
+    return (
+        replace(plan, constraints=prepared.constraints, coverage=found, effects=prepared.effects),
+        parts.findings,
+    )

@@ -10,7 +10,10 @@ from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.mission_files import (
     MAVLINK_FORMATS,
     SUFFIXES,
+    bare_site,
     missions_as_plan,
+    plan_of_missions,
+    read_mission_files,
     readiness,
     within_item_limit,
 )
@@ -28,7 +31,7 @@ from planning.plan import Constraints, Plan
 from planning.plan_file import write_plan
 from planning.progress import QUIET, Monitor
 from planning.site import SiteModel
-from planning.site_file import read_site
+from planning.site_file import read_site, write_site
 
 __all__ = ["SUFFIXES", "export_plan", "find_site", "import_missions"]
 
@@ -119,21 +122,54 @@ def _name_findings(out: Path, file_format: FileFormat) -> Iterator[Finding]:
 
 def import_missions(
     paths: Sequence[Path],
-    site_path: Path,
+    site_path: Path | None,
     out: Path,
     profile_id: str = DEFAULT_PROFILE,
     constraints: Constraints = Constraints(),
     monitor: Monitor = QUIET,
-) -> tuple[Plan, tuple[Finding, ...]]:
-    """Read mission files of one flight as a plan, evaluate its coverage, and write it.
+    *,
+    strict: bool = False,
+) -> tuple[Plan, tuple[Finding, ...], Path]:
+    """Read mission files of one flight as a plan, evaluate its coverage, and write it; returns its site file, too.
+
+    Parameters
+    ----------
+    site_path
+        None to make a bare site of the missions, which is written beside the plan.
+    strict
+        Refuse missions that an aircraft would refuse.
 
     Raises
     ------
     InputError, MissionError
-        A file cannot be read, is given twice, or belongs to another place; or the plan cannot be written.
+        A file cannot be read, is given twice, or belongs to another place; or plan or site cannot be written.
     """
     check_not_index(out)
-    check_output(out, [*paths, site_path])
-    plan, findings = missions_as_plan(paths, read_given_site(site_path), profile_id, constraints, monitor)
+    if site_path is not None:
+        check_output(out, [*paths, site_path])
+        plan, findings = missions_as_plan(
+            paths, read_given_site(site_path), profile_id, constraints, monitor, strict=strict
+        )
+        write_plan(out, plan)
+        return plan, findings, site_path
+    beside = out.with_name(out.name.removesuffix(".json").removesuffix(".plan") + ".site.json")
+    check_output(out, [*paths, beside])
+    check_output(beside, [*paths, out])
+    if beside.exists() and not _is_bare(beside):
+        raise InputError(
+            f"{beside}: this is a site of its own, which the mission's bare one would replace; name it with --site, or "
+            "the plan otherwise"
+        )
+    monitor.report("reading the mission", 0, 1)
+    read = read_mission_files(paths, strict=strict)
+    model, on_site = bare_site(read)
+    plan, findings = plan_of_missions(read, model, profile_id, constraints, monitor)
+    write_site(beside, model.site)
     write_plan(out, plan)
-    return plan, findings
+    return plan, (*on_site, *findings), beside
+
+
+def _is_bare(path: Path) -> bool:
+    """Whether a site file holds a place alone, with nothing added."""
+    site = read_given_site(path).site
+    return site.is_bare and site.n_panels == 0 and site.building_mesh is None and not site.obstacles

@@ -146,7 +146,7 @@ def site_summary(model: SiteModel) -> SiteSummary:
     corners = panel_corners(model.site)
     points = np.concatenate([corners.reshape(-1, 3), model.building.vertices_enu_m])
     areas = np.split(quad_areas(corners), np.cumsum([len(facade.panels) for facade in model.site.facades]))[:-1]
-    east, north, up = np.ptp(points, axis=0).tolist()
+    east, north, up = np.ptp(points, axis=0).tolist() if len(points) else (0.0, 0.0, 0.0)
     return SiteSummary(
         (east, north, up),
         len(model.building.triangles),

@@ -167,8 +167,9 @@ def _legs(folder: Folder, place: str) -> Iterator[Finding]:
                 "m",
             )
         if course is None and waypoints[i].heading_mode == "followWayline":
-            text = "the leg is vertical, so there is no course to follow; use fixed or smoothTransition"
-            yield Finding(ERROR, "vertical-leg", text, leg)
+            # The Payload SDK has an error for it (TRAJ_INVALID_YAW_MODE_IN_VERT_SEGM), and DJI's programs write it.
+            text = "the leg is vertical, so there is no course to follow: the nose stays as it is"
+            yield Finding(NOTE, "vertical-leg", text, leg)
     yield from _turns(waypoints, lengths_m, place)
     yield from _distance(folder, sum(lengths_m), place)
 

@@ -13,8 +13,17 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from missions.dji.wpml import Action, ActionGroup, Folder, WpmlWaypoint
-from missions.legs import bearing_deg, courses_deg, leg_lengths_m, point_between, shots_on_leg
+from missions.legs import (
+    are_too_many,
+    bearing_deg,
+    courses_deg,
+    leg_lengths_m,
+    point_between,
+    shots_on_leg,
+    too_many_shots,
+)
 from missions.model import ON_THE_WAY, ReadPhoto, Stay
+from planning.findings import Finding, Severity
 from planning.frames import wrap_heading_deg
 
 PHOTO_FUNCS = ("takePhoto", "orientedShoot", "accurateShoot")
@@ -136,11 +145,12 @@ class Flight:
     wait_s: float = 0.0
     turn_deg: float = 0.0
     needs_rest: bool = False
+    findings: list[Finding] = field(default_factory=list)
 
     def points(self) -> list[FlownPoint]:
         """All waypoints, and between them the points where photos are taken on the way.
 
-        The wayline must have passed `missions.dji.check`: coordinates, heights and speeds are there.
+        Coordinates and heights must be there. What else is wrong is passed over; `missions.dji.check` tells of it.
         """
         waypoints = self.folder.waypoints
         places = [_place(waypoint) for waypoint in waypoints]
@@ -158,7 +168,7 @@ class Flight:
             is_last = index == len(waypoints) - 1
             stay = self._stay(waypoint, is_end=is_last or index == 0)
             photos += [replace(photo, in_passing=not stay.is_stop) for photo in released]
-            speed_m_s = waypoint.speed_m_s or self.folder.speed_m_s
+            speed_m_s = _speed_m_s(waypoint, self.folder)
             if is_last:
                 flown.append(replace(places[index], photos=tuple(photos), stay=stay))
                 break
@@ -187,7 +197,7 @@ class Flight:
         """Set the heading that a waypoint itself demands; the first one is reached looking along its leg."""
         is_fixed = waypoint.heading_mode == "fixed" and waypoint.heading_angle_enable
         if is_fixed or (is_first and waypoint.heading_mode == "smoothTransition"):
-            self.nose_deg = waypoint.heading_angle_deg
+            self.nose_deg = _finite(waypoint.heading_angle_deg)
         elif is_first and waypoint.heading_mode == "followWayline":
             self.nose_deg = next((course for course in courses if course is not None), None)
 
@@ -207,9 +217,10 @@ class Flight:
         for name, in_seconds in (("multipleTiming", True), ("multipleDistance", False)):
             for group in groups.on_leg(name, index):
                 shoots = any(action.func in PHOTO_FUNCS for action in group.actions)
-                if group.start_index == index and shoots and group.trigger_param and group.end_index is not None:
+                every = _finite(group.trigger_param) or 0.0
+                if group.start_index == index and shoots and every > 0.0 and group.end_index is not None:
                     photos += self._in_flight(group.actions)
-                    trigger = _Trigger(group.actions, group.trigger_param, in_seconds, group.end_index)
+                    trigger = _Trigger(group.actions, every, in_seconds, group.end_index)
                     self.triggers.append(trigger)
         return photos
 
@@ -226,8 +237,8 @@ class Flight:
         for group in groups.on_leg("betweenAdjacentPoints", index):
             for action in group.actions:
                 if action.func == "gimbalEvenlyRotate":
-                    pitch_after_deg = action.number("gimbalPitchRotateAngle")
-        headings = (self.nose_deg, following.heading_angle_deg)
+                    pitch_after_deg = _finite(action.number("gimbalPitchRotateAngle"))
+        headings = (self.nose_deg, _finite(following.heading_angle_deg))
         pitches = (self.pitch_deg, pitch_after_deg)
         return _Leg(start, end, waypoint.heading_mode, headings, pitches, waypoint.poi_lat_lon_deg)
 
@@ -237,6 +248,9 @@ class Flight:
         due: list[tuple[float, tuple[Action, ...]]] = []
         for trigger in (*self.triggers, *([] if self.lapse is None else [self.lapse])):
             length = length_m / speed_m_s if trigger.in_seconds else length_m
+            if are_too_many(length, trigger.every):
+                self.findings.append(Finding(Severity.WARNING, "trigger", too_many_shots(length, trigger.every)))
+                continue
             due += [(fraction, trigger.actions) for fraction in shots_on_leg(trigger.travelled, length, trigger.every)]
             trigger.travelled += length
         shots: list[tuple[float, ReadPhoto]] = []
@@ -261,9 +275,9 @@ class Flight:
                 self.wait_s += RELEASE_S
             self.needs_rest |= action.func in RESTING_FUNCS
             if action.func == "hover":
-                self.wait_s += max(0.0, action.number("hoverTime") or 0.0)
+                self.wait_s += max(0.0, _finite(action.number("hoverTime")) or 0.0)
             elif action.func == "rotateYaw":
-                self.nose_deg = action.number("aircraftHeading")
+                self.nose_deg = _finite(action.number("aircraftHeading"))
             elif action.func == "gimbalRotate":
                 self._rotate_gimbal(action)
             elif action.func == "takePhoto":
@@ -271,7 +285,7 @@ class Flight:
             elif action.func in PHOTO_FUNCS:
                 photos.append(self._oriented_photo(action))
             elif action.func == "startTimeLapse" and self.lapse is None:
-                every_s = action.number("minShootInterval") or 0.0
+                every_s = _finite(action.number("minShootInterval")) or 0.0
                 self.lapse = _Trigger((_LAPSE_SHOT,), every_s, in_seconds=True, end_index=len(self.folder.waypoints))
                 photos.append(self._photo(""))
             elif action.func == "stopTimeLapse":
@@ -280,7 +294,8 @@ class Flight:
         return photos
 
     def _rotate_gimbal(self, action: Action) -> None:
-        pitch, yaw = action.number("gimbalPitchRotateAngle"), action.number("gimbalYawRotateAngle")
+        pitch = _finite(action.number("gimbalPitchRotateAngle"))
+        yaw = _finite(action.number("gimbalYawRotateAngle"))
         is_relative = action.params.get("gimbalRotateMode") == "relativeAngle"
         if action.is_on("gimbalPitchRotateEnable") and pitch is not None:
             if not is_relative:
@@ -293,15 +308,15 @@ class Flight:
 
     def _photo(self, suffix: str) -> ReadPhoto:
         heading = None if self.nose_deg is None else wrap_heading_deg(self.nose_deg + self.gimbal_yaw_deg)
-        return ReadPhoto(heading, self.pitch_deg, suffix if self.is_ours else "")
+        return ReadPhoto(heading, _pitch_deg(self.pitch_deg), suffix if self.is_ours else "")
 
     def _oriented_photo(self, action: Action) -> ReadPhoto:
         """A photo that says all its angles itself; the gimbal's yaw counts from north."""
-        self.nose_deg, self.gimbal_yaw_deg = action.number("aircraftHeading"), 0.0
-        self.pitch_deg = action.number("gimbalPitchRotateAngle")
-        yaw = action.number("gimbalYawRotateAngle")
+        self.nose_deg, self.gimbal_yaw_deg = _finite(action.number("aircraftHeading")), 0.0
+        self.pitch_deg = _finite(action.number("gimbalPitchRotateAngle"))
+        yaw = _finite(action.number("gimbalYawRotateAngle"))
         heading = self.nose_deg if yaw is None else yaw
-        return ReadPhoto(None if heading is None else wrap_heading_deg(heading), self.pitch_deg)
+        return ReadPhoto(None if heading is None else wrap_heading_deg(heading), _pitch_deg(self.pitch_deg))
 
 
 def _place(waypoint: WpmlWaypoint) -> FlownPoint:
@@ -323,3 +338,17 @@ def _turned_deg(before: tuple[float | None, float | None], after: tuple[float | 
     nose = 0.0 if nose_0 is None or nose_1 is None else abs(wrap_heading_deg(nose_1 - nose_0))
     pitch = 0.0 if pitch_0 is None or pitch_1 is None else abs(pitch_1 - pitch_0)
     return max(nose, pitch)
+
+
+def _finite(value: float | None) -> float | None:
+    return None if value is None or not math.isfinite(value) else value
+
+
+def _pitch_deg(value: float | None) -> float | None:
+    """A gimbal pitch that a camera can have; None for any other."""
+    return value if value is not None and -180.0 <= value <= 90.0 else None
+
+
+def _speed_m_s(waypoint: WpmlWaypoint, folder: Folder) -> float | None:
+    """Speed on the leg from a waypoint; None where neither it nor the wayline has one that can be flown."""
+    return next((v for v in (waypoint.speed_m_s, folder.speed_m_s) if v is not None and 0.0 < v < math.inf), None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,48 +10,42 @@ from missions.dji.check import check_dji, is_on_globe
 from missions.dji.container import DjiParts, load_parts
 from missions.dji.fly import Flight, FlownPoint
 from missions.dji.wpml import Folder
-from missions.model import FileFormat, Finish, GeoPoint, HeightReference, ReadMission, ReadWaypoint
+from missions.model import FileFormat, Finish, GeoPoint, HeightReference, ReadMission, ReadWaypoint, as_remark, reasons
 from planning.errors import MissionError
 from planning.findings import Finding, Severity
-
-MAX_REASONS = 3
-"""Kinds of errors that a refusal spells out; the others are counted."""
-
 
 _FINISH = {"goHome": Finish.RETURN, "autoLand": Finish.LAND}
 
 
-def read_dji(path: Path) -> tuple[ReadMission, ...]:
+def read_dji(path: Path, *, strict: bool = False) -> tuple[ReadMission, ...]:
     """The waylines of a KMZ, or of a folder with its two unpacked parts.
 
-    The waylines count, as for the aircraft; where the template says otherwise a finding tells.
+    The waylines count, as for the aircraft; where the template says otherwise a finding tells. What an aircraft would
+    refuse is a finding, too, and no reason to refuse, unless `strict` asks for it or the path is not known.
 
     Raises
     ------
     InputError
         The file is missing or unreadable.
     MissionError
-        It is no DJI mission, or one that aircraft refuse; the message says why.
+        It is no DJI mission, its path is not in the file, or aircraft refuse it, if `strict`; the message says why.
     """
     parts = load_parts(path)
     findings = check_dji(parts)
     errors = [finding for finding in findings if finding.severity is Severity.ERROR]
-    if errors:
-        raise MissionError(f"{path}: aircraft would refuse this mission: {_reasons(errors)}")
-    return tuple(_read_wayline(path, parts, folder, findings) for folder in parts.waylines.folders)
+    unknown = [finding for finding in errors if _hides_path(finding)]
+    if unknown or (strict and errors):
+        others = [finding for finding in errors if finding not in unknown]
+        raise MissionError(f"{path}: aircraft would refuse this mission: {reasons([*unknown, *others])}")
+    remarks = tuple(map(as_remark, findings))
+    return tuple(_read_wayline(path, parts, folder, remarks) for folder in parts.waylines.folders)
 
 
-def _reasons(errors: Sequence[Finding]) -> str:
-    """One example of each kind of error, and how often it occurs."""
-    kinds: dict[str, list[Finding]] = {}
-    for error in errors:
-        kinds.setdefault(error.code, []).append(error)
-    reasons = []
-    for found in list(kinds.values())[:MAX_REASONS]:
-        place = found[0].place.strip(", ")
-        times = f" ({len(found)} times)" if len(found) > 1 else ""
-        reasons.append(f"{place}: {found[0].message}{times}" if place else f"{found[0].message}{times}")
-    return "; ".join(reasons) + (f"; and {len(kinds) - MAX_REASONS} other kinds" if len(kinds) > MAX_REASONS else "")
+def _hides_path(error: Finding) -> bool:
+    """Whether an error leaves open where the aircraft flies: no waypoints, no place, no height, heights of no kind."""
+    return error.code in ("coordinates", "height-mode") or (
+        error.code in ("height", "waypoint-count") and error.value in (None, 0.0)
+    )
 
 
 def _read_wayline(path: Path, parts: DjiParts, folder: Folder, findings: tuple[Finding, ...]) -> ReadMission:
@@ -62,7 +56,8 @@ def _read_wayline(path: Path, parts: DjiParts, folder: Folder, findings: tuple[F
         )
     is_relative = folder.height_mode == "relativeToStartPoint"
     is_ours = _is_ours(parts)
-    flown = Flight(folder, is_ours).points()
+    flight = Flight(folder, is_ours)
+    flown = flight.points()
     if is_ours:
         flown = [replace(point, stay=None) for point in flown]
     several = len(parts.waylines.folders) > 1
@@ -76,10 +71,16 @@ def _read_wayline(path: Path, parts: DjiParts, folder: Folder, findings: tuple[F
         finish=_FINISH.get(parts.waylines.config.finish_action, Finish.HOVER),
         climb_above_takeoff_m=parts.waylines.config.takeoff_security_height_m or 0.0,
         return_above_takeoff_m=parts.waylines.config.rth_height_m or 0.0,
-        speed_m_s=folder.speed_m_s,
+        speed_m_s=_possible(folder.speed_m_s),
+        transit_speed_m_s=_possible(parts.waylines.config.transitional_speed_m_s),
         stated_s=None if is_ours else folder.duration_s,
-        findings=findings,
+        findings=(*findings, *flight.findings),
     )
+
+
+def _possible(speed_m_s: float | None) -> float | None:
+    """A speed, or None where it is none."""
+    return speed_m_s if speed_m_s is not None and 0.0 < speed_m_s < math.inf else None
 
 
 def _is_ours(parts: DjiParts) -> bool:

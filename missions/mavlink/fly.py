@@ -14,7 +14,15 @@ from dataclasses import dataclass, field, replace
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.legs import bearing_deg, courses_deg, distance_m, point_between, shots_on_leg
+from missions.legs import (
+    are_too_many,
+    bearing_deg,
+    courses_deg,
+    distance_m,
+    point_between,
+    shots_on_leg,
+    too_many_shots,
+)
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MavlinkFile, MissionItem
 from missions.mavlink.places import RELATIVE_FRAMES, has_place, is_same_place, position_of
@@ -179,6 +187,12 @@ class MavlinkFlight:
         rise_m = self._metric_height_m(end) - self._metric_height_m(start)
         length_m = math.hypot(distance_m(start.lat_deg, start.lon_deg, end.lat_deg, end.lon_deg), rise_m)
         length = length_m / (self.speed_m_s or 1.0) if trigger.in_seconds else length_m
+        if are_too_many(length, trigger.every):
+            self.findings.append(
+                Finding(Severity.WARNING, "trigger", too_many_shots(length, trigger.every), self.place.rstrip(": "))
+            )
+            self.trigger = None
+            return []
         fractions = shots_on_leg(trigger.travelled, length, trigger.every)
         trigger.travelled += length
         if trigger.left is not None:
@@ -209,22 +223,23 @@ class MavlinkFlight:
             return None
         return wrap_heading_deg(yaw_deg)
 
-    def _angle(self, item: MissionItem, index: int, number: int) -> float:
-        """An angle of an item; pitch, the first, must be one that a camera can have."""
+    def _angle(self, item: MissionItem, index: int, number: int) -> float | None:
+        """An angle of an item; None, which is told, where it is none. Pitch, the first, must be one of a camera."""
         angle_deg = item.params[index]
         low, high = (-180.0, 90.0) if index == 0 else (-360.0, 360.0)
-        if not low <= angle_deg <= high:
-            raise MissionError(
-                f"{self.place}item {number}: param {index + 1} is {angle_deg:g}; expected an angle in deg"
-            )
-        return angle_deg
+        if low <= angle_deg <= high:
+            return angle_deg
+        text = f"param {index + 1} is {angle_deg:g}; expected an angle in deg, so it is not followed"
+        self.findings.append(Finding(Severity.WARNING, "angle", text, f"{self.place}item {number}"))
+        return None
 
     def condition_yaw(self, item: MissionItem, number: int) -> None:
         """CONDITION_YAW: an absolute heading, or a turn from the present one."""
         angle_deg, _, direction, is_relative = item.params[:4]
         if not math.isfinite(angle_deg):
-            raise MissionError(f"{self.place}item {number}: param 1 is {angle_deg:g}; expected an angle in deg")
-        if is_relative == 1.0:
+            text = f"param 1 is {angle_deg:g}; expected an angle in deg, so it is not followed"
+            self.findings.append(Finding(Severity.WARNING, "angle", text, f"{self.place}item {number}"))
+        elif is_relative == 1.0:
             turn_deg = -angle_deg if direction < 0 else angle_deg
             self.wanted_yaw_deg = None if self.nose_deg is None else wrap_heading_deg(self.nose_deg + turn_deg)
         else:
@@ -244,7 +259,7 @@ class MavlinkFlight:
         ):
             self.pitch_deg, self.gimbal_yaw_deg = 0.0, 0.0
             return
-        self.pitch_deg, self.gimbal_yaw_deg = self._angle(item, 0, number), self._angle(item, 2, number)
+        self.pitch_deg, self.gimbal_yaw_deg = self._angle(item, 0, number), self._angle(item, 2, number) or 0.0
 
     def gimbal_pitch_yaw(self, item: MissionItem, number: int) -> None:
         """DO_GIMBAL_MANAGER_PITCHYAW: pitch, and yaw from north where the yaw lock flag is set, else from the nose."""
@@ -253,7 +268,8 @@ class MavlinkFlight:
         if not math.isnan(pitch_deg):
             self.pitch_deg = self._angle(item, 0, number)
         if not math.isnan(yaw_deg):
-            self._angle(item, 1, number)
+            if self._angle(item, 1, number) is None:
+                return
             is_locked = math.isfinite(flags) and int(flags) & mavlink.GIMBAL_MANAGER_FLAGS_YAW_LOCK
             self.gimbal_north_deg, self.gimbal_yaw_deg = (yaw_deg, 0.0) if is_locked else (None, yaw_deg)
 

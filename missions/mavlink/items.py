@@ -26,6 +26,7 @@ from missions.legs import leg_lengths_m
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.px4_motion import px4_turn_s
 from missions.model import GeoPoint, HeightReference, Mission, Photo
+from planning.findings import Finding
 from planning.frames import wrap_heading_deg
 from planning.plan import ANGLE_DECIMALS
 
@@ -76,7 +77,8 @@ RallyPlace = tuple[float, float, float]
 class MavlinkFile:
     """What a mission file holds: items in order, without the home position that some files put before them.
 
-    `autopilot` and `cruise_speed_m_s` are None where the file does not say; `fences` are polygons to stay out of.
+    `autopilot` and `cruise_speed_m_s` are None where the file does not say; `fences` are polygons to stay out of;
+    `findings` are what had to be put right to read it.
     """
 
     items: tuple[MissionItem, ...]
@@ -85,6 +87,7 @@ class MavlinkFile:
     cruise_speed_m_s: float | None = None
     fences: tuple[Polygon, ...] = ()
     rally: tuple[RallyPlace, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
 
 RESERVED_ITEMS = 40

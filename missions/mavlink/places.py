@@ -10,6 +10,7 @@ from missions.legs import distance_m
 from missions.mavlink.items import MissionItem
 from missions.model import GeoPoint, ReadWaypoint
 from planning.errors import MissionError
+from planning.findings import Finding, Severity
 
 ABSOLUTE_FRAMES, RELATIVE_FRAMES, TERRAIN_FRAMES = (0, 5), (3, 6), (10, 11)
 
@@ -64,3 +65,13 @@ def is_same_place(a: ReadWaypoint, b: ReadWaypoint) -> bool:
     if low is None or high is None or abs(high - low) > SAME_POINT_M:
         return False
     return distance_m(a.lat_deg, a.lon_deg, b.lat_deg, b.lon_deg) <= SAME_POINT_M
+
+
+def home_of(lat_deg: float, lon_deg: float, altitude_amsl_m: float) -> tuple[GeoPoint | None, tuple[Finding, ...]]:
+    """The home position that a file names; None where it names none, or one that cannot be, which is told."""
+    if (lat_deg, lon_deg) == (0.0, 0.0):
+        return None, ()
+    if abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and abs(altitude_amsl_m) < 1e5:
+        return point_at_amsl(lat_deg, lon_deg, altitude_amsl_m), ()
+    text = f"its home position {lat_deg:g}, {lon_deg:g}, {altitude_amsl_m:g} m is not on the globe and is not used"
+    return None, (Finding(Severity.WARNING, "home", text),)

@@ -8,11 +8,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from missions.heights import altitude_amsl_m, point_at_amsl
+from missions.heights import altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MavlinkFile, MissionItem, Params, Polygon, RallyPlace
+from missions.mavlink.places import home_of
 from missions.model import GeoPoint, HeightReference
 from planning.errors import InputError, MissionError
+from planning.findings import Finding
 from planning.json_file import read_json
 
 PLAN_VERSION, MISSION_VERSION, FENCE_VERSION, RALLY_VERSION = 1, 2, 2, 2
@@ -109,7 +111,7 @@ def read_plan_json(path: Path) -> MavlinkFile:
     ):
         if found != expected:
             raise MissionError(f"{path}: {name} is {found}; expected {expected}; save it with a current QGroundControl")
-    home = _home(mission.get("plannedHomePosition"), path)
+    home, on_home = _home(mission.get("plannedHomePosition"))
     firmware = mission.get("firmwareType")
     autopilot = next((a for a in Autopilot if facts(a).firmware_type == firmware), None)
     speed = mission.get("hoverSpeed")
@@ -123,6 +125,7 @@ def read_plan_json(path: Path) -> MavlinkFile:
         float(speed) if _is_number(speed) and speed > 0 else None,
         tuple(_fences(content.get("geoFence"))),
         tuple(_rally(content.get("rallyPoints"))),
+        on_home,
     )
 
 
@@ -164,16 +167,11 @@ def _is_number(value: object) -> TypeGuard[int | float]:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def _home(position: Any, path: Path) -> GeoPoint | None:
+def _home(position: Any) -> tuple[GeoPoint | None, tuple[Finding, ...]]:
     """Planned home; 0, 0 means that it was never set."""
-    if not isinstance(position, list) or len(position) < 2 or not all(map(_is_number, position)):
-        return None
-    lat_deg, lon_deg = float(position[0]), float(position[1])
-    if (lat_deg, lon_deg) == (0.0, 0.0) or len(position) < 3:
-        return None
-    if abs(lat_deg) > 90.0 or abs(lon_deg) > 180.0:
-        raise MissionError(f"{path}: plannedHomePosition {lat_deg:g}, {lon_deg:g} is not on the globe")
-    return point_at_amsl(lat_deg, lon_deg, float(position[2]))
+    if not isinstance(position, list) or len(position) < 3 or not all(map(_is_number, position)):
+        return None, ()
+    return home_of(float(position[0]), float(position[1]), float(position[2]))
 
 
 def _fences(fence: Any) -> Iterator[Polygon]:

@@ -11,12 +11,14 @@ from pathlib import Path
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.heights import altitude_amsl_m, point_at_amsl
+from missions.heights import altitude_amsl_m
 from missions.mavlink.items import MavlinkFile, MissionItem
+from missions.mavlink.places import home_of
 from missions.model import GeoPoint
 from missions.safe_files import MAX_LINES, read_limited
 from planning.errors import MissionError
 from planning.files import check_lines
+from planning.findings import Finding, Severity
 
 N_COLUMNS = 12
 HOME_IN_LINE_0, NO_HOME = "110", "120"
@@ -69,15 +71,21 @@ def read_wpl(path: Path) -> MavlinkFile:
         for number, line in enumerate(lines[1:], 2)
         if line.strip() and not line.lstrip().startswith("#")
     ]
-    for place, (seq, _) in enumerate(items):
-        if seq != place:
-            raise MissionError(f"{path}: expected the items numbered from 0 in order, found {seq} in place {place}")
+    findings: tuple[Finding, ...] = ()
+    wrong = next((place for place, (seq, _) in enumerate(items) if seq != place), None)
+    if wrong is not None:
+        text = f"expected the items numbered from 0 in order, found {items[wrong][0]} in place {wrong}"
+        if sorted(seq for seq, _ in items) != list(range(len(items))):
+            raise MissionError(f"{path}: {text}")
+        items.sort(key=lambda item: item[0])
+        findings = (Finding(Severity.WARNING, "order", f"{text}; they are taken in the order of their numbers"),)
     home = None
     kept = [item for _, item in items]
     # Mission Planner writes command 0 where home was never set. A file that begins with a take-off has no home.
     if kept and header[1] == HOME_IN_LINE_0 and kept[0].command in (0, mavlink.MAV_CMD_NAV_WAYPOINT):
-        home = _home(kept.pop(0), path)
-    return MavlinkFile(tuple(kept), home)
+        home, on_home = home_of(*kept.pop(0).params[4:])
+        findings += on_home
+    return MavlinkFile(tuple(kept), home, findings=findings)
 
 
 def _read_line(line: str, place: str) -> tuple[int, MissionItem]:
@@ -90,12 +98,3 @@ def _read_line(line: str, place: str) -> tuple[int, MissionItem]:
     except ValueError as error:
         raise MissionError(f"{place}: expected numbers with a decimal point ({error})") from error
     return seq, MissionItem(command, frame, (p1, p2, p3, p4, p5, p6, p7))
-
-
-def _home(item: MissionItem, path: Path) -> GeoPoint | None:
-    lat_deg, lon_deg, altitude_m = item.params[4:]
-    if (lat_deg, lon_deg) == (0.0, 0.0):
-        return None
-    if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and abs(altitude_m) < 1e5):
-        raise MissionError(f"{path}: the home position {lat_deg:g}, {lon_deg:g}, {altitude_m:g} m is not on the globe")
-    return point_at_amsl(lat_deg, lon_deg, altitude_m)

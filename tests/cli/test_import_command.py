@@ -2,11 +2,14 @@
 
 import json
 import shutil
+import zipfile
 
+import numpy as np
 import pytest
 
 from missions.formats import read_missions
 from planning.plan_file import read_plan
+from planning.site_file import read_site
 
 ENDINGS = {"dji-kmz": ".kmz", "mavlink-plan": ".plan", "mavlink-wpl": ".waypoints", "kml": ".kml", "csv": ".csv"}
 
@@ -143,3 +146,63 @@ def test_wrong_values_are_refused_with_the_option_that_was_typed(reflight, pane,
     done = reflight("import", mission, "--site", pane / "site.json", "-o", tmp_path / "p.json", *options)
     assert message in done.error
     assert not (tmp_path / "p.json").exists()
+
+
+# --- without a site, and strictly ---
+
+
+@pytest.mark.parametrize("name", sorted(GOOD))
+def test_without_a_site_a_mission_gets_a_bare_one_beside_the_plan(reflight, shared_data, tmp_path, name):
+    out = tmp_path / "flown.plan.json"
+    done = reflight("import", shared_data / "missions" / name, "-o", out, "--json")
+    assert done.status == 0, done.err
+    assert done.json["views"] == GOOD[name]
+    assert done.json["site"] == str(tmp_path / "flown.site.json")
+    assert done.json["total"] == 0
+    site, plan = read_site(tmp_path / "flown.site.json"), read_plan(out)
+    assert site.site.is_bare
+    assert plan.site_sha256 == site.sha256
+    low, high = np.array(site.site.airspace.min_enu_m), np.array(site.site.airspace.max_enu_m)
+    path = np.array([point for sortie in plan.sorties for point in sortie.path_enu_m])
+    assert ((path[:, :2] > low[:2]) & (path[:, :2] < high[:2])).all()
+    assert (path[:, 2] < high[2]).all()
+    again = reflight("import", shared_data / "missions" / name, "--site", tmp_path / "flown.site.json", "-o", out)
+    assert again.status == 0, again.err
+    assert "the site has no panels that they could cover" in again.out
+
+
+def test_a_bare_site_takes_the_place_of_another_bare_one_only(reflight, pane, tmp_path):
+    mission, out = tmp_path / "m.csv", tmp_path / "m.plan.json"
+    reflight("export", pane / "plan.json", "--format", "csv", "-o", mission)
+    for _ in range(2):
+        assert reflight("import", mission, "-o", out).status == 0
+    out.unlink()
+    shutil.copy(pane / "site.json", tmp_path / "m.site.json")
+    before = (tmp_path / "m.site.json").read_bytes()
+    error = reflight("import", mission, "-o", out).error
+    assert "name it with --site" in error
+    assert (tmp_path / "m.site.json").read_bytes() == before
+    assert not out.exists()
+
+
+def test_missions_far_from_the_site_say_how_to_look_at_them(reflight, pane, shared_data, tmp_path):
+    file = shared_data / "missions" / "geoyee_m3t_waypoint.kmz"
+    error = reflight("import", file, "--site", pane / "site.json", "-o", tmp_path / "p.json").error
+    assert "Imported without one, the mission gets a bare site of its own" in error
+
+
+def test_strict_refuses_what_an_aircraft_would_refuse(reflight, shared_data, tmp_path):
+    path = tmp_path / "m.kmz"
+    with (
+        zipfile.ZipFile(shared_data / "missions" / "geoyee_m3t_waypoint.kmz") as real,
+        zipfile.ZipFile(path, "w") as bad,
+    ):
+        for name in real.namelist():
+            bad.writestr(name, real.read(name).replace(b"<wpml:waypointSpeed>10", b"<wpml:waypointSpeed>99"))
+    out = tmp_path / "p.json"
+    done = reflight("import", path, "-o", out, "--json")
+    assert done.status == 0, done.err
+    assert any("the vehicle would refuse it: the speed" in finding["message"] for finding in done.json["findings"])
+    out.unlink()
+    assert "aircraft would refuse this mission" in reflight("import", path, "-o", out, "--strict").error
+    assert not out.exists()

@@ -71,7 +71,6 @@ COMMANDS = {
     "export for DJI": f"export {PLAN} --site {{site}} --format dji-kmz -o {{out}}/m.kmz",
     "export for MAVLink": f"export {PLAN} --site {{site}} --format mavlink-wpl -o {{out}}/m.waypoints",
     "export as a table": f"export {PLAN} --site {{site}} --format csv -o {{out}}/m.csv",
-    "import": "import {mission} --site {site} -o {out}/p.json",
     "simulate": f"simulate {PLAN} {{site}} -o {{out}}/f.json",
     "report": f"report {PLAN} {{site}} --photos {{bare}}/photos -o {{out}}/f.json",
     "topup": f"topup {{bare}}/office.flight.json {PLAN} {{site}} -o {{out}}/t.json",

@@ -17,7 +17,7 @@ from missions.formats import read_missions
 from missions.mavlink.items import MavlinkFile, MissionItem, plain
 from missions.mavlink.read import read_mavlink
 from missions.model import FileFormat, ReadMission, Stay
-from missions.to_plan import PlanParts, flown_s, timed_route, viewpoints_and_sorties
+from missions.to_plan import CORNER_SHARE, PlanParts, flown_s, timed_route, viewpoints_and_sorties
 from planning.catalogue import profile
 from planning.checks import check_plan
 from planning.plan import FlightRules, Plan
@@ -85,7 +85,7 @@ def test_photos_at_waypoints_stop_only_where_the_vehicle_does() -> None:
     ).sorties[0]
     assert len(passing.in_passing_ids) == 2
     assert len(holding.in_passing_ids) == 1
-    assert holding.duration_s > passing.duration_s + 4.0
+    assert holding.duration_s > passing.duration_s + 3.0
 
 
 def test_a_delay_is_a_stop_and_lasts_as_long_as_it_says() -> None:
@@ -116,23 +116,22 @@ def lengths(places: list[tuple[float, float, float]]) -> np.ndarray:
 
 
 @given(places=PLACES, speed=st.floats(0.5, 15.0), cut=st.floats(0.0, 20.0))
-def test_flying_through_is_no_slower_than_stopping_and_no_faster_than_the_speed_allows(
+def test_flying_through_is_hardly_slower_than_stopping_and_no_faster_than_the_speed_allows(
     places: list[tuple[float, float, float]], speed: float, cut: float
 ) -> None:
     stops = flown_s(timed_route(places, [Stay()] * len(places), speed), LIMITS)
     through = flown_s(timed_route(places, [Stay(cut)] * len(places), speed), LIMITS)
-    assert through <= stops + 1e-6
+    # A narrow arc may take a little longer than stopping, as it is flown with half of the acceleration.
+    assert through <= 1.1 * stops + 0.1
     # A corner saves at most the difference between twice its cut and nothing.
     shortest = float((lengths(places)).sum()) - 2.0 * cut * max(0, len(places) - 2)
-    # Climbing, the way itself may be flown faster than its level part.
-    level = float(np.linalg.norm(np.diff(np.array(places)[:, :2], axis=0), axis=1).sum()) - 2.0 * cut * len(places)
-    assert through >= max(0.0, min(shortest, level)) / speed - 0.02
+    assert through >= max(0.0, shortest) / speed - 0.02
 
 
 @given(places=PLACES)
 def test_stopping_everywhere_is_what_plans_reckon_with(places: list[tuple[float, float, float]]) -> None:
     legs = leg_times_s(np.diff(np.array(places), axis=0), LIMITS)
-    assert flown_s(timed_route(places, [Stay()] * len(places), 15.0), LIMITS) == pytest.approx(
+    assert flown_s(timed_route(places, [Stay()] * len(places), 1000.0), LIMITS) == pytest.approx(
         float(legs.sum()), abs=1e-3 * len(places)
     )
 
@@ -154,7 +153,7 @@ def test_places_on_a_leg_change_nothing(places: list[tuple[float, float, float]]
 def test_a_corner_takes_as_long_as_a_slow_integration_says(speed: float, radius: float) -> None:
     """A right angle cut by an arc: accelerate, brake to the arc's speed, around it, accelerate, brake; step by step."""
     a, length = LIMITS.acceleration_m_s2, 60.0
-    corner = min(speed, math.sqrt(a * radius))
+    corner = min(speed, math.sqrt(CORNER_SHARE * a * radius))
     straight = length - radius
     steps = np.linspace(0.0, straight, 20_001)
     middle = (steps[1:] + steps[:-1]) / 2.0

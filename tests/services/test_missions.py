@@ -67,7 +67,7 @@ def test_a_mission_that_comes_back_covers_what_the_plan_covers(folder, tmp_path,
     plan, site = read_plan(folder / "roof.plan.json"), folder / "roof.site.json"
     paths, findings = export_plan(folder / "roof.plan.json", file_format, tmp_path / f"m{SUFFIXES[file_format][0]}")
     assert not [finding for finding in findings if finding.code in ("file-name", "not-ready", "site-changed")]
-    back, _ = import_missions(paths, site, tmp_path / "back.json")
+    back, _, _ = import_missions(paths, site, tmp_path / "back.json")
     assert read_plan(tmp_path / "back.json") == back
     assert back.coverage.total == plan.coverage.total
     # Missions hold angles to 0.01 degrees: a centroid on the edge of a picture may fall out of it or into it.

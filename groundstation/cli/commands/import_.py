@@ -20,7 +20,13 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
     add = parser.add_argument
     add("file", type=Path, nargs="+", metavar="FILE", help="mission file")
-    add("--site", type=Path, required=True, metavar="SITE", help="site file the mission is flown at")
+    add(
+        "--site",
+        type=Path,
+        metavar="SITE",
+        help="site file the mission is flown at (default: a bare site of the mission's own, written beside the plan)",
+    )
+    add("--strict", action="store_true", help="refuse a mission that an aircraft would refuse")
     add("-o", "--out", type=json_file, required=True, metavar="PLAN", help="plan file to write")
     add_profile_argument(parser)
     add("--min-distance", type=number, default=10.0, metavar="M", help="for the reachable bound (default 10 m)")
@@ -38,15 +44,24 @@ def run(options: argparse.Namespace) -> int:
 
     with in_words_of_options():
         constraints = Constraints(options.min_distance, options.step, options.occlusion)
-    plan, findings = run_job(
+    plan, findings, site = run_job(
         "import",
-        lambda context: import_missions(options.file, options.site, options.out, options.profile, constraints, context),
+        lambda context: import_missions(
+            options.file,
+            options.site,
+            options.out,
+            options.profile,
+            constraints,
+            context,
+            strict=options.strict,
+        ),
     )
     coverage = plan.coverage
     if options.json:
         print_json(
             {
                 "plan": str(options.out),
+                "site": str(site),
                 "views": len(plan.viewpoints),
                 "sorties": len(plan.sorties),
                 "covered": coverage.covered,
@@ -57,11 +72,17 @@ def run(options: argparse.Namespace) -> int:
             }
         )
     else:
-        print(
-            f"{options.out}: {counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')} cover "
-            f"{coverage.covered} of {coverage.total} sections; no flight can cover more than "
-            f"{coverage.reachable_upper_bound}"
-        )
+        views = f"{counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')}"
+        if coverage.total:
+            print(
+                f"{options.out}: {views} cover {coverage.covered} of {coverage.total} sections; no flight can cover "
+                f"more than {coverage.reachable_upper_bound}"
+            )
+        else:
+            print(f"{options.out}: {views}; the site has no panels that they could cover")
+        if options.site is None:
+            print(f"{site}: a bare site around them, without building and panels")
         print_findings(findings)
-        print_next("check", options.out, options.site)
+        if coverage.total:
+            print_next("check", options.out, site)
     return 0

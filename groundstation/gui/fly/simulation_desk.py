@@ -56,6 +56,8 @@ class SimulationDesk(QObject):
         is_busy = any(job.id == self._looking_id for job in self._workspace.jobs())
         if plan is None or site_model is None or number > len(plan.sorties) or is_busy:
             return
+        if site_model.site.n_panels == 0:
+            return
         asked = (number, self.conditions, dict(self.wishes))
 
         def work(_context: JobContext) -> tuple[EffectChoice, ...]:

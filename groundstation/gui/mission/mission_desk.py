@@ -11,11 +11,13 @@ from groundstation.gui.workspace import Workspace
 from groundstation.services.document import PlanEntry
 from groundstation.services.jobs import JobContext
 from groundstation.services.mission_compare import MissionComparison, compare_with_plan
-from groundstation.services.mission_files import missions_as_plan, read_mission_files
+from groundstation.services.mission_files import bare_site, missions_as_plan, plan_of_missions, read_mission_files
 from groundstation.services.places import item_of_place
 from groundstation.services.preflight import Preflight, preflight
+from groundstation.services.site_sources import with_new_site
 from planning.findings import Finding, Severity
 from planning.plan import Plan
+from planning.site import SiteModel
 
 MAX_SAID = 5
 """Findings of one import that are said one by one; the check lists all."""
@@ -47,6 +49,12 @@ class MissionDesk(QObject):
         return None if document.site is None or document.current is None else document.current.plan
 
     @property
+    def can_check(self) -> bool:
+        """Whether there is a plan, and panels that it is to photograph: a bare site has none."""
+        site_model = self._workspace.document.site
+        return self.plan is not None and site_model is not None and site_model.site.n_panels > 0
+
+    @property
     def is_checking(self) -> bool:
         """Whether a check runs or waits."""
         return any(job.id == self._check_id for job in self._workspace.jobs())
@@ -54,7 +62,7 @@ class MissionDesk(QObject):
     def check(self) -> None:
         """Check the current plan; one check at a time."""
         plan, site_model = self.plan, self._workspace.document.site
-        if plan is None or site_model is None or self.is_checking:
+        if plan is None or site_model is None or not self.can_check or self.is_checking:
             return
 
         def work(context: JobContext) -> Preflight:
@@ -63,24 +71,32 @@ class MissionDesk(QObject):
         self._check_id = self._workspace.start(self.tr("Check"), work, self.checked.emit).id
 
     def import_files(self, paths: Sequence[Path]) -> None:
-        """Take mission files of one flight over as a plan of the project."""
+        """Take mission files of one flight over as a plan of the project; without a site they get a bare one."""
         document = self._workspace.document
         site_model, request, paths = document.site, document.request, tuple(paths)
-        if site_model is None or not paths:
+        if not paths:
             return
         name = paths[0].stem
 
-        def work(context: JobContext) -> tuple[Plan, tuple[Finding, ...]]:
-            return missions_as_plan(paths, site_model, request.profile_id, request.constraints, context)
+        def work(context: JobContext) -> tuple[SiteModel | None, Plan, tuple[Finding, ...]]:
+            wanted = request.profile_id, request.constraints, context
+            if site_model is not None:
+                return None, *missions_as_plan(paths, site_model, *wanted)
+            read = read_mission_files(paths)
+            bare, on_site = bare_site(read)
+            plan, findings = plan_of_missions(read, bare, *wanted)
+            return bare, plan, (*on_site, *findings)
 
-        def done(result: tuple[Plan, tuple[Finding, ...]]) -> None:
-            plan, findings = result
+        def done(result: tuple[SiteModel | None, Plan, tuple[Finding, ...]]) -> None:
+            bare, plan, findings = result
             now = self._workspace.document
             if now.site is not site_model:
                 self._workspace.say(
                     Severity.WARNING, self.tr("{0} was read for a site that has changed; import again").format(name)
                 )
                 return
+            if bare is not None:
+                now = with_new_site(now, bare)
             entry = PlanEntry(now.free_plan_id(), name, plan)
             self._workspace.change(self.tr("Import {0}").format(name), now.with_plan(entry))
             self._workspace.say(

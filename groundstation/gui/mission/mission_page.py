@@ -142,7 +142,7 @@ class MissionPage(QObject):
             (
                 self.tr("Import mission files ..."),
                 "Ctrl+Shift+I",
-                self.tr("As a plan of this project"),
+                self.tr("As a plan of this project; without a site, on a bare one of its own"),
                 self._choose_import,
             ),
             (
@@ -228,11 +228,10 @@ class MissionPage(QObject):
             self.findings.set_stale()
             if is_checking:
                 self.findings.set_checking()
-        self.findings.set_can_check(plan is not None and not is_checking)
+        self.findings.set_can_check(self.desk.can_check and not is_checking)
         for action in (self._export, self._compare):
             action.setEnabled(plan is not None)
-        self._check.setEnabled(plan is not None and not is_checking)
-        self._import.setEnabled(self._workspace.document.site is not None)
+        self._check.setEnabled(self.desk.can_check and not is_checking)
         self._brief.setEnabled(plan is not None and self._is_fresh())
 
     def _take_preflight(self, found: Preflight) -> None:

@@ -278,7 +278,7 @@ class PlanDesk(QObject):
             self._workspace.cancel(self._taking, quietly=True)
             self._taking = None
         self._not_taken = ""
-        if entry is None or site is None:
+        if entry is None or site is None or site.site.n_panels == 0:  # nothing that an imported mission could show
             self._set_in_hand(None)
             return
         plan = entry.plan

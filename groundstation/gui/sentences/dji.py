@@ -108,10 +108,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "the leg is longer than aircraft accept; put a waypoint in between"),
     QT_TRANSLATE_NOOP("Sentences", "the leg is unusually long"),
     QT_TRANSLATE_NOOP("Sentences", "the leg is shorter than documented; some aircraft refuse it"),
-    QT_TRANSLATE_NOOP(
-        "Sentences",
-        "the leg is vertical, so there is no course to follow; use fixed or smoothTransition",
-    ),
     QT_TRANSLATE_NOOP("Sentences", "waypointTurnMode '{0}' is not known"),
     QT_TRANSLATE_NOOP("Sentences", "the first and the last waypoint must be of a stopping type"),
     QT_TRANSLATE_NOOP("Sentences", "{0} needs a waypointTurnDampingDist"),

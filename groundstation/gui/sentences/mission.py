@@ -71,7 +71,6 @@ SENTENCES = (
         "import the mission file itself",
     ),
     QT_TRANSLATE_NOOP("Sentences", "damaged: a sortie lacks what Reflight writes ({0}); export it again"),
-    QT_TRANSLATE_NOOP("Sentences", "a camera trigger every {0} would take {1} photos on one leg"),
     QT_TRANSLATE_NOOP("Sentences", "item {0:n}"),
     QT_TRANSLATE_NOOP("Sentences", "the mission has {0} items, {1} keeps {2}; plan it with shorter sorties"),
     QT_TRANSLATE_NOOP("Sentences", "item {0:n} (command {1})"),
@@ -130,8 +129,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "jumps are not followed: each item counts once"),
     QT_TRANSLATE_NOOP("Sentences", "{0}item {1:n}"),
     QT_TRANSLATE_NOOP("Sentences", "{0}heights above take-off and above sea level are mixed, and home is not known"),
-    QT_TRANSLATE_NOOP("Sentences", "{0}item {1:n}: param {2} is {3}; expected an angle in deg"),
-    QT_TRANSLATE_NOOP("Sentences", "{0}item {1:n}: param 1 is {2}; expected an angle in deg"),
     QT_TRANSLATE_NOOP("Sentences", "a region of interest of mode {0} is not followed"),
     QT_TRANSLATE_NOOP("Sentences", "a photo is taken before the first waypoint, so where is not known; it is left out"),
     QT_TRANSLATE_NOOP("Sentences", "its position means here, but nothing says where that is"),
@@ -157,7 +154,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "expected numbers for command and frame, got {0} and {1}"),
     QT_TRANSLATE_NOOP("Sentences", "expected params to be 7 numbers or null, got {0}"),
     QT_TRANSLATE_NOOP("Sentences", "expected a list, got {0}"),
-    QT_TRANSLATE_NOOP("Sentences", "plannedHomePosition {0}, {1} is not on the globe"),
     QT_TRANSLATE_NOOP("Sentences", "the mission has no waypoint, so there is nothing to fly"),
     QT_TRANSLATE_NOOP("Sentences", "the vehicle would refuse it: {0}"),
     QT_TRANSLATE_NOOP("Sentences", "expected text, found other bytes at offset {0}"),
@@ -165,7 +161,6 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "expected the items numbered from 0 in order, found {0} in place {1}"),
     QT_TRANSLATE_NOOP("Sentences", "expected {0} columns, found {1}"),
     QT_TRANSLATE_NOOP("Sentences", "expected numbers with a decimal point ({0})"),
-    QT_TRANSLATE_NOOP("Sentences", "the home position {0}, {1}, {2} m is not on the globe"),
     QT_TRANSLATE_NOOP("Sentences", "damaged or no zip archive ({0}); a KMZ is one; copy it again"),
     QT_TRANSLATE_NOOP("Sentences", "holds {0} files; expected at most {1}"),
     QT_TRANSLATE_NOOP("Sentences", "holds the path '{0}', which leads out of it; refused as hostile"),
@@ -179,7 +174,8 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "the mission has no waypoints"),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "the mission '{0}' is {1} km from the site's home; expected at most {2} km; is it the right site?",
+        "the mission '{0}' is {1} km from the site's home; expected at most {2} km; is it the right site? Imported "
+        "without one, the mission gets a bare site of its own, to look at it",
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
@@ -243,4 +239,17 @@ SENTENCES = (
         "{0} photos that the imported mission takes in passing are stops in these files, so the sortie takes "
         "{1} s instead of {2} s",
     ),
+    QT_TRANSLATE_NOOP("Sentences", "the leg is vertical, so there is no course to follow: the nose stays as it is"),
+    QT_TRANSLATE_NOOP("Sentences", "param {0} is {1}; expected an angle in deg, so it is not followed"),
+    QT_TRANSLATE_NOOP("Sentences", "param 1 is {0}; expected an angle in deg, so it is not followed"),
+    QT_TRANSLATE_NOOP("Sentences", "a camera trigger every {0} would take {1} photos on one leg; it is not followed"),
+    QT_TRANSLATE_NOOP("Sentences", "its home position {0}, {1}, {2} m is not on the globe and is not used"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}; they are taken in the order of their numbers"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "its file does not say where it takes off, so home is below its first waypoint, at an assumed height;"
+        " what depends on that height is only to look at",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "the vehicle would refuse this mission: {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "expected viewpoints of the sortie, got {0}"),
 )

@@ -88,7 +88,7 @@ def opened(planned, **changes):
 
 def test_empty_page_says_what_to_do_first(page, workspace, planned):
     assert "Open or import a site first" in page._summary.text()
-    assert not any(action.isEnabled() for action in page.actions())
+    assert [action.text() for action in page.actions() if action.isEnabled()] == ["Import mission files ..."]
     workspace.session.open(Document(site=planned[0]), None)
     assert "Plan a flight on the Plan tab" in page._summary.text()
     assert [action.text() for action in page.actions() if action.isEnabled()] == ["Import mission files ..."]
@@ -301,6 +301,23 @@ def test_import_makes_a_plan_that_undo_takes_away(page, workspace, planned, idle
     idle()
     workspace.session.undo()
     assert workspace.document.plans == ()
+
+
+def test_a_mission_without_a_site_brings_a_bare_one_of_its_own(page, workspace, idle, said, shared_data):
+    workspace.session.open(Document(), None)
+    page.desk.import_files([shared_data / "missions" / "geoyee_m3d_curtainwall_slope_mapping2d.kmz"])
+    idle(lambda: workspace.document.current is not None)
+    idle()
+    site, plan = workspace.document.site.site, workspace.document.current.plan
+    assert (site.n_panels, site.building_mesh) == (0, None)
+    assert plan.site_sha256 == workspace.document.site.sha256
+    assert len(plan.viewpoints) == 46
+    assert len(plan.sorties[0].in_passing_ids) == 46
+    assert not [message.text for message in said if message.severity is Severity.ERROR]
+    page.desk.check()
+    idle()
+    workspace.session.undo()
+    assert workspace.document.site is None
 
 
 def test_files_that_are_no_missions_are_refused_by_name(page, workspace, planned, idle, said, tmp_path):

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import math
+import re
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -250,3 +252,81 @@ def test_time_lapse_runs_from_start_to_stop() -> None:
 def test_trigger_that_takes_no_photo_gives_none() -> None:
     timed = group(0, 2, "multipleTiming", action("gimbalRotate", gimbalPitchRotateAngle=5, **PITCH), param=2.0)
     assert photos(waypoint(0, "fixed", timed), waypoint(1), waypoint(2)) == []
+
+
+# --- what an aircraft would refuse ---
+
+WPMZ = "wpmz/waylines.wpml"
+
+REFUSED = {
+    "vertical legs": (r"<coordinates>[^<]*</coordinates>", "<coordinates>114.0,22.0</coordinates>", ""),
+    "speed": (r"<wpml:(waypointSpeed|autoFlightSpeed)>[^<]*<", r"<wpml:\1>99<", "speed"),
+    "no speed": (r"<wpml:(waypointSpeed|autoFlightSpeed)>[^<]*<", r"<wpml:\1>-1<", "speed"),
+    "turn mode": (r"<wpml:waypointTurnMode>[^<]*<", "<wpml:waypointTurnMode>loop<", "turn-mode"),
+    "heading mode": (r"<wpml:waypointHeadingMode>[^<]*<", "<wpml:waypointHeadingMode>spin<", "heading-mode"),
+    "group ids": (r"<wpml:actionGroupId>[^<]*<", "<wpml:actionGroupId>0<", "group-id"),
+    "pitch": (r"<wpml:gimbalPitchRotateAngle>[^<]*<", "<wpml:gimbalPitchRotateAngle>-900<", "gimbal"),
+    "yaw": (r"<wpml:aircraftHeading>[^<]*<", "<wpml:aircraftHeading>nan<", "heading"),
+    "indices": (r"<wpml:index>[^<]*<", "<wpml:index>7<", "waypoint-index"),
+    "aircraft": (r"<wpml:droneEnumValue>[^<]*<", "<wpml:droneEnumValue>x<", "garbled"),
+    "security height": (r"<wpml:takeOffSecurityHeight>[^<]*<", "<wpml:takeOffSecurityHeight>0<", "security-height"),
+    "height": (r"<wpml:executeHeight>[^<]*<", "<wpml:executeHeight>5000<", "height"),
+}
+"""Changes to every element of a kind: what is looked for, what takes its place, and the code that tells it."""
+
+
+def changed(folder: Path, real: Path, pattern: str, instead: str) -> Path:
+    path = folder / "m.kmz"
+    with zipfile.ZipFile(real) as original, zipfile.ZipFile(path, "w") as edited:
+        for name in original.namelist():
+            content = original.read(name)
+            if name == WPMZ:
+                content = re.sub(pattern, instead, content.decode()).encode()
+            edited.writestr(name, content)
+    return path
+
+
+@pytest.mark.parametrize("name", ["djisdk_psdk_m3e_waypoint_v3_test.kmz", "geoyee_m3t_waypoint.kmz"])
+@pytest.mark.parametrize("change", REFUSED)
+def test_what_an_aircraft_would_refuse_is_read_and_told(
+    shared_data: Path, tmp_path: Path, change: str, name: str
+) -> None:
+    pattern, instead, _ = REFUSED[change]
+    real = shared_data / "missions" / name
+    path = changed(tmp_path, real, pattern, instead)
+    (mission,), (plain,) = read_dji(path), read_dji(real)
+    assert not [finding for finding in mission.findings if finding.severity is Severity.ERROR]
+    assert mission.n_photos >= plain.n_photos // 2
+    told = [finding for finding in mission.findings if finding.message.startswith("the vehicle would refuse it: ")]
+    if told:
+        with pytest.raises(MissionError, match="aircraft would refuse this mission"):
+            read_dji(path, strict=True)
+
+
+def test_each_kind_of_refusal_is_told_in_one_of_the_files(shared_data: Path, tmp_path: Path) -> None:
+    for pattern, instead, code in REFUSED.values():
+        if not code:
+            continue
+        codes = set()
+        for name in ("djisdk_psdk_m3e_waypoint_v3_test.kmz", "geoyee_m3t_waypoint.kmz"):
+            for mission in read_dji(changed(tmp_path, shared_data / "missions" / name, pattern, instead)):
+                codes |= {f.code for f in mission.findings if "would refuse" in f.message}
+        assert any(code in found for found in codes), (code, codes)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "instead", "said"),
+    [
+        (r"<coordinates>[^<]*</coordinates>", "<coordinates>500,22</coordinates>", "not on the globe"),
+        (r"<coordinates>[^<]*</coordinates>", "", "no coordinates"),
+        (r"<wpml:executeHeight>[^<]*<", "<wpml:executeHeight>high<", "no executeHeight"),
+        (r"<wpml:executeHeightMode>[^<]*<", "<wpml:executeHeightMode>aboveGroundLevel<", "executeHeightMode is"),
+        (r"(?s)<Placemark>.*</Placemark>", "", "no waypoints"),
+    ],
+)
+def test_a_path_that_is_not_in_the_file_is_refused(
+    shared_data: Path, tmp_path: Path, pattern: str, instead: str, said: str
+) -> None:
+    real = shared_data / "missions" / "djisdk_psdk_m3e_waypoint_v3_test.kmz"
+    with pytest.raises(MissionError, match=said):
+        read_dji(changed(tmp_path, real, pattern, instead))

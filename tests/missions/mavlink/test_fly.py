@@ -208,9 +208,19 @@ def test_photo_before_the_first_waypoint_is_left_out_and_said() -> None:
 
 
 @pytest.mark.parametrize("pitch", [-9000.0, 91.0, math.inf])
-def test_pitch_that_is_no_angle_is_refused(pitch: float) -> None:
-    with pytest.raises(MissionError, match=r"item 2: param 1 is .* expected an angle"):
-        read(TAKEOFF, plain(205, pitch, 0, 0, 0, 0, 0, 2), FIRST, SHOOT)
+def test_pitch_that_is_no_angle_is_told_and_not_followed(pitch: float) -> None:
+    mission = read(TAKEOFF, plain(205, pitch, 0, 0, 0, 0, 0, 2), FIRST, SHOOT)
+    (told,) = [finding for finding in mission.findings if finding.code == "angle"]
+    assert "param 1 is" in told.message
+    assert told.place.endswith("item 2")
+    assert mission.waypoints[1].photos[0].gimbal_pitch_deg is None
+
+
+@pytest.mark.parametrize("item", [plain(115, NAN), plain(1000, 0.0, 9000.0), plain(206, 1e-4), plain(214, 1e-3)])
+def test_what_cannot_be_followed_leaves_the_path(item: MissionItem) -> None:
+    mission = read(TAKEOFF, FIRST, item, SECOND, speed=5.0)
+    assert len(mission.waypoints) == 3
+    assert {finding.code for finding in mission.findings} & {"angle", "trigger"}
 
 
 def test_waypoint_at_0_0_is_where_the_vehicle_is() -> None:

@@ -147,7 +147,6 @@ def test_structure_scan_is_refused_because_its_items_are_not_in_the_file(tmp_pat
         (plan_of(item(16, 0, 0, 0, 0, 52.0, 5.0, None)), "not on the globe"),
         (plan_of(item(16, 0, 0, 0, 0, 52.0, 5.0, 30, frame=10)), "counts from the terrain"),
         (plan_of(item(16, 0, 0, 0, 0, 52.0, 5.0, 30, frame=1)), "frame 1 does not place it"),
-        (plan_of(plannedHomePosition=[95, 5, 0]), "plannedHomePosition 95, 5 is not on the globe"),
     ],
 )  # fmt: skip
 def test_wrong_plan_is_refused_with_the_reason(tmp_path: Path, content: Any, message: str) -> None:
@@ -184,3 +183,12 @@ def test_rally_points_of_the_site_go_into_the_plan_and_come_back(tmp_path: Path)
 def test_rally_points_that_are_none_are_left_out(tmp_path: Path, points: Any) -> None:
     content = plan_of(item(16, 0, 0, 0, 0, 52.0, 5.0, 10.0)) | {"rallyPoints": {"points": points, "version": 2}}
     assert read_plan_json(plan_file(tmp_path, content)).rally == ()
+
+
+def test_a_home_that_cannot_be_is_told_and_not_used(tmp_path: Path) -> None:
+    content = plan_of(item(16, 0, 0, 0, 0, 52.0, 5.0, 30), plannedHomePosition=[95, 5, 0])
+    path = tmp_path / "m.plan"
+    path.write_text(json.dumps(content))
+    file = read_plan_json(path)
+    assert file.home is None
+    assert "home position 95, 5, 0 m is not on the globe" in file.findings[0].message

@@ -100,7 +100,6 @@ class TestRealFiles:
             f"QGC WPL 110\n{HOME}\n3\t0\t3\t16\t0\t0\t0\t0\t52.0\t5.0\t25\t1",
             "numbered from 0 in order, found 3 in place 1",
         ),
-        ("QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t152.0\t5.0\t10.0\t1", "home position 152, 5, 10 m is not on the globe"),
         (f"QGC WPL 110\n{HOME}\n", "no waypoint"),
         (f"QGC WPL 110\n{HOME}\n1\t0\t3\t16\t0\t0\t0\t0\t52.0\t5.0\tinf\t1", "not on the globe"),
     ],
@@ -115,3 +114,23 @@ def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
     path.write_bytes(b"QGC WPL 110\n\xff\xfe\x00")
     with pytest.raises(MissionError, match="found other bytes at offset 12"):
         read_missions(path)
+
+
+def test_a_home_that_cannot_be_is_told_and_not_used(tmp_path: Path) -> None:
+    path = tmp_path / "m.waypoints"
+    path.write_text(
+        "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t152.0\t5.0\t10.0\t1\n1\t0\t3\t16\t0\t0\t0\t0\t52.0\t5.0\t25\t1"
+    )
+    file = read_wpl(path)
+    assert file.home is None
+    assert len(file.items) == 1
+    assert "home position 152, 5, 10 m is not on the globe" in file.findings[0].message
+
+
+def test_items_out_of_order_are_taken_by_their_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "m.waypoints"
+    lines = [f"{k}\t0\t3\t16\t0\t0\t0\t0\t52.{k}\t5.0\t25\t1" for k in (0, 2, 1)]
+    path.write_text("\n".join(["QGC WPL 110", *lines]))
+    file = read_wpl(path)
+    assert [item.params[4] for item in file.items] == [52.1, 52.2]
+    assert "taken in the order of their numbers" in file.findings[0].message
