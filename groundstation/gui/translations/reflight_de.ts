@@ -2843,10 +2843,6 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Missionsdateien importieren ...</translation>
     </message>
     <message>
-        <source>As a plan of this project</source>
-        <translation>Als Plan dieses Projekts</translation>
-    </message>
-    <message>
         <source>Compare with file ...</source>
         <translation>Mit Datei vergleichen ...</translation>
     </message>
@@ -2877,6 +2873,10 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>No site</source>
         <translation>Kein Standort</translation>
+    </message>
+    <message>
+        <source>As a plan of this project; without a site, on a bare one of its own</source>
+        <translation>Als Plan dieses Projekts; ohne Standort auf einem leeren eigenen</translation>
     </message>
     <message>
         <source>Open or import a site first, on the Site tab.</source>
@@ -5661,10 +5661,6 @@ Take it over?</source>
         <translation>die Strecke ist kürzer als dokumentiert; manche Fluggeräte lehnen sie ab</translation>
     </message>
     <message>
-        <source>the leg is vertical, so there is no course to follow; use fixed or smoothTransition</source>
-        <translation>die Strecke ist senkrecht, es gibt also keinen Kurs zum Folgen; fixed oder smoothTransition nehmen</translation>
-    </message>
-    <message>
         <source>waypointTurnMode &apos;{0}&apos; is not known</source>
         <translation>waypointTurnMode &apos;{0}&apos; ist nicht bekannt</translation>
     </message>
@@ -5961,10 +5957,6 @@ Take it over?</source>
         <translation>beschädigt: Einem Einsatz fehlt, was Reflight schreibt ({0}); neu exportieren</translation>
     </message>
     <message>
-        <source>a camera trigger every {0} would take {1} photos on one leg</source>
-        <translation>ein Kameraauslöser alle {0} würde auf einer Strecke {1} Fotos machen</translation>
-    </message>
-    <message>
         <source>item {0:n}</source>
         <translation>Element {0:n}</translation>
     </message>
@@ -6097,12 +6089,44 @@ Take it over?</source>
         <translation>{0}Höhen über Start und über dem Meer sind gemischt, und der Startplatz ist nicht bekannt</translation>
     </message>
     <message>
-        <source>{0}item {1:n}: param {2} is {3}; expected an angle in deg</source>
-        <translation>{0}Element {1:n}: Parameter {2} ist {3}; erwartet wurde ein Winkel in Grad</translation>
+        <source>the mission &apos;{0}&apos; is {1} km from the site&apos;s home; expected at most {2} km; is it the right site? Imported without one, the mission gets a bare site of its own, to look at it</source>
+        <translation>die Mission &apos;{0}&apos; liegt {1} km vom Startplatz des Standorts; erwartet wurden höchstens {2} km; ist es der richtige Standort? Ohne Standort importiert, bekommt die Mission einen leeren eigenen, um sie anzusehen</translation>
     </message>
     <message>
-        <source>{0}item {1:n}: param 1 is {2}; expected an angle in deg</source>
-        <translation>{0}Element {1:n}: Parameter 1 ist {2}; erwartet wurde ein Winkel in Grad</translation>
+        <source>the leg is vertical, so there is no course to follow: the nose stays as it is</source>
+        <translation>die Strecke ist senkrecht, es gibt also keinen Kurs, dem zu folgen wäre: die Nase bleibt, wie sie ist</translation>
+    </message>
+    <message>
+        <source>param {0} is {1}; expected an angle in deg, so it is not followed</source>
+        <translation>Parameter {0} ist {1}; erwartet wurde ein Winkel in Grad, er wird also nicht befolgt</translation>
+    </message>
+    <message>
+        <source>param 1 is {0}; expected an angle in deg, so it is not followed</source>
+        <translation>Parameter 1 ist {0}; erwartet wurde ein Winkel in Grad, er wird also nicht befolgt</translation>
+    </message>
+    <message>
+        <source>a camera trigger every {0} would take {1} photos on one leg; it is not followed</source>
+        <translation>ein Kameraauslöser alle {0} würde auf einer Strecke {1} Fotos machen; er wird nicht befolgt</translation>
+    </message>
+    <message>
+        <source>its home position {0}, {1}, {2} m is not on the globe and is not used</source>
+        <translation>ihr Startplatz {0}, {1}, {2} m liegt nicht auf dem Globus und wird nicht verwendet</translation>
+    </message>
+    <message>
+        <source>{0}; they are taken in the order of their numbers</source>
+        <translation>{0}; sie gelten in der Reihenfolge ihrer Nummern</translation>
+    </message>
+    <message>
+        <source>its file does not say where it takes off, so home is below its first waypoint, at an assumed height; what depends on that height is only to look at</source>
+        <translation>ihre Datei sagt nicht, wo sie startet, also liegt der Startplatz unter ihrem ersten Wegpunkt, in einer angenommenen Höhe; was von dieser Höhe abhängt, ist nur zum Ansehen</translation>
+    </message>
+    <message>
+        <source>the vehicle would refuse this mission: {0}</source>
+        <translation>das Fluggerät würde diese Mission ablehnen: {0}</translation>
+    </message>
+    <message>
+        <source>expected viewpoints of the sortie, got {0}</source>
+        <translation>erwartet wurden Aufnahmen des Einsatzes, gefunden {0}</translation>
     </message>
     <message>
         <source>a region of interest of mode {0} is not followed</source>
@@ -6173,10 +6197,6 @@ Take it over?</source>
         <translation>erwartet wurde eine Liste, gefunden: {0}</translation>
     </message>
     <message>
-        <source>plannedHomePosition {0}, {1} is not on the globe</source>
-        <translation>plannedHomePosition {0}, {1} liegt nicht auf der Erde</translation>
-    </message>
-    <message>
         <source>the mission has no waypoint, so there is nothing to fly</source>
         <translation>die Mission hat keinen Wegpunkt, also gibt es nichts zu fliegen</translation>
     </message>
@@ -6203,10 +6223,6 @@ Take it over?</source>
     <message>
         <source>expected numbers with a decimal point ({0})</source>
         <translation>erwartet wurden Zahlen mit Dezimalpunkt ({0})</translation>
-    </message>
-    <message>
-        <source>the home position {0}, {1}, {2} m is not on the globe</source>
-        <translation>der Startplatz {0}, {1}, {2} m liegt nicht auf der Erde</translation>
     </message>
     <message>
         <source>damaged or no zip archive ({0}); a KMZ is one; copy it again</source>
@@ -6251,10 +6267,6 @@ Take it over?</source>
     <message>
         <source>the mission has no waypoints</source>
         <translation>die Mission hat keine Wegpunkte</translation>
-    </message>
-    <message>
-        <source>the mission &apos;{0}&apos; is {1} km from the site&apos;s home; expected at most {2} km; is it the right site?</source>
-        <translation>die Mission &apos;{0}&apos; liegt {1} km vom Startplatz des Standorts; erwartet wurden höchstens {2} km; ist es der richtige Standort?</translation>
     </message>
     <message>
         <source>the mission &apos;{0}&apos; reaches {1} km from the origin of the site; expected at most {2} km; a coordinate or a height in it is wrong</source>
