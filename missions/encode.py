@@ -18,7 +18,7 @@ from planning.findings import Finding, Severity
 from planning.frames import Vec3
 from planning.plan import Plan
 from planning.rally import CLEARANCE_M, clear_height_z_m, return_height
-from planning.site import Origin, Site, SiteModel
+from planning.site import MIN_HEIGHT_ABOVE_GROUND_M, Origin, Site, SiteModel
 from planning.space import unchecked_space
 
 
@@ -114,7 +114,9 @@ def _encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions)
 
     created_ms = round(options.clock() * 1000.0)
     rth_height_m, findings = dji_return_height(plan, missions, options)
-    dji_options = DjiOptions(rth_height_m, created_ms, options.height_reference, options.link_loss)
+    dji_options = DjiOptions(
+        rth_height_m, created_ms, options.height_reference, options.link_loss, _security_height_m(plan, options)
+    )
     contents = [kmz_bytes(mission, dji_options) for mission in missions]
     if options.site is not None and options.height_reference is HeightReference.ABOVE_TAKEOFF:
         for mission in missions:
@@ -176,6 +178,18 @@ def takeoff_check(plan: Plan, site: Site, number: int) -> TakeoffCheck | None:
             edges += [(max(heights), facade.id, True), (min(heights), facade.id, False)]
     edge_z_m, facade_id, is_upper = min(edges, key=lambda edge: abs(edge[0] - first_z_m), default=(0.0, "", False))
     return TakeoffCheck(number, first_z_m - home_z_m, facade_id, is_upper, first_z_m - edge_z_m)
+
+
+def _security_height_m(plan: Plan, options: ExportOptions) -> float:
+    """Height above take-off below which DJI aircraft must not fly sideways: the lowest flight, where that is higher.
+
+    Without the site, home counts as standing on the ground.
+    """
+    lowest_m = plan.constraints.min_height_above_ground_m
+    if options.site is None:
+        return MIN_HEIGHT_ABOVE_GROUND_M if lowest_m is None else lowest_m
+    site = options.site.site
+    return site.airspace.lowest_height_m(lowest_m) + site.airspace.ground_z_m - site.home_enu_m[2]
 
 
 def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from planning.effects import Decision
 from planning.frames import Vec3
-from planning.site import Origin, check_point
+from planning.site import Origin, check_min_height, check_point
 
 PLAN_FORMAT = "reflight-plan/1"
 
@@ -110,8 +110,12 @@ class Constraints:
     """A view counts only when all four corners are in the picture, not just the centroid."""
     max_distance_m: float | None = None
     """Views from further away do not count (a wanted GSD is turned into this)."""
+    min_height_above_ground_m: float | None = None
+    """To be kept by viewpoints and paths, but for the column above home. None: the site's, or else the usual. Plans
+    hold the height that was kept."""
 
     def __post_init__(self) -> None:
+        check_min_height(self.min_height_above_ground_m)
         if not (math.isfinite(self.min_distance_m) and self.min_distance_m >= 0):
             raise ValueError(f"min_distance_m: expected 0 or more, got {self.min_distance_m}")
         check_section_step(self.section_step_deg)

@@ -293,7 +293,7 @@ def share_out_anew(plan: Plan, site_model: SiteModel, max_views: int, monitor: M
     InfeasibleError
         Home cannot be used, or a viewpoint cannot be reached from it.
     """
-    space = free_space(site_model, plan.constraints.min_distance_m)
+    space = free_space(site_model, plan.constraints.min_distance_m, plan.constraints.min_height_above_ground_m)
     views = viewpoint_arrays(plan.viewpoints)
     aircraft = replace(plan.aircraft, max_waypoints=min(plan.aircraft.max_waypoints, max_views + 2))
     times = flight_times(build_roadmap(space, plan.seed), views, aircraft, plan.rules, monitor)

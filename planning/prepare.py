@@ -36,7 +36,7 @@ class Prepared:
     site_model
         The site that was prepared.
     constraints
-        As asked for, with occlusion as it was decided.
+        As asked for, with occlusion as it was decided and the lowest height that holds on this site.
     effects
         Decisions of all effects.
     findings
@@ -64,6 +64,7 @@ class Prepared:
         """
         is_by_user = any(effect.decided_by == "user" for effect in self.effects)
         asked = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
+        constraints = with_lowest_height(constraints, site_model)
         differs = {
             "site": not is_same_place(site_model, self.site_model),
             "camera": camera != self.problem.model.camera,
@@ -72,6 +73,12 @@ class Prepared:
             "seed": seed != self.seed,
         }
         return ", ".join(name for name, is_other in differs.items() if is_other)
+
+
+def with_lowest_height(constraints: Constraints, site_model: SiteModel) -> Constraints:
+    """The constraints with the lowest height that holds on a site."""
+    lowest_m = site_model.site.airspace.lowest_height_m(constraints.min_height_above_ground_m)
+    return replace(constraints, min_height_above_ground_m=lowest_m)
 
 
 def is_same_place(first: SiteModel, second: SiteModel) -> bool:
@@ -146,7 +153,8 @@ def prepare(
     """
     require_panels(site_model.site)
     monitor.report("reading the site", 0, 1)
-    space = free_space(site_model, constraints.min_distance_m)
+    constraints = with_lowest_height(constraints, site_model)
+    space = free_space(site_model, constraints.min_distance_m, constraints.min_height_above_ground_m)
     decision = decide_occlusion(site_model, space, wish_of(constraints), seed)
     decided = replace(constraints, occlusion="on" if decision.on else "off")
     model = coverage_model(site_model, space, camera, decided, precision)

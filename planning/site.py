@@ -185,22 +185,43 @@ class NoFlyZone:
         return extrude(np.array(self.polygon_enu_m), self.floor_m, self.ceiling_m)
 
 
+MIN_HEIGHT_ABOVE_GROUND_M = 5.0
+"""Lowest flight where a site says nothing else: people with raised arms and vans end at 3 m, overhead cables on a site
+hang at 4 to 5 m, and a barometer that counts from take-off is good to a metre or two."""
+
+
+def check_min_height(height_m: float | None) -> None:
+    """Raise `ValueError` unless a lowest height above the ground is one, or None."""
+    if height_m is not None and not (math.isfinite(height_m) and height_m >= 0.0):
+        raise ValueError(f"min_height_above_ground_m: expected 0 m or more, got {height_m}")
+
+
 @dataclass(frozen=True, slots=True)
 class Airspace:
-    """The box in which viewpoints and legs must stay; only the column above home may lie below its floor."""
+    """The box in which viewpoints and legs must stay; only the column above home may lie below its floor.
+
+    `min_height_above_ground_m` is kept above `ground_z_m`, too; None: `MIN_HEIGHT_ABOVE_GROUND_M`.
+    """
 
     min_enu_m: Vec3
     max_enu_m: Vec3
     ground_z_m: float
     no_fly: tuple[NoFlyZone, ...] = ()
+    min_height_above_ground_m: float | None = None
 
     def __post_init__(self) -> None:
+        check_min_height(self.min_height_above_ground_m)
         check_point(self.min_enu_m, "min_enu_m")
         check_point(self.max_enu_m, "max_enu_m")
         check_point((0.0, 0.0, self.ground_z_m), "ground_z_m")
         for axis, low, high in zip("xyz", self.min_enu_m, self.max_enu_m, strict=True):
             if not low < high:
                 raise ValueError(f"max_enu_m: the airspace is empty, {axis} runs from {low} to {high} m")
+
+    def lowest_height_m(self, wished_m: float | None = None) -> float:
+        """Lowest flight above the ground: as wished, else the site's, else the usual."""
+        own_m = self.min_height_above_ground_m
+        return next((value for value in (wished_m, own_m) if value is not None), MIN_HEIGHT_ABOVE_GROUND_M)
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,6 +66,8 @@ def site_to_json(site: Site) -> dict[str, Any]:
         del content["rally_points"]
     if not content["is_bare"]:
         del content["is_bare"]
+    if content["airspace"]["min_height_above_ground_m"] is None:
+        del content["airspace"]["min_height_above_ground_m"]
     content["obstacles"] = [_without_none(obstacle) for obstacle in content["obstacles"]]
     for facade in content["facades"]:
         facade["panels"] = [_without_none(panel) for panel in facade["panels"]]

@@ -16,6 +16,12 @@ SAME_PLACE_M = 1e-3
 """Vertices and viewpoints this close together are one place: coordinates in files are rounded to 0.1 mm."""
 
 
+def beside_column(path_enu_m: NDArray[np.float64], home_enu_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether each leg of a path, shape (k, 3), leaves the vertical column above home; shape (k - 1,)."""
+    in_column = np.linalg.norm(path_enu_m[:, :2] - home_enu_m[:2], axis=1) <= SAME_PLACE_M
+    return np.asarray(~(in_column[:-1] & in_column[1:]))
+
+
 def photo_vertices(sortie: Sortie, by_id: Mapping[str, Viewpoint]) -> NDArray[np.int64] | None:
     """Vertex of each of a sortie's viewpoints, in order, shape (m,); None where one is missing.
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from planning.errors import InfeasibleError
 from planning.geometry.solids import Solids
 from planning.mesh import join
-from planning.site import SiteModel, panel_corners, panel_triangles
+from planning.site import Airspace, SiteModel, panel_corners, panel_triangles
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ class FreeSpace:
     Parameters
     ----------
     low_enu_m, high_enu_m
-        The airspace box, shape (3,).
+        The airspace box, as far as it lies above the lowest height that flights keep, shape (3,).
     solids
         Panels, building and obstacles.
     no_fly
@@ -101,7 +101,7 @@ class FreeSpace:
 
 
 def unchecked_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
-    """Space of a site as it is, whether or not its home can be used: for measuring plans."""
+    """Space of a site as it is, whether or not its home can be used, in the whole airspace: for measuring plans."""
     site = model.site
     solids = Solids.of(
         np.concatenate([panel_triangles(panel_corners(site)), join([model.building, *model.obstacles]).corners_enu_m])
@@ -111,8 +111,13 @@ def unchecked_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
     return FreeSpace(low, high, solids, no_fly, min_distance_m, min_distance_m, home)
 
 
-def free_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
+def free_space(model: SiteModel, min_distance_m: float, min_height_m: float | None = None) -> FreeSpace:
     """Allowed space of a site from whose home one can take off.
+
+    Parameters
+    ----------
+    min_height_m
+        Lowest height above the ground outside the column above home; None: the site's, or else the usual.
 
     Raises
     ------
@@ -120,12 +125,30 @@ def free_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
         Home, or the column above it, is outside the airspace, too close to something, inside a solid or in a no-fly
         volume; the message gives the measured distance.
     """
-    space = unchecked_space(model, min_distance_m)
+    space = above_lowest_height(unchecked_space(model, min_distance_m), model.site.airspace, min_height_m)
     _check_home(space)
     home, top = space.home_enu_m[None], space.column_top_enu_m[None]
     from_column = float(space.no_fly.segment_distances_m(home, top, 2.0 * min_distance_m + 1.0)[0])
     kept = min(min_distance_m, max(0.0, from_column - 2.0 * SAFETY_MARGIN_M))
     return replace(space, no_fly_distance_m=kept)
+
+
+def above_lowest_height(space: FreeSpace, airspace: Airspace, min_height_m: float | None = None) -> FreeSpace:
+    """The part of a space that lies above the lowest height of flights; `min_height_m` is as in `free_space`.
+
+    Raises
+    ------
+    InfeasibleError
+        The airspace ends below it.
+    """
+    height_m = airspace.lowest_height_m(min_height_m)
+    lowest_z_m = airspace.ground_z_m + height_m
+    if lowest_z_m >= space.high_enu_m[2]:
+        raise InfeasibleError(
+            f"airspace: its ceiling lies {space.high_enu_m[2] - airspace.ground_z_m:g} m above the ground, and flights "
+            f"keep {height_m:g} m from it; raise the ceiling, or allow lower flights"
+        )
+    return replace(space, low_enu_m=np.maximum(space.low_enu_m, [-np.inf, -np.inf, lowest_z_m]))
 
 
 def _check_home(space: FreeSpace) -> None:

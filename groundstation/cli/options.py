@@ -23,6 +23,7 @@ OPTIONS = {
     "time budget": "--time-budget",
     "seed": "--seed",
     "min_distance_m": "--min-distance",
+    "min_height_above_ground_m": "--min-height",
     "max_distance_m": "--max-distance",
     "section_step_deg": "--step",
     "battery_reserve": "--reserve",

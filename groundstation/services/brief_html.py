@@ -19,6 +19,7 @@ from groundstation.services.units import UnitSystem, distance_unit, length_unit,
 from missions.dji.write import LinkLoss
 from missions.encode import TakeoffCheck
 from planning.findings import Severity
+from planning.insight.flight_profile import LOW_M
 from planning.plan import Plan
 from planning.site import SiteModel
 
@@ -135,6 +136,7 @@ def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple
     yield say("Flight time, all sorties"), duration_text(total_s)
     yield say("Coverage of what can be covered"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
     yield say("Greatest height above ground"), length.text(brief.max_above_ground_m)
+    yield say("Lowest height above ground, beside take-off and landing"), _low(brief, units, say)
     near = [s.smallest_clearance_m for s in brief.sorties if s.smallest_clearance_m is not None]
     kept = say("{0} along the paths, {1} to be kept").format(
         length.text(min(near)) if near else say("not measured"), length.text(brief.min_distance_m)
@@ -142,6 +144,16 @@ def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple
     yield say("Smallest distance to building and obstacles"), kept
     wind = say("planned for {0}, the aircraft may fly below {1}")
     yield say("Wind"), wind.format(speed.text(brief.wind_m_s), speed.text(brief.max_wind_m_s))
+
+
+def _low(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
+    length, low = length_unit(units), brief.low
+    if low is None:
+        return say("not measured")
+    kept = say("{0}, {1} to be kept").format(length.text(low.lowest_m), length.text(brief.min_height_m))
+    if low.below_s is None:
+        return kept
+    return say("{0}; {1} below {2}").format(kept, duration_text(low.below_s), length.text(LOW_M))
 
 
 def _takeoff(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple[str, str]]:
@@ -162,6 +174,7 @@ def _sorties(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
         say("Battery used"),
         say("Highest above take-off"),
         say("Highest above sea (EGM96)"),
+        say("Lowest above ground"),
         say("Smallest distance"),
     )
     rows = [
@@ -173,6 +186,7 @@ def _sorties(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
             f"{sortie.battery_share:.0%}",
             length.text(sortie.max_above_takeoff_m),
             length.text(sortie.max_altitude_amsl_m),
+            "–" if sortie.low is None else length.text(sortie.low.lowest_m),
             "–" if sortie.smallest_clearance_m is None else length.text(sortie.smallest_clearance_m),
         )
         for sortie in brief.sorties
@@ -215,6 +229,10 @@ def _findings(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
 def _steps(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[str]:
     length, speed = length_unit(units), speed_unit(units)
     yield say("Permission for this place and height is at hand; nobody is below the paths")
+    if brief.low is not None and brief.low.lowest_m < LOW_M:
+        yield say("Nobody walks and nothing stands or hangs where the paths come down to {0} above the ground").format(
+            length.text(brief.low.lowest_m)
+        )
     if brief.no_fly:
         yield say("No-fly zones known to everybody: {0}").format(", ".join(brief.no_fly))
     known = ", ".join(brief.obstacles) if brief.obstacles else say("none")

@@ -13,6 +13,7 @@ from missions.dji.write import LinkLoss
 from missions.encode import ExportOptions, TakeoffCheck, dji_return_height, takeoff_check
 from planning.errors import GroundStationError
 from planning.findings import Finding, Severity, is_flyable
+from planning.insight.flight_profile import LowFlight, low_flight, lowest_flight
 from planning.plan import Plan
 from planning.site import Site, SiteModel
 
@@ -38,6 +39,8 @@ class SortieBrief:
         Part of the endurance that the sortie takes, take-off and landing included.
     max_above_takeoff_m, max_altitude_amsl_m
         Of its highest point.
+    low
+        How low it flies beside the column above home; None where it never leaves that.
     smallest_clearance_m
         To building, panels and obstacles along the path; None where no check measured it.
     takeoff_check
@@ -51,6 +54,7 @@ class SortieBrief:
     battery_share: float
     max_above_takeoff_m: float
     max_altitude_amsl_m: float
+    low: LowFlight | None
     smallest_clearance_m: float | None
     takeoff_check: TakeoffCheck | None = None
 
@@ -65,6 +69,10 @@ class FlightBrief:
         Date of printing, as text.
     max_above_ground_m
         What rules of the air count from.
+    low
+        How low all sorties together fly; None where none leaves the column above home.
+    min_height_m
+        Lowest flight above the ground that was to be kept.
     return_height_m
         Above take-off, to be set on the remote controller; None where it cannot be worked out, which a finding says.
     findings
@@ -82,6 +90,8 @@ class FlightBrief:
     sorties: tuple[SortieBrief, ...]
     n_photos: int
     max_above_ground_m: float
+    low: LowFlight | None
+    min_height_m: float
     min_distance_m: float
     covered_share: float
     wind_m_s: float
@@ -137,6 +147,8 @@ def flight_brief(
         sorties=tuple(_sortie(number, plan, site, rows, clearances) for number in range(1, len(plan.sorties) + 1)),
         n_photos=len(plan.viewpoints),
         max_above_ground_m=highest_z - site.airspace.ground_z_m,
+        low=lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m),
+        min_height_m=site.airspace.lowest_height_m(plan.constraints.min_height_above_ground_m),
         min_distance_m=plan.constraints.min_distance_m,
         covered_share=plan.coverage.covered / bound if bound else 0.0,
         wind_m_s=plan.rules.wind_m_s,
@@ -181,6 +193,7 @@ def _sortie(
         battery_share=sortie.duration_s / plan.aircraft.endurance_s,
         max_above_takeoff_m=max((row.height_above_takeoff_m or 0.0 for row in own), default=0.0),
         max_altitude_amsl_m=max((row.altitude_amsl_m or -math.inf for row in own), default=-math.inf),
+        low=low_flight(plan, sortie, site.home_enu_m, site.airspace.ground_z_m),
         smallest_clearance_m=min(near, default=None),
         takeoff_check=takeoff_check(plan, site, number),
     )

@@ -20,7 +20,7 @@ from planning.insight.reasons import SectionReasons, section_reasons
 from planning.insight.sampling import PanelSampling, panel_sampling
 from planning.insight.sections import PlanInsight, assembled
 from planning.plan import Camera, Constraints, Plan, viewpoint_arrays
-from planning.prepare import Prepared, is_same_place, prepare
+from planning.prepare import Prepared, is_same_place, prepare, with_lowest_height
 from planning.progress import QUIET, Monitor
 from planning.request import PlanRequest
 from planning.revision import Revision, revise
@@ -180,7 +180,9 @@ def _measured_since(revision: Revision, before: PlanInHand) -> tuple[NDArray[np.
 
 def _fits(prepared: Prepared, plan: Plan, site_model: SiteModel) -> bool:
     camera: Camera = prepared.problem.model.camera
-    wanted: Constraints = replace(plan.constraints, occlusion=prepared.constraints.occlusion)
+    wanted: Constraints = with_lowest_height(
+        replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model
+    )
     occlusion = plan.constraints.occlusion
     return (
         is_same_place(prepared.site_model, site_model)

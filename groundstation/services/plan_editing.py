@@ -108,7 +108,9 @@ def beside(viewpoint: Viewpoint, airspace: Airspace) -> Viewpoint:
 def above_home(site: Site) -> Viewpoint:
     """A viewpoint to begin with: straight above home, just inside the airspace, looking north."""
     x, y, z = site.home_enu_m
-    floor_m, ceiling_m = site.airspace.min_enu_m[2], site.airspace.max_enu_m[2]
+    airspace = site.airspace
+    floor_m = max(airspace.min_enu_m[2], airspace.ground_z_m + airspace.lowest_height_m())
+    ceiling_m = airspace.max_enu_m[2]
     return Viewpoint("new", (x, y, min(max(z, floor_m) + BESIDE_M, ceiling_m)), 0.0, 0.0)
 
 

@@ -13,8 +13,10 @@ from groundstation.services.given_files import read_given_plan, read_given_site
 from groundstation.services.project_file import check_not_index
 from planning.catalogue import profile
 from planning.checks import check_plan
+from planning.checks.geometry_rules import low_flight_allowed
 from planning.errors import InputError
 from planning.findings import Finding, Severity
+from planning.insight.flight_profile import lowest_flight
 from planning.json_file import check_output
 from planning.optimise.shortfall import WhyOpen
 from planning.plan import Viewpoint
@@ -23,7 +25,7 @@ from planning.planner import Planned, plan_flight
 from planning.prepare import Prepared
 from planning.progress import QUIET, Monitor, Stop, Trace, never
 from planning.request import PlanRequest
-from planning.site import SiteModel
+from planning.site import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel
 
 
 def plan_site(
@@ -111,6 +113,9 @@ def locked_viewpoints(plan_path: Path) -> tuple[Viewpoint, ...]:
 
 def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
     plan = planned.plan
+    lowest_m = plan.constraints.min_height_above_ground_m
+    if lowest_m is not None and lowest_m < MIN_HEIGHT_ABOVE_GROUND_M:
+        yield low_flight_allowed(lowest_m)
     n_views = len(plan.viewpoints)
     if request.n_views is not None and n_views < request.n_views:
         text = (
@@ -161,7 +166,8 @@ def check_files(plan_path: Path, site_path: Path, monitor: Monitor = QUIET) -> t
 
 def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
     """What `plan --json` prints."""
-    plan, panels = planned.plan, planned.prepared.site_model.site.panels
+    plan, site = planned.plan, planned.prepared.site_model.site
+    panels, low = site.panels, lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m)
     return {
         "views": len(plan.viewpoints),
         "covered": plan.coverage.covered,
@@ -174,6 +180,8 @@ def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
         "sorties": len(plan.sorties),
         "duration_s": round(plan.duration_s, 1),
         "length_m": round(sum(sortie.length_m for sortie in plan.sorties), 1),
+        "lowest_height_m": None if low is None else round(low.lowest_m, 2),
+        "below_10_m_s": None if low is None or low.below_s is None else round(low.below_s, 1),
         "depth": msgspec.to_builtins(planned.depth),
         "effects": msgspec.to_builtins(plan.effects),
         "open": [

@@ -18,7 +18,7 @@ from planning.errors import InputError
 from planning.frames import Vec3
 from planning.geodesy.geoid import amsl_from_ellipsoid_m, ellipsoid_from_amsl_m
 from planning.mesh import TriangleMesh
-from planning.site import Airspace, NoFlyZone, Obstacle, Origin, RallyPoint, Site, SiteModel, box_geometry
+from planning.site import NoFlyZone, Obstacle, Origin, RallyPoint, Site, SiteModel, box_geometry
 from planning.site_file import site_sha256
 
 COORDINATE_DECIMALS = 3
@@ -179,7 +179,7 @@ def set_airspace(model: SiteModel, min_enu_m: Vec3, max_enu_m: Vec3, ground_z_m:
     """
     _check_extent(min_enu_m, max_enu_m)
     with input_checked():
-        airspace = Airspace(min_enu_m, max_enu_m, ground_z_m, model.site.airspace.no_fly)
+        airspace = replace(model.site.airspace, min_enu_m=min_enu_m, max_enu_m=max_enu_m, ground_z_m=ground_z_m)
     return with_site(model, replace(model.site, airspace=airspace))
 
 

@@ -23,6 +23,7 @@ from missions.heights import altitude_amsl_m
 from missions.legs import leg_lengths_m
 from missions.model import GeoPoint, HeightReference, Mission, Waypoint
 from planning.plan import ANGLE_DECIMALS
+from planning.site import MIN_HEIGHT_ABOVE_GROUND_M
 
 MAX_SPEED_M_S = 15.0
 """Highest autoFlightSpeed and globalTransitionalSpeed of the format."""
@@ -59,6 +60,7 @@ class DjiOptions:
     created_ms: int
     height_reference: HeightReference = HeightReference.ABOVE_TAKEOFF
     link_loss: LinkLoss = LinkLoss.CONTINUE
+    security_height_m: float = MIN_HEIGHT_ABOVE_GROUND_M
 
 
 def kmz_bytes(mission: Mission, options: DjiOptions) -> bytes:
@@ -136,8 +138,10 @@ class _Writer:
         drone = self.catalogue.drones[self.profile.drone].numbers
         payload = self.catalogue.payloads[self.profile.payload].number
         stays = self.options.link_loss is LinkLoss.CONTINUE
-        # As high as the first waypoint, which is straight above home, and not higher: rounded down.
-        climb_m = math.floor(mission.height_above_takeoff_m(mission.waypoints[0].position) * 10.0) / 10.0
+        # As high as the first waypoint, which is straight above home, and not higher (rounded down), unless that is too
+        # low to fly sideways.
+        first_m = mission.height_above_takeoff_m(mission.waypoints[0].position)
+        climb_m = max(math.floor(first_m * 10.0), math.ceil(self.options.security_height_m * 10.0 - 1e-6)) / 10.0
         reference: list[Node] = [
             ("takeOffRefPoint", f"{home.lat_deg:.6f},{home.lon_deg:.6f},{home.height_ellipsoid_m:.6f}"),
             ("takeOffRefPointAGLHeight", "0"),

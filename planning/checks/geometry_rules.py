@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -11,7 +12,8 @@ from planning.checks.measures import Gaps, legs_of
 from planning.findings import Finding, Severity
 from planning.plan import Sortie, viewpoint_arrays
 from planning.rally import rally_findings
-from planning.sortie_timing import SAME_PLACE_M
+from planning.site import MIN_HEIGHT_ABOVE_GROUND_M
+from planning.sortie_timing import SAME_PLACE_M, beside_column
 
 MAX_ALTITUDE_M = 120.0
 """Height above ground that most civil aviation rules allow without a permit (EASA open category, FAA part 107)."""
@@ -38,12 +40,44 @@ def paths_in_airspace(case: Case) -> Iterator[Finding]:
     worst, where = 0.0, ""
     for place, _, path in case.sorties():
         outside = np.maximum(np.maximum(low - path, path - high)[:, :2].max(axis=1), path[:, 2] - high[2])
-        in_column = np.linalg.norm(path[:, :2] - home[:2], axis=1) <= SAME_PLACE_M
-        floor = np.where(in_column[:-1] & in_column[1:], min(low[2], home[2]), low[2])
+        floor = np.where(beside_column(path, home), low[2], min(low[2], home[2]))
         below = floor - np.minimum(path[:-1, 2], path[1:, 2])
         worst, where = max((worst, where), (float(max(outside.max(), below.max())), place))
     advice = "only the column above home may lie below the airspace"
     yield judge(worst <= ROUNDING_M, "airspace", "paths outside the airspace by", worst, 0.0, "m", where, advice)
+
+
+def lowest_heights(case: Case) -> Iterator[Finding]:
+    """Viewpoints and paths keep the lowest height above the ground, but for the column above home."""
+    airspace, home = case.site_model.site.airspace, np.array(case.site_model.site.home_enu_m)
+    limit = airspace.lowest_height_m(case.plan.constraints.min_height_above_ground_m)
+    advice = "plan it again, or allow lower flights"
+    subject = "lowest height above the ground beside the take-off column"
+    for place, _, path in case.sorties():
+        heights = np.minimum(path[:-1, 2], path[1:, 2]) - airspace.ground_z_m
+        heights = np.where(beside_column(path, home), heights, np.inf)
+        leg = int(np.argmin(heights))
+        value = float(heights[leg])
+        if math.isfinite(value):
+            where, kept = f"{place}, leg {leg + 1}", value >= limit - ROUNDING_M
+            yield judge(kept, "low-flight", subject, value, limit, "m", where, advice, least=True)
+    flown = {viewpoint_id for _, sortie, _ in case.sorties() for viewpoint_id in sortie.viewpoint_ids}
+    for viewpoint in case.plan.viewpoints:
+        value = viewpoint.position_enu_m[2] - airspace.ground_z_m
+        if viewpoint.id not in flown and value < limit - ROUNDING_M:
+            yield judge(False, "low-flight", subject, value, limit, "m", viewpoint.id, advice, least=True)
+    if limit < MIN_HEIGHT_ABOVE_GROUND_M:
+        yield low_flight_allowed(limit)
+
+
+def low_flight_allowed(limit_m: float) -> Finding:
+    """That lower flights than usual are allowed, which wants a decision."""
+    usual_m = MIN_HEIGHT_ABOVE_GROUND_M
+    text = (
+        f"flights down to {limit_m:g} m above the ground are allowed, below the usual {usual_m:g} m: look for people, "
+        "cars and cables on the whole way"
+    )
+    return Finding(Severity.WARNING, "low-flight-allowed", text, "", limit_m, usual_m, "m")
 
 
 def distances_at_viewpoints(case: Case) -> Iterator[Finding]:
@@ -127,6 +161,7 @@ def leg_lengths(case: Case) -> Iterator[Finding]:
 GEOMETRY_RULES: tuple[Rule, ...] = (
     viewpoints_in_airspace,
     paths_in_airspace,
+    lowest_heights,
     distances_at_viewpoints,
     distances_along_paths,
     no_fly_volumes,

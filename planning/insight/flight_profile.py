@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.errors import InfeasibleError
+from planning.frames import Vec3
 from planning.insight.ramps import Ramps, rest_to_rest_ramps
 from planning.plan import Plan, Sortie
-from planning.sortie_timing import sortie_flight_path
+from planning.sortie_timing import SAME_PLACE_M, beside_column, sortie_flight_path
 from planning.timing import motion_limits, photo_stop_s, slowed_by_turns_m_s, stopping_times_s
 
 Array = NDArray[np.float64]
@@ -68,6 +70,67 @@ class FlightProfile:
         start, end = self.departure_s[:-1, None], self.departure_s[:-1, None] + self.ramps.duration_s[:, None]
         times = [self.arrival_s, self.departure_s, (start + ramp).ravel(), (end - ramp).ravel(), end.ravel()]
         return self.at(np.unique(np.concatenate([*times, self.photo_s])))
+
+
+LOW_M = 10.0
+"""Below this height above the ground, lamp posts, trees and cables are to be expected that no site file has."""
+
+
+@dataclass(frozen=True, slots=True)
+class LowFlight:
+    """How low a sortie flies beside the vertical column above home, above the ground that the site knows.
+
+    Parameters
+    ----------
+    lowest_m
+        Height of the lowest point.
+    below_s
+        Time below `LOW_M`, hovering included; None where the sortie cannot be timed.
+    duration_s
+        Of the whole sortie without motors running on the ground, for comparison; None likewise.
+    """
+
+    lowest_m: float
+    below_s: float | None
+    duration_s: float | None
+
+
+def low_flight(plan: Plan, sortie: Sortie, home_enu_m: Vec3, ground_z_m: float) -> LowFlight | None:
+    """How low one of a plan's sorties flies; None where its path never leaves the column above home."""
+    path, home = np.array(sortie.path_enu_m, np.float64).reshape(-1, 3), np.array(home_enu_m)
+    beside = beside_column(path, home)
+    if not beside.any():
+        return None
+    lowest_m = float(np.minimum(path[:-1, 2], path[1:, 2])[beside].min()) - ground_z_m
+    try:
+        profile = sortie_profile(plan, sortie)
+    except InfeasibleError:  # no flying in this wind
+        profile = None
+    if profile is None:
+        return LowFlight(lowest_m, None, None)
+    samples = profile.samples()
+    heights = samples.heights_m(ground_z_m)
+    # A sample stands for the way to the next one; along it the height is taken as linear.
+    away_m = np.linalg.norm(samples.positions_enu_m[:, :2] - home[:2], axis=1)
+    counts = np.maximum(away_m[:-1], away_m[1:]) > SAME_PLACE_M
+    low, high = np.minimum(heights[:-1], heights[1:]), np.maximum(heights[:-1], heights[1:])
+    part = np.clip((LOW_M - low) / np.maximum(high - low, 1e-9), 0.0, 1.0)
+    below_s = float((np.diff(samples.t_s) * part * counts).sum())
+    return LowFlight(lowest_m, below_s, profile.duration_s)
+
+
+def lowest_flight(plan: Plan, home_enu_m: Vec3, ground_z_m: float) -> LowFlight | None:
+    """Of all sorties together: the lowest point, and the times' sums; None where none leaves the column above home."""
+    found = [low_flight(plan, sortie, home_enu_m, ground_z_m) for sortie in plan.sorties]
+    flown = [each for each in found if each is not None]
+    if not flown:
+        return None
+    below_s = [each.below_s for each in flown if each.below_s is not None]
+    duration_s = [each.duration_s for each in flown if each.duration_s is not None]
+    is_timed = len(below_s) == len(flown)
+    return LowFlight(
+        min(each.lowest_m for each in flown), sum(below_s) if is_timed else None, sum(duration_s) if is_timed else None
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -88,7 +88,7 @@ class BrokenRule:
         return {
             Rule.GIMBAL_UP: f"{amount} degrees above what the camera sees with the gimbal at its limit",
             Rule.GIMBAL_DOWN: f"{amount} degrees below what the camera sees with the gimbal at its limit",
-            Rule.FLOOR: f"{amount} m below the floor of the airspace",
+            Rule.FLOOR: f"{amount} m below the lowest flight allowed",
             Rule.CEILING: f"{amount} m above the ceiling of the airspace",
             Rule.SIDES: f"{amount} m beyond the sides of the airspace",
             Rule.RANGE: f"{amount} m too far away for the largest distance or pixel size allowed",

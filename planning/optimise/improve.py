@@ -96,10 +96,8 @@ class Exchange:
         """Swap until the weight is `enough`, `patience` slices bring nothing, or `stop`."""
         idle = 0
         while idle < patience and self.value() < enough and not stop():
-            # Numba's generator takes 32 bits.
-            seed = (self.seed + self._clock) % 2**32
             grown = kernel.exchange_steps(
-                self.state, self.chosen, self._rests_until, self._clock, STEPS_PER_SLICE, seed
+                self.state, self.chosen, self._rests_until, self._clock, STEPS_PER_SLICE, self._next_seed()
             )
             self._clock += STEPS_PER_SLICE
             idle = 0 if grown > 1e-9 else idle + 1
@@ -114,12 +112,16 @@ class Exchange:
             chosen = np.zeros(max(n_wanted, len(self.chosen)), np.int64)
             chosen[: len(self.chosen)] = self.chosen
             n_chosen = kernel.eject_steps(
-                self.state, chosen, len(self.chosen), still_open, rests_until, STEPS_PER_SLICE, self.seed + self._clock
+                self.state, chosen, len(self.chosen), still_open, rests_until, STEPS_PER_SLICE, self._next_seed()
             )
             self.chosen, rests_until[:] = chosen[:n_chosen], 0
             self._clock += STEPS_PER_SLICE
             idle = 0 if self.value() > value + 1e-9 else idle + 1
             value = self.value()
+
+    def _next_seed(self) -> int:
+        """Of the next slice; Numba's generator takes 32 bits."""
+        return (self.seed + self._clock) % 2**32
 
 
 def improve_views(

@@ -14,7 +14,7 @@ from planning.checks.measures import flight_key, legs_of, pose_of
 from planning.evaluate import coverage_of_counts
 from planning.findings import Finding
 from planning.plan import Plan, Sortie, Viewpoint
-from planning.prepare import Prepared
+from planning.prepare import Prepared, with_lowest_height
 from planning.revision.ways import Ways
 
 LENGTH_DECIMALS, DURATION_DECIMALS = 3, 2
@@ -87,6 +87,7 @@ def revise(plan: Plan, prepared: Prepared, before: Revision | None = None) -> Re
     if plan.camera != prepared.problem.model.camera:
         raise ValueError(f"prepared: is for the camera {prepared.problem.model.camera.name}, not {plan.camera.name}")
     wanted = replace(plan.constraints, occlusion=prepared.constraints.occlusion)
+    wanted = with_lowest_height(wanted, prepared.site_model)
     if wanted != prepared.constraints or plan.constraints.occlusion not in ("auto", wanted.occlusion):
         raise ValueError(f"prepared: is for {prepared.constraints}, not {plan.constraints}")
     if before is None or before.prepared is not prepared:

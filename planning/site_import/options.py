@@ -7,7 +7,7 @@ from typing import Literal
 
 from planning.frames import Vec3
 from planning.geodesy.crs import AxisOrder, HeightReference
-from planning.site import Origin
+from planning.site import Origin, check_min_height
 
 UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254, "us-ft": 1200.0 / 3937.0}
 """Metres per unit, exact (the US survey foot is 1200/3937 m by definition)."""
@@ -62,6 +62,8 @@ class ImportOptions:
     home_enu_m, airspace_margin_m, floor_m, ceiling_m
         Of the site: take-off place, distance of the airspace's sides from the building, and its lowest and highest z
         (default 2 m above ground, and 30 m above the building's top).
+    min_height_m
+        Lowest flight above the ground that the site is to state; None: the usual.
     deflection_m
         Largest distance between a curved IFC surface and its triangles: smaller is truer and slower.
     panels_required
@@ -83,5 +85,9 @@ class ImportOptions:
     airspace_margin_m: float = 40.0
     floor_m: float | None = None
     ceiling_m: float | None = None
+    min_height_m: float | None = None
     deflection_m: float = 0.005
     panels_required: bool = True
+
+    def __post_init__(self) -> None:
+        check_min_height(self.min_height_m)

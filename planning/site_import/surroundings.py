@@ -83,6 +83,7 @@ def surroundings(
             (_rounded(low[0] - margin), _rounded(low[1] - margin), _rounded(floor)),
             (_rounded(high[0] + margin), _rounded(high[1] + margin), _rounded(ceiling)),
             _rounded(ground_z_m),
+            min_height_above_ground_m=options.min_height_m,
         )
     except ValueError as error:
         raise InputError(f"--airspace-margin, --floor and --ceiling leave no airspace: {error}") from error

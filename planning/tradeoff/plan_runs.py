@@ -192,7 +192,7 @@ def _points(trace: Trace, planned: Planned, ready_s: float, read_s: float) -> tu
 def _count(site_model: SiteModel, planned: Planned, step_deg: float) -> StepCount:
     plan = planned.plan
     constraints = replace(plan.constraints, section_step_deg=step_deg)
-    space = free_space(site_model, constraints.min_distance_m)
+    space = free_space(site_model, constraints.min_distance_m, constraints.min_height_above_ground_m)
     model = coverage_model(site_model, space, plan.camera, constraints)
     covered = int((coverage_counts(model, plan.viewpoints) > 0).sum())
     return StepCount(step_deg, covered, model.n_elements)

@@ -127,7 +127,9 @@ def plan_case(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> To
     """
     if len(plan.viewpoints) < 2:
         raise InputError(f"plan of '{plan.site}': expected two viewpoints or more, got {len(plan.viewpoints)}")
-    roadmap = build_roadmap(free_space(site_model, plan.constraints.min_distance_m), plan.seed)
+    roadmap = build_roadmap(
+        free_space(site_model, plan.constraints.min_distance_m, plan.constraints.min_height_above_ground_m), plan.seed
+    )
     times = flight_times(roadmap, viewpoint_arrays(plan.viewpoints), plan.aircraft, plan.rules, monitor)
     # Only legs from and to home differ by direction, and both directions around a tour together use each once.
     cost = (times.travel_s + times.travel_s.T) / 2.0

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 from pathlib import Path
 
@@ -42,6 +43,21 @@ def test_text_tells_the_pilot_the_result_and_the_next_command(reflight, pane, tm
     assert "of 36 sections (36 directions of view for each of 1 panel)" in done.out
     assert "occlusion: off - " in done.out
     assert done.err.splitlines()[-1] == f"next: app.py check '{out}' '{site}'"
+
+
+def test_a_lower_flight_is_asked_for_by_an_option_and_warned_of(reflight, pane, tmp_path):
+    out = tmp_path / "plan.json"
+    usual = reflight("plan", pane / "site.json", "-o", out, "--views", 9, *QUICK)
+    assert re.search(r"lowest flight [56789]\.\d m above the ground, \d+\.\d min below 10 m", usual.out)
+    low = reflight("plan", pane / "site.json", "-o", out, "--views", 9, "--min-height", 2.5, *QUICK)
+    assert low.status == 0
+    assert "flights down to 2.5 m above the ground are allowed, below the usual 5 m" in low.err
+    assert reflight("check", out, pane / "site.json").status == 0
+    wrong = reflight("plan", pane / "site.json", "-o", out, "--min-height", -1, *QUICK)
+    assert (wrong.status, wrong.err.strip()) == (1, "error: --min-height: expected 0 m or more, got -1.0")
+    high = reflight("plan", pane / "site.json", "-o", out, "--min-height", 300, *QUICK)
+    assert high.status == 1
+    assert "flights keep 300 m from it; raise the ceiling, or allow lower flights" in high.err
 
 
 @pytest.mark.parametrize("method", ["greedy", "pso", "noto", "orbit"])

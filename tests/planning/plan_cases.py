@@ -50,9 +50,9 @@ def turned_site(
     n_rows: int = 3,
     n_columns: int = 4,
     panel_m: tuple[float, float] = (1.5, 1.5),
-    foot_m: float = 2.0,
+    foot_m: float = 5.0,
     beside_m: float = 30.0,
-    top_m: float = 30.0,
+    top_m: float = 33.0,
     obstacle_m: float | None = None,
 ) -> SiteModel:
     """A facade without a building behind it, turned, shifted and bent out of the frame's axes.
@@ -91,7 +91,7 @@ def turned_site(
     if obstacle_m is not None:
         x, y, _ = place(obstacle_m, -11.0, 0.0)
         mast = (Obstacle("mast", box_enu_m=((x - 0.5, y - 0.5, 0.0), (x + 0.5, y + 0.5, 9.0))),)
-    airspace = Airspace((*low, 2.0), (*high, top_m), ground_z_m=0.0)
+    airspace = Airspace((*low, 5.0), (*high, top_m), ground_z_m=0.0)
     site = Site("turned", ORIGIN, (facade,), airspace, place(0.0, -24.0, 0.0), obstacles=mast)
     return SiteModel(site, empty_mesh(), tuple(box_geometry(obstacle) for obstacle in mast))
 

@@ -79,13 +79,43 @@ def test_a_good_plan_keeps_every_rule_and_every_measured_value_is_stated() -> No
     assert is_flyable(findings)
     codes = {f.code for f in findings}
     assert codes == {
-        *("airspace", "distance", "leg-distance", "no-fly", "altitude", "leg-spacing"),
+        *("airspace", "low-flight", "distance", "leg-distance", "no-fly", "altitude", "leg-spacing"),
         *("site", "sorties", "gimbal", "heading", "waypoints", "wind", "endurance", "duration", "length"),
         *("photo-interval", "settle", "gsd", "duplicates", "coverage", "return-height"),
     }
     for f in findings:
         if f.value is not None and f.code not in ("site", "sorties"):
             assert np.isfinite(f.value)
+
+
+def test_low_viewpoints_and_paths_are_errors_beside_the_column_above_home() -> None:
+    low = finding(moved(0, position_enu_m=(0.0, -12.0, 4.2)), "low-flight")
+    assert (low.severity, low.value, low.limit) == (Severity.ERROR, pytest.approx(4.2), 5.0)
+    assert low.message.startswith("lowest height above the ground beside the take-off column: 4.2 m, at least 5 m;")
+    assert "sortie 1" in low.place
+    dipping = with_path(HOME, (0.0, -30.0, 12.0), A, (0.0, -20.0, 4.9), B, (0.0, -30.0, 12.0), HOME)
+    assert finding(dipping, "low-flight").value == pytest.approx(4.9)
+    assert finding(plan(), "low-flight").severity is Severity.OK, "the column above home does not count"
+    lonely = replace(moved(0, position_enu_m=(0.0, -12.0, 4.2)), sorties=())
+    assert finding(lonely, "low-flight").place == plan().viewpoints[0].id
+
+
+def test_the_lowest_height_is_the_plan_s_or_the_site_s_or_the_usual_and_a_lower_one_is_a_warning() -> None:
+    low = moved(0, position_enu_m=(0.0, -12.0, 4.2))
+    old = replace(low, constraints=replace(low.constraints, min_height_above_ground_m=None))
+    assert finding(old, "low-flight").limit == 5.0
+    airspace = replace(site().site.airspace, min_height_above_ground_m=4.0)
+    other = replace(site(), site=replace(site().site, airspace=airspace))
+    assert finding(old, "low-flight", site_model=other).severity is Severity.OK
+    assert finding(old, "low-flight-allowed", site_model=other).severity is Severity.WARNING
+    own = replace(low, constraints=replace(low.constraints, min_height_above_ground_m=3.5))
+    assert finding(own, "low-flight").limit == 3.5
+    allowed = finding(own, "low-flight-allowed")
+    assert (allowed.severity, allowed.value, allowed.limit) == (Severity.WARNING, 3.5, 5.0)
+    assert "down to 3.5 m above the ground" in allowed.message
+    higher = replace(plan(), constraints=replace(plan().constraints, min_height_above_ground_m=30.0))
+    assert finding(higher, "low-flight").severity is Severity.ERROR
+    assert "low-flight-allowed" not in {f.code for f in check_plan(plan(), site())}
 
 
 def test_viewpoint_in_the_wall_is_told_with_its_depth() -> None:
@@ -158,7 +188,7 @@ def test_path_wholly_inside_a_no_fly_volume_is_refused_and_a_site_without_any_sa
 )
 def test_viewpoint_outside_the_airspace_is_told_by_how_much(position: tuple[float, float, float], value: float) -> None:
     edited = moved(0, position_enu_m=position)
-    assert broken(edited) == {"airspace"}
+    assert broken(edited) - {"low-flight"} == {"airspace"}
     for subject in ("viewpoints outside", "paths outside"):
         found = finding(edited, "airspace", subject)
         assert found.severity is Severity.ERROR
@@ -250,10 +280,10 @@ def test_plan_without_sorties_or_with_paths_that_do_not_begin_and_end_at_home_is
     assert "no sorties" in finding(replace(plan(), sorties=()), "sorties", "no sorties").message
     short = replace(plan(), sorties=(replace(plan().sorties[0], path_enu_m=(HOME,)),))
     assert "has 1 points" in finding(short, "path").message
-    elsewhere = with_path((0.0, -28.0, 3.0), A, B, (3.0, -30.0, 3.0))
+    elsewhere = with_path((0.0, -28.0, 6.0), A, B, (3.0, -30.0, 6.0))
     starts, ends = (finding(elsewhere, "path", verb) for verb in ("starts", "ends"))
-    assert starts.value == pytest.approx(np.sqrt(13.0))
-    assert ends.value == pytest.approx(np.sqrt(18.0))
+    assert starts.value == pytest.approx(np.sqrt(40.0))
+    assert ends.value == pytest.approx(np.sqrt(45.0))
     assert broken(elsewhere) == {"path"}
 
 

@@ -174,9 +174,10 @@ def test_flights_with_locked_views_are_never_left_out() -> None:
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"position_enu_m": (0.0, -4.0, 5.0)}, r"it is 4\.000 m from the building or an obstacle, and 5\.001 m are"),
-        ({"position_enu_m": (0.0, 3.0, 5.0)}, r"it is 3\.000 m inside a solid"),
+        ({"position_enu_m": (0.0, -4.0, 6.0)}, r"it is 4\.000 m from the building or an obstacle, and 5\.001 m are"),
+        ({"position_enu_m": (0.0, 3.0, 6.0)}, r"it is 3\.000 m inside a solid"),
         ({"position_enu_m": (0.0, -20.0, 41.5)}, r"it lies 1\.500 m outside the airspace"),
+        ({"position_enu_m": (0.0, -20.0, 4.0)}, r"it lies 1\.000 m below the lowest flight allowed or on its border"),
         ({"position_enu_m": (0.0, -20.0, 40.0)}, r"outside the airspace or on its border"),
         ({"position_enu_m": (-30.0, 0.0, 12.0)}, "it is in a no-fly volume"),
         ({"gimbal_pitch_deg": 40.0}, "it looks 40 deg up, and the gimbal turns from -90 to 35 deg"),

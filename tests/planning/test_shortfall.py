@@ -28,7 +28,7 @@ EVERYTHING = PlanRequest(share=1.0, constraints=NEAR, greedy=GreedyParameters(10
 
 def strip() -> SiteModel:
     """Sections of some panels are seen from a narrow strip above the ground only, where waypoints crowd."""
-    return turned_site(33.0, n_rows=4, n_columns=10, panel_m=(1.2, 1.2), foot_m=3.0)
+    return turned_site(33.0, n_rows=4, n_columns=10, panel_m=(1.2, 1.2), foot_m=6.0)
 
 
 def test_a_share_that_spacing_keeps_from_being_reached_names_it_and_the_panels() -> None:

@@ -29,6 +29,17 @@ def read_changed(tmp_path, content, mutate):
     return read_site(path)
 
 
+def test_a_lowest_height_is_kept_and_a_site_without_one_has_the_file_that_it_always_had(tmp_path):
+    bare = replace(SCENES["single-panel"]().site, building_mesh=None)
+    assert "min_height_above_ground_m" not in site_to_json(bare)["airspace"]
+    own = replace(bare, airspace=replace(bare.airspace, min_height_above_ground_m=7.5))
+    write_site(tmp_path / "own.site.json", own)
+    assert read_site(tmp_path / "own.site.json").site == own
+    assert own.airspace.lowest_height_m() == 7.5
+    assert bare.airspace.lowest_height_m() == 5.0
+    assert own.airspace.lowest_height_m(3.0) == 3.0
+
+
 @pytest.mark.parametrize("scene", [slow(name) if name == "tower" else name for name in sorted(SCENES)])
 def test_every_bundled_site_reads_back_as_it_was_written(tmp_path, scene):
     path = write_scene(scene, tmp_path)

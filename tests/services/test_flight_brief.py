@@ -18,6 +18,7 @@ from missions.dji.write import LinkLoss
 from missions.encode import ExportOptions
 from missions.heights import altitude_amsl_m
 from planning.findings import Finding, Severity
+from planning.insight.flight_profile import low_flight
 from planning.rally import CLEARANCE_M, clear_height_z_m
 from planning.site import Origin
 from tests.missions.plans import HONG_KONG, example_plan
@@ -76,6 +77,29 @@ def test_sorties_are_those_of_the_plan(brief, plan):
         assert told.battery_share == pytest.approx(sortie.duration_s / 2520.0)
         highest = max(mission.height_above_takeoff_m(w.position) for w in mission.waypoints)
         assert told.max_above_takeoff_m == pytest.approx(highest, abs=0.01)
+
+
+def test_how_low_each_sortie_flies_and_how_long_below_ten_metres_is_told(brief, plan):
+    ground_m, home = MODEL.site.airspace.ground_z_m, MODEL.site.home_enu_m
+    for told, sortie in zip(brief.sorties, plan.sorties, strict=True):
+        assert told.low == low_flight(plan, sortie, home, ground_m)
+    assert brief.low.lowest_m == min(told.low.lowest_m for told in brief.sorties)
+    assert brief.min_height_m == 5.0
+    above = page_text(brief_html(brief, METRIC, {}))
+    assert (
+        f"Lowest height above ground, beside take-off and landing {brief.low.lowest_m:.1f} m, 5.0 m to be kept" in above
+    )
+    assert "Nobody walks" not in above
+    dip = replace(
+        plan.sorties[1],
+        path_enu_m=(*plan.sorties[1].path_enu_m[:2], (0.0, -36.0, 6.0), *plan.sorties[1].path_enu_m[2:]),
+    )
+    low = flight_brief(MODEL, replace(plan, sorties=(plan.sorties[0], dip)), (), "today")
+    assert low.low.lowest_m == 6.0
+    text = page_text(brief_html(low, METRIC, {}))
+    assert "6.0 m, 5.0 m to be kept; " in text
+    assert "below 10.0 m" in text
+    assert "Nobody walks and nothing stands or hangs where the paths come down to 6.0 m above the ground" in text
 
 
 def test_smallest_distances_are_those_of_the_check_by_sortie(brief, plan):

@@ -19,7 +19,7 @@ from planning.plan import Constraints
 from planning.plan_file import read_plan, write_plan
 from planning.request import PlanRequest
 from planning.scenes import write_scene
-from planning.site_file import read_site
+from planning.site_file import read_site, write_site
 from tests.planning.revision.cases import QUICK
 
 
@@ -72,6 +72,37 @@ def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
     assert [finding.code for finding in planned.findings] == codes
     for finding in planned.findings:
         assert finding.value < finding.limit
+
+
+def test_a_lower_flight_than_usual_is_allowed_and_said_and_the_plan_holds_it(site, tmp_path):
+    low = replace(PlanRequest(n_views=12, greedy=QUICK), constraints=Constraints(min_height_above_ground_m=2.5))
+    out = tmp_path / "low.plan.json"
+    planned = plan_site(site, low, out)
+    assert [finding.code for finding in planned.findings] == ["low-flight-allowed"]
+    assert read_plan(out).constraints.min_height_above_ground_m == 2.5
+    assert planned_summary(planned, 1.0)["lowest_height_m"] < 5.0
+    found = {finding.code: finding.severity for finding in check_files(out, site)}
+    assert (found["low-flight"], found["low-flight-allowed"]) == (Severity.OK, Severity.WARNING)
+    usual = plan_site(site, PlanRequest(n_views=12, greedy=QUICK), tmp_path / "usual.plan.json")
+    summary = planned_summary(usual, 1.0)
+    assert usual.plan.constraints.min_height_above_ground_m == 5.0
+    assert 5.0 <= summary["lowest_height_m"] < 10.0 < summary["below_10_m_s"] < summary["duration_s"]
+
+
+def test_the_lowest_height_of_the_site_holds_where_none_is_asked_for(site, tmp_path):
+    model = read_site(site)
+    airspace = replace(model.site.airspace, min_height_above_ground_m=9.0)
+    write_site(tmp_path / "high.site.json", replace(model.site, airspace=airspace))
+    planned = plan_site(tmp_path / "high.site.json", PlanRequest(n_views=6, greedy=QUICK), None)
+    assert planned.plan.constraints.min_height_above_ground_m == 9.0
+    assert min(viewpoint.position_enu_m[2] for viewpoint in planned.plan.viewpoints) >= 9.0
+    again = plan_document_site(planned.prepared.site_model, PlanRequest(n_views=5, greedy=QUICK), planned.prepared)
+    assert again.prepared is planned.prepared
+    lower = Constraints(min_height_above_ground_m=6.0)
+    other = plan_document_site(
+        planned.prepared.site_model, PlanRequest(n_views=5, greedy=QUICK, constraints=lower), planned.prepared
+    )
+    assert other.prepared is not planned.prepared
 
 
 def test_summaries_are_json(site):

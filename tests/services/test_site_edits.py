@@ -325,3 +325,10 @@ def test_the_last_facade_can_go_where_there_is_a_building_and_a_new_one_be_drawn
     drawn = add_panel_grid(bare, top, 2, 3)
     assert (drawn.facade_id, drawn.model.site.n_panels) == ("A", 6)
     assert site_findings(drawn.model) == ()
+
+
+def test_another_airspace_box_keeps_the_lowest_height_and_the_zones():
+    airspace = replace(OFFICE.site.airspace, min_height_above_ground_m=7.0)
+    own = replace(OFFICE, site=replace(OFFICE.site, airspace=airspace))
+    changed = set_airspace(own, (-50.0, -60.0, 4.0), (50.0, 40.0, 70.0), 0.5).site.airspace
+    assert changed == replace(airspace, min_enu_m=(-50.0, -60.0, 4.0), max_enu_m=(50.0, 40.0, 70.0), ground_z_m=0.5)

@@ -30,6 +30,7 @@ def add_parser(subparsers: Any) -> None:
     add("-o", "--out", type=json_file, required=True, metavar="PLAN", help="plan file to write")
     add_profile_argument(parser)
     add("--min-distance", type=number, default=10.0, metavar="M", help="for the reachable bound (default 10 m)")
+    add("--min-height", type=number, metavar="M", help="lowest flight above the ground (default: the site's, else 5 m)")
     add("--step", type=number, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
     add("--occlusion", choices=("auto", "on", "off"), default="auto", help="default: as the scene calls for")
     add("--json", action="store_true", help="print one JSON object instead of text")
@@ -43,7 +44,12 @@ def run(options: argparse.Namespace) -> int:
     from planning.plan import Constraints
 
     with in_words_of_options():
-        constraints = Constraints(options.min_distance, options.step, options.occlusion)
+        constraints = Constraints(
+            options.min_distance,
+            options.step,
+            options.occlusion,
+            min_height_above_ground_m=options.min_height,
+        )
     plan, findings, site = run_job(
         "import",
         lambda context: import_missions(

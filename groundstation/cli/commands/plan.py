@@ -70,6 +70,12 @@ def add_request_arguments(parser: argparse.ArgumentParser) -> None:
     search("--candidates", type=int, metavar="N", help="well-spread viewpoints to choose from (default 20000)")
     rules = parser.add_argument_group("which views count").add_argument
     rules("--min-distance", type=number, default=10.0, metavar="M", help="to everything solid (default 10 m)")
+    rules(
+        "--min-height",
+        type=number,
+        metavar="M",
+        help="lowest flight above the ground, but for take-off and landing (default: the site's, else 5 m)",
+    )
     rules("--step", type=number, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
     rules("--occlusion", choices=("auto", "on", "off"), default="auto", help="default: as the scene calls for")
     rules("--max-distance", type=number, metavar="M", help="views from further away do not count")
@@ -112,6 +118,7 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
                 options.occlusion,
                 options.whole_panel,
                 _max_distance_m(options),
+                options.min_height,
             ),
             rules=FlightRules(
                 battery_reserve=options.reserve,
@@ -175,6 +182,7 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     from groundstation.cli.console import counted
     from groundstation.services.units import per_cent
     from planning.coverage.sections import SectionGrid
+    from planning.insight.flight_profile import LOW_M, lowest_flight
 
     plan, coverage = planned.plan, planned.plan.coverage
     n_directions = SectionGrid(plan.constraints.section_step_deg).n_sections
@@ -201,6 +209,11 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
             f"  sortie {position}: {counted(len(sortie.viewpoint_ids), 'view')}, {sortie.length_m:.0f} m, "
             f"{sortie.duration_s / 60:.1f} min"
         )
+    site = planned.prepared.site_model.site
+    low = lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m)
+    if low is not None:
+        below = "" if low.below_s is None else f", {low.below_s / 60:.1f} min below {LOW_M:g} m"
+        print(f"lowest flight {low.lowest_m:.1f} m above the ground{below} (take-off and landing apart)")
     for decision in plan.effects:
         print(decision)
     stages = ", ".join(f"{stage} {value:.1f} s" for stage, value in planned.seconds.items())

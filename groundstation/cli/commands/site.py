@@ -108,6 +108,7 @@ def add_flight(command: argparse.ArgumentParser) -> None:
     flight("--home", type=_point, metavar="E,N,U", help="take-off place (default: in front of the largest facade)")
     flight("--airspace-margin", type=number, default=40.0, metavar="M", help="around the building (default 40 m)")
     flight("--floor", type=number, metavar="U", help="of the airspace (default: 2 m above ground)")
+    flight("--min-height", type=number, metavar="M", help="lowest flight above the ground to be planned (default 5 m)")
     flight("--ceiling", type=number, metavar="U", help="of the airspace (default: 30 m above the building)")
 
 
@@ -223,6 +224,7 @@ def import_options(options: argparse.Namespace) -> ImportOptions:
         home_enu_m=options.home,
         airspace_margin_m=options.airspace_margin,
         floor_m=options.floor,
+        min_height_m=options.min_height,
         ceiling_m=options.ceiling,
         deflection_m=options.deflection,
     )

@@ -165,7 +165,7 @@ class PlanLists(QTabWidget):
         return {
             Rule.GIMBAL_UP: self.tr("the gimbal cannot look up so far"),
             Rule.GIMBAL_DOWN: self.tr("the gimbal cannot look down so far"),
-            Rule.FLOOR: self.tr("below the airspace"),
+            Rule.FLOOR: self.tr("below the lowest flight allowed"),
             Rule.CEILING: self.tr("above the airspace"),
             Rule.SIDES: self.tr("beyond the sides of the airspace"),
             Rule.RANGE: self.tr("too far away for the pixel size wanted"),

@@ -18,7 +18,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "{0} m too close to {1}"),
     QT_TRANSLATE_NOOP("Sentences", "{0} degrees above what the camera sees with the gimbal at its limit"),
     QT_TRANSLATE_NOOP("Sentences", "{0} degrees below what the camera sees with the gimbal at its limit"),
-    QT_TRANSLATE_NOOP("Sentences", "{0} m below the floor of the airspace"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} m below the lowest flight allowed"),
     QT_TRANSLATE_NOOP("Sentences", "{0} m above the ceiling of the airspace"),
     QT_TRANSLATE_NOOP("Sentences", "{0} m beyond the sides of the airspace"),
     QT_TRANSLATE_NOOP("Sentences", "{0} m too far away for the largest distance or pixel size allowed"),

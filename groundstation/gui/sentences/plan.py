@@ -92,6 +92,19 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "it looks {0} deg up, and the gimbal turns from {1} to {2} deg"),
     QT_TRANSLATE_NOOP("Sentences", "viewpoint '{0}' is locked, but cannot be flown: {1}; unlock it, or move it first"),
     QT_TRANSLATE_NOOP("Sentences", "it lies {0} m outside the airspace or on its border"),
+    QT_TRANSLATE_NOOP("Sentences", "it lies {0} m below the lowest flight allowed or on its border"),
+    QT_TRANSLATE_NOOP("Sentences", "lowest height above the ground beside the take-off column"),
+    QT_TRANSLATE_NOOP("Sentences", "plan it again, or allow lower flights"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "flights down to {0} m above the ground are allowed, below the usual {1} m: look for people, cars and cables "
+        "on the whole way",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "its ceiling lies {0} m above the ground, and flights keep {1} m from it; raise the ceiling, or allow lower "
+        "flights",
+    ),
     QT_TRANSLATE_NOOP("Sentences", "inside a solid"),
     QT_TRANSLATE_NOOP("Sentences", "from the building or an obstacle"),
     QT_TRANSLATE_NOOP("Sentences", "it is {0} m {1}, and {2} m are required"),

@@ -14,11 +14,13 @@ from hypothesis import given, settings
 
 from missions.build import missions_from_plan
 from missions.dji.write import DjiOptions, LinkLoss, kmz_bytes
+from missions.encode import ExportOptions, encode
 from missions.heights import altitude_amsl_m
-from missions.model import HeightReference, Mission
+from missions.model import FileFormat, HeightReference, Mission
 from planning.errors import MissionError
-from planning.plan import FlightRules, Plan
+from planning.plan import Constraints, FlightRules, Plan
 from tests.missions.plans import example_plan, make_plan, plans, ring
+from tests.planning.plan_cases import kiosk
 
 KML = "{http://www.opengis.net/kml/2.2}"
 WPML = "{http://www.dji.com/wpmz/1.0.6}"
@@ -209,6 +211,30 @@ def test_aircraft_climbs_no_higher_than_the_first_waypoint_above_home() -> None:
     assert first_m - 0.1 <= climb_m <= first_m
     assert text(config(waylines), "flyToWaylineMode") == "safely"
     assert text(config(waylines), "finishAction") == "goHome"
+
+
+@pytest.mark.parametrize("first_m", [2.0, 4.96, 5.002, 12.34])
+@pytest.mark.parametrize("lowest_m", [5.0, 7.25, 3.0])
+def test_aircraft_never_fly_sideways_below_the_lowest_flight(first_m: float, lowest_m: float) -> None:
+    """The first waypoint stands `first_m` above home; the plan's lowest height, and the ground that the site knows."""
+    plan = replace(
+        make_plan([(ring(3), {})]), constraints=Constraints(min_height_above_ground_m=lowest_m), site="kiosk"
+    )
+    home, sortie = plan.home_enu_m, plan.sorties[0]
+    assert home is not None
+    top = (home[0], home[1], home[2] + first_m)
+    low = replace(plan, sorties=(replace(sortie, path_enu_m=(home, top, *sortie.path_enu_m[2:-2], top, home)),))
+    airspace = kiosk().site.airspace
+    for site, least_m in (
+        (None, lowest_m),
+        (kiosk(home_enu_m=home, airspace=replace(airspace, ground_z_m=home[2] - 1.5)), lowest_m - 1.5),
+    ):
+        content = encode(low, None, None, FileFormat.DJI_KMZ, ExportOptions(site=site)).contents[0]
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            part = ElementTree.fromstring(archive.read("wpmz/waylines.wpml"))
+        climb_m = float(text(config(part), "takeOffSecurityHeight"))
+        assert climb_m >= least_m - 1e-9
+        assert climb_m == pytest.approx(max(math.floor(first_m * 10.0) / 10.0, math.ceil(least_m * 10.0) / 10.0))
 
 
 def test_return_height_is_the_pilots_but_at_least_what_remote_controllers_accept() -> None:

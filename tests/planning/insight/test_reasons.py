@@ -141,7 +141,9 @@ def relaxed(model, constraints, reason):
     low, high = np.array(model.site.airspace.min_enu_m), np.array(model.site.airspace.max_enu_m)
     more = broken.amount + TOLERANCE_M
     if broken.rule is Rule.FLOOR:
-        low[2] -= more
+        lowest_z_m = max(low[2], model.site.airspace.ground_z_m + model.site.airspace.lowest_height_m()) - more
+        low[2] = min(low[2], lowest_z_m)
+        constraints = replace(constraints, min_height_above_ground_m=max(0.0, lowest_z_m))
     elif broken.rule is Rule.CEILING:
         high[2] += more
     elif broken.rule is Rule.SIDES:
@@ -183,7 +185,7 @@ def test_relaxing_a_rule_by_what_its_reason_says_makes_the_section_reachable(dat
 
 
 def test_a_lower_floor_than_the_reason_asks_for_is_needed_and_enough():
-    model, site, found = scene("single-panel"), prepared("single-panel", FAR), reasons("single-panel", FAR)
+    site, found = prepared("single-panel", FAR), reasons("single-panel", FAR)
     floors = {
         (panel, section): reason.broken[0].amount
         for panel, section in unreachable(site)
@@ -191,7 +193,7 @@ def test_a_lower_floor_than_the_reason_asks_for_is_needed_and_enough():
         if [b.rule for b in reason.broken] == [Rule.FLOOR]
     }
     assert floors
-    low = np.array(model.site.airspace.min_enu_m)
+    low = site.problem.space.low_enu_m
     for (panel, section), amount in floors.items():
         for share, expected in ((0.8, False), (1.1, True)):
             space = replace(site.problem.space, low_enu_m=low - [0.0, 0.0, share * amount])
@@ -329,7 +331,7 @@ def test_reasons_on_a_real_building_are_true_at_their_places(shared_data):
 def test_texts_say_what_is_wrong_by_how_much_and_with_what():
     crane = Thing("obstacle", "crane")
     texts = {
-        BrokenRule(Rule.FLOOR, 1.234): "1.23 m below the floor of the airspace",
+        BrokenRule(Rule.FLOOR, 1.234): "1.23 m below the lowest flight allowed",
         BrokenRule(Rule.GIMBAL_UP, 12.04): "12 degrees above what the camera sees with the gimbal at its limit",
         BrokenRule(Rule.DISTANCE, 0.5, crane): "0.5 m too close to obstacle 'crane'",
         BrokenRule(Rule.DISTANCE, 12.0, Thing("building"), inside=True): "inside the building",

@@ -64,7 +64,7 @@ def test_legs_elsewhere_are_not_drawn_anew() -> None:
 
 
 def test_a_viewpoint_behind_the_building_is_flown_around_it() -> None:
-    after = move(planned("kiosk"), "v0003", (0.0, 16.0, 4.0), 180.0, 0.0)
+    after = move(planned("kiosk"), "v0003", (0.0, 16.0, 6.0), 180.0, 0.0)
     assert not errors(after)
     assert len(after.plan.sorties[0].path_enu_m) > len(planned("kiosk").plan.sorties[0].path_enu_m)
     assert min(after.leg_clearances_m(after.plan.sorties[0])) >= 5.0
