@@ -15,6 +15,7 @@ from enum import Enum, auto
 from groundstation.vehicle import fence_limits
 from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.preflight import PreflightCheck, Verdict
+from groundstation.vehicle.surroundings import Surroundings
 from groundstation.vehicle.watch import DISTANCE_TOLERANCE_M
 from missions.mavlink.autopilots import Autopilot
 from planning.frames import Vec3
@@ -359,6 +360,11 @@ def _return(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrd
         return
     if way.gap_m <= 0.0:
         text = f"it returns straight through the building or an obstacle ({where}): {advice}"
+    elif way.gap_m < limit_m - DISTANCE_TOLERANCE_M and way.gap_m >= _gap_of_best_m(orders, around, found):
+        # No height is better: it is the climb that comes near, straight up beside something that juts out.
+        text = f"it climbs within {way.gap_m:.1f} m of the building or an obstacle before it returns ({where})"
+        yield PreflightCheck("return", Verdict.WARN, text, way.gap_m, limit_m, "m")
+        return
     elif way.gap_m < limit_m - DISTANCE_TOLERANCE_M:
         text = f"it returns {way.gap_m:.1f} m from the building or an obstacle ({where}): {advice}"
     elif way.crosses_no_fly:
@@ -369,6 +375,14 @@ def _return(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrd
         yield PreflightCheck("return", Verdict.OK, f"it returns {where}", way.gap_m, limit_m, "m")
         return
     yield PreflightCheck("return", Verdict.BAD, text, way.gap_m, limit_m, "m")
+
+
+def _gap_of_best_m(orders: SortieOrders, around: Surroundings, found: Return) -> float:
+    """Smallest distance of the ways of return at the height that the plan advises."""
+    best_z_m = orders.home_enu_m[2] + orders.return_height_m
+    upper_m = 2.0 * around.space.min_distance_m + 10.0
+    way = return_way(around.space, around.path_enu_m, found.destinations_enu_m, best_z_m, found.cone_slope, upper_m)
+    return way.gap_m
 
 
 def _fence(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOrders) -> Iterator[PreflightCheck]:

@@ -139,7 +139,7 @@ def test_the_rest_of_one_view_goes_there_and_back() -> None:
 
 
 def test_the_mission_says_which_sortie_it_is_the_rest_of() -> None:
-    mission = rest_after(2, number=2).mission
+    mission = rest_after(1, number=2).mission
     assert (mission.number, mission.name) == (2, "kiosk-2-rest")
 
 

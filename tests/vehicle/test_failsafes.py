@@ -19,7 +19,7 @@ from missions.mavlink.messages import Address, MissionItemInt, ParamValue, Recei
 from missions.simulator.profiles import vehicle_profile
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.site import RallyPoint
+from planning.site import Obstacle, RallyPoint, box_geometry
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import QUICK
 from tests.vehicle.test_flight_run import toy_at_home
@@ -162,6 +162,24 @@ def test_a_return_through_the_building_grounds_until_the_height_suffices(planned
     assert above.verdict is Verdict.BAD
     assert "above the airspace, which ends" in above.text
     assert above.limit == pytest.approx(around[autopilot].space.high_enu_m[2] - orders.home_enu_m[2])
+
+
+@pytest.mark.parametrize("autopilot", Autopilot)
+def test_a_climb_beside_something_that_juts_out_is_a_warning_because_no_height_is_better(planned, autopilot):
+    """Aircraft return straight up first: from beside and below a thing, that leads nearer to it."""
+    model, plan = planned
+    sign = Obstacle("sign", box_enu_m=((14.5, -24.5, 22.0), (15.5, -23.5, 24.0)))
+    hung = replace(model, site=replace(model.site, obstacles=(sign,)), obstacles=(box_geometry(sign),))
+    orders = orders_of((hung, plan))
+    beside = np.array([[23.0, -24.0, 12.0], [23.0, -24.0, 12.0]])
+    around = {each: replace(orders.surroundings[each], path_enu_m=beside) for each in Autopilot}
+    orders = replace(orders, surroundings=around, return_height_m=34.0)
+    name, factor = ("RTL_ALT", 100.0) if autopilot is ARDUPILOT else ("RTL_RETURN_ALT", 1.0)
+    check = found(orders, autopilot, "return", **{name: 34.0 * factor})
+    assert check.verdict is Verdict.WARN
+    assert check.text.startswith("it climbs within 7.5 m of the building or an obstacle before it returns (34 m above")
+    low = found(orders, autopilot, "return", **{name: 20.0 * factor})
+    assert low.verdict is Verdict.BAD, "it need not come that near"
 
 
 @pytest.mark.parametrize(("angle_deg", "slope"), [(0.0, 0.0), (45.0, 1.0), (65.0, 0.4663), (80.0, 0.1763)])

@@ -318,6 +318,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "set {0} so that it returns {1} m above take-off"),
     QT_TRANSLATE_NOOP("Sentences", "it returns straight through the building or an obstacle ({0}): {1}"),
     QT_TRANSLATE_NOOP("Sentences", "it returns {0} m from the building or an obstacle ({1}): {2}"),
+    QT_TRANSLATE_NOOP("Sentences", "it climbs within {0} m of the building or an obstacle before it returns ({1})"),
     QT_TRANSLATE_NOOP("Sentences", "it returns across a no-fly zone ({0}); fly it back by hand"),
     QT_TRANSLATE_NOOP("Sentences", "it returns {0}"),
     QT_TRANSLATE_NOOP("Sentences", "the geofence is on board, but nothing keeps the aircraft from leaving it ({0})"),
