@@ -192,6 +192,26 @@
         <translation>Größte Höhe über Boden</translation>
     </message>
     <message>
+        <source>Lowest height above ground, beside take-off and landing</source>
+        <translation>Niedrigste Höhe über Boden, Start und Landung ausgenommen</translation>
+    </message>
+    <message>
+        <source>{0}, {1} to be kept</source>
+        <translation>{0}, einzuhalten sind {1}</translation>
+    </message>
+    <message>
+        <source>{0}; {1} below {2}</source>
+        <translation>{0}; {1} unter {2}</translation>
+    </message>
+    <message>
+        <source>Lowest above ground</source>
+        <translation>Niedrigste Höhe über Boden</translation>
+    </message>
+    <message>
+        <source>Nobody walks and nothing stands or hangs where the paths come down to {0} above the ground</source>
+        <translation>Niemand geht und nichts steht oder hängt dort, wo die Flugwege bis auf {0} über Boden herabkommen</translation>
+    </message>
+    <message>
         <source>{0} along the paths, {1} to be kept</source>
         <translation>{0} entlang der Flugwege, {1} einzuhalten</translation>
     </message>
@@ -3951,8 +3971,8 @@ Blickrichtung: {3}</translation>
         <translation>der Gimbal kann nicht so weit nach unten</translation>
     </message>
     <message>
-        <source>below the airspace</source>
-        <translation>unter dem Luftraum</translation>
+        <source>below the lowest flight allowed</source>
+        <translation>unter der niedrigsten erlaubten Flughöhe</translation>
     </message>
     <message>
         <source>above the airspace</source>
@@ -5801,8 +5821,8 @@ Take it over?</source>
         <translation>{0}° unter dem, was die Kamera mit dem Gimbal am Anschlag sieht</translation>
     </message>
     <message>
-        <source>{0} m below the floor of the airspace</source>
-        <translation>{0} m unter dem Boden des Luftraums</translation>
+        <source>{0} m below the lowest flight allowed</source>
+        <translation>{0} m unter der niedrigsten erlaubten Flughöhe</translation>
     </message>
     <message>
         <source>{0} m above the ceiling of the airspace</source>
@@ -6999,6 +7019,26 @@ Take it over?</source>
     <message>
         <source>it lies {0} m outside the airspace or on its border</source>
         <translation>er liegt {0} m außerhalb des Luftraums oder auf dessen Rand</translation>
+    </message>
+    <message>
+        <source>it lies {0} m below the lowest flight allowed or on its border</source>
+        <translation>er liegt {0} m unter der niedrigsten erlaubten Flughöhe oder auf deren Rand</translation>
+    </message>
+    <message>
+        <source>lowest height above the ground beside the take-off column</source>
+        <translation>niedrigste Höhe über Boden abseits der Startsäule</translation>
+    </message>
+    <message>
+        <source>plan it again, or allow lower flights</source>
+        <translation>neu planen oder niedrigere Flüge erlauben (--min-height)</translation>
+    </message>
+    <message>
+        <source>flights down to {0} m above the ground are allowed, below the usual {1} m: look for people, cars and cables on the whole way</source>
+        <translation>Flüge bis hinab auf {0} m über Boden sind erlaubt, tiefer als die üblichen {1} m: auf dem ganzen Weg auf Menschen, Autos und Kabel achten</translation>
+    </message>
+    <message>
+        <source>its ceiling lies {0} m above the ground, and flights keep {1} m from it; raise the ceiling, or allow lower flights</source>
+        <translation>seine Decke liegt {0} m über dem Boden, und Flüge halten von ihm {1} m Abstand; die Decke anheben oder niedrigere Flüge erlauben (--min-height)</translation>
     </message>
     <message>
         <source>inside a solid</source>
@@ -9275,6 +9315,10 @@ Take it over?</source>
     <message>
         <source>without the link it flies the mission on, and lands at home</source>
         <translation>Ohne Verbindung fliegt es die Mission weiter und landet am Startplatz</translation>
+    </message>
+    <message>
+        <source>it climbs within {0} m of the building or an obstacle before it returns ({1})</source>
+        <translation>er steigt vor der Rückkehr bis auf {0} m an das Gebäude oder ein Hindernis heran auf ({1})</translation>
     </message>
     <message>
         <source>an aircraft that returns by itself, {0} m above take-off, crosses a no-fly zone; fly it back by hand</source>
