@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from planning.errors import InputError
 from planning.folders import PLAIN_ENDINGS, check_ending, check_folder_name
-from planning.request import LARGEST_SEED
 
 if TYPE_CHECKING:
     from planning.effects import Wish
@@ -160,6 +159,8 @@ def checked_seed(seed: int) -> int:
     InputError
         It is negative or too large.
     """
+    from planning.request import LARGEST_SEED  # not at the top: describing a command needs no numerics
+
     if not 0 <= seed <= LARGEST_SEED:
         raise InputError(f"--seed: expected 0 to {LARGEST_SEED}, got {seed}")
     return seed
