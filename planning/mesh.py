@@ -107,21 +107,29 @@ def from_corners(corners_enu_m: NDArray[np.float64]) -> TriangleMesh:
     return TriangleMesh(corners_enu_m.reshape(-1, 3), np.arange(3 * n, dtype=np.int64).reshape(n, 3))
 
 
-def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> TriangleMesh:
-    """Read a PLY, OBJ, GLB or STL file; its coordinates are taken as they stand.
+def mesh_content(path: Path) -> tuple[bytes, str]:
+    """Bytes of a mesh file and its kind, the ending of its name in small letters.
 
     Raises
     ------
     InputError
-        The file is missing, is of another kind, cannot be read, has no triangles, or has coordinates that are not
-        finite or further than `max_coordinate_m` from the origin.
+        The file is missing, of another kind, or too large.
     """
     if path.suffix.lower() not in MESH_SUFFIXES:
         raise InputError(f"{path}: expected a mesh file ({', '.join(MESH_SUFFIXES)}), got '{path.suffix}'")
     if not path.exists():
         raise InputError(f"{path}: there is no such mesh file")
-    content = read_given(path, MESH_FILE)
-    kind = path.suffix.lower()
+    return read_given(path, MESH_FILE), path.suffix.lower()
+
+
+def load_triangles(content: bytes, kind: str, path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Vertices and triangles of a mesh file as they stand in it, neither checked.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or would take too much memory.
+    """
     check_mesh_size(content, kind, path)
     import trimesh
 
@@ -129,7 +137,7 @@ def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> Triangl
     trimesh.util.log.disabled = True
     try:
         # No resolver: what a file names beside itself (materials, textures) is neither needed nor to be trusted.
-        # Numbers beyond all bounds overflow in between; they are refused below.
+        # Numbers beyond all bounds overflow in between; they are refused by those who ask.
         with np.errstate(all="ignore"):
             loaded = trimesh.load_mesh(
                 io.BytesIO(content), file_type=kind[1:], process=False, maintain_order=True, skip_materials=True
@@ -139,6 +147,22 @@ def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> Triangl
         vertices, triangles = np.asarray(loaded.vertices, np.float64), np.asarray(loaded.faces, np.int64)
     except Exception as error:  # trimesh's readers raise whatever their parsers raise
         raise InputError(f"{path}: this mesh cannot be read ({error})") from error
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise InputError(f"{path}: this mesh cannot be read (its vertices do not have three coordinates each)")
+    return vertices, triangles
+
+
+def read_mesh(path: Path, max_coordinate_m: float = MAX_COORDINATE_M) -> TriangleMesh:
+    """Read a PLY, OBJ, GLB or STL file; its coordinates are taken as they stand.
+
+    Raises
+    ------
+    InputError
+        The file is missing, is of another kind, cannot be read, has no triangles, or has coordinates that are not
+        finite or further than `max_coordinate_m` from the origin.
+    """
+    content, kind = mesh_content(path)
+    vertices, triangles = load_triangles(content, kind, path)
     if triangles.ndim != 2 or len(triangles) == 0:
         raise InputError(f"{path}: the mesh has no triangles (a point cloud cannot serve as a building)")
     if not 0 <= triangles.min() <= triangles.max() < len(vertices):

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from planning.errors import InputError
-from planning.mesh import TriangleMesh, empty_mesh, read_mesh
+from planning.mesh import TriangleMesh, empty_mesh
 from planning.progress import Monitor
 from planning.site_import.ground import stand, stated_ground
+from planning.site_import.mesh_parts import read_mesh_parts
 from planning.site_import.options import UNITS_M, ImportOptions
 from planning.site_import.placement import place
-from planning.site_import.source import SourceModel
+from planning.site_import.source import SourceModel, left_out_notes
 
 MAX_SOURCE_COORDINATE = 1e12
 """A projected coordinate has 1e7 metres, or 1e10 millimetres."""
@@ -38,7 +39,7 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
             "photos with 'panels'"
         )
     monitor.report("reading the mesh", 0, 1)
-    mesh = read_mesh(path, MAX_SOURCE_COORDINATE)
+    mesh, left_out = read_mesh_parts(path, MAX_SOURCE_COORDINATE)
     vertices, triangles = mesh.vertices_enu_m, mesh.triangles
     up = options.up or ("y" if path.suffix.lower() == ".glb" else "z")
     if up == "y":
@@ -66,7 +67,7 @@ def read_mesh_source(path: Path, options: ImportOptions, monitor: Monitor) -> So
         TriangleMesh(stands.vertices_enu_m, triangles[stands.is_kept]),
         empty_mesh(),
         stands.placement,
-        notes=(*stands.placement.georeference.notes, *notes, *stands.notes),
+        notes=(*stands.placement.georeference.notes, *notes, *stands.notes, *left_out_notes(left_out)),
         terrain=stands.terrain,
         question=stands.question,
     )

@@ -290,4 +290,27 @@ SENTENCES = (
         "no place inside the airspace is {0} m from every wall, so home is tight: choose one with --home, or widen "
         "--airspace-margin",
     ),
+    QT_TRANSLATE_NOOP("Sentences", "this mesh cannot be read (its vertices do not have three coordinates each)"),
+    QT_TRANSLATE_NOOP("Sentences", "a triangle without one of its corners"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the mesh has no triangles that are whole (a point cloud cannot serve as a building)",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "line {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "facet {0}"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "this PLY file cannot be read: it is cut off, or its header announces something else than what is "
+        "there; copy or export it again",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "mesh '{0}'"),
+    QT_TRANSLATE_NOOP("Sentences", "node '{0}'"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the file is cut off: it announces {0} triangles, and {1} are there; copy or export it again",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the file is cut off: it announces {0} rows, and {1} are there; copy or export it again",
+    ),
 )
