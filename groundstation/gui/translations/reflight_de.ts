@@ -2748,7 +2748,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Show place</source>
-        <translation>Ort zeigen</translation>
+        <translation>Stelle zeigen</translation>
     </message>
     <message>
         <source>Error</source>
@@ -8673,6 +8673,46 @@ Take it over?</source>
         <translation>kein Ort im Luftraum liegt {0} m von jeder Wand, der Startplatz ist also eng: einen mit --home wählen oder --airspace-margin erweitern</translation>
     </message>
     <message>
+        <source>this mesh cannot be read (its vertices do not have three coordinates each)</source>
+        <translation>dieses Netz lässt sich nicht lesen (seine Ecken haben nicht je drei Koordinaten)</translation>
+    </message>
+    <message>
+        <source>a triangle without one of its corners</source>
+        <translation>ein Dreieck, dem eine Ecke fehlt</translation>
+    </message>
+    <message>
+        <source>the mesh has no triangles that are whole (a point cloud cannot serve as a building)</source>
+        <translation>das Netz hat kein heiles Dreieck (eine Punktwolke kann kein Gebäude sein)</translation>
+    </message>
+    <message>
+        <source>line {0}</source>
+        <translation>Zeile {0}</translation>
+    </message>
+    <message>
+        <source>facet {0}</source>
+        <translation>Facette {0}</translation>
+    </message>
+    <message>
+        <source>this PLY file cannot be read: it is cut off, or its header announces something else than what is there; copy or export it again</source>
+        <translation>diese PLY-Datei lässt sich nicht lesen: sie ist abgeschnitten, oder ihr Kopf kündigt etwas anderes an, als da ist; erneut kopieren oder exportieren</translation>
+    </message>
+    <message>
+        <source>mesh &apos;{0}&apos;</source>
+        <translation>Netz &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>node &apos;{0}&apos;</source>
+        <translation>Knoten &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>the file is cut off: it announces {0} triangles, and {1} are there; copy or export it again</source>
+        <translation>die Datei ist abgeschnitten: sie kündigt {0} Dreiecke an, und {1} sind da; erneut kopieren oder exportieren</translation>
+    </message>
+    <message>
+        <source>the file is cut off: it announces {0} rows, and {1} are there; copy or export it again</source>
+        <translation>die Datei ist abgeschnitten: sie kündigt {0} Zeilen an, und {1} sind da; erneut kopieren oder exportieren</translation>
+    </message>
+    <message>
         <source>checking</source>
         <translation>Prüfung</translation>
     </message>
@@ -12379,7 +12419,7 @@ Take it over?</source>
     </message>
     <message>
         <source>Remove what is selected</source>
-        <translation>Auswahl entfernen</translation>
+        <translation>Ausgewähltes entfernen</translation>
     </message>
 </context>
 <context>
