@@ -67,11 +67,9 @@ WORDS = (
     QT_TRANSLATE_NOOP("Brief", "Batteries needed"),
     QT_TRANSLATE_NOOP("Brief", "Flight time, all sorties"),
     QT_TRANSLATE_NOOP("Brief", "Coverage of what can be covered"),
-    QT_TRANSLATE_NOOP("Brief", "Greatest height above ground"),
-    QT_TRANSLATE_NOOP("Brief", "Lowest height above ground, beside take-off and landing"),
-    QT_TRANSLATE_NOOP("Brief", "{0}, {1} to be kept"),
+    QT_TRANSLATE_NOOP("Brief", "at most {0}"),
+    QT_TRANSLATE_NOOP("Brief", "{0} to {1}, at least {2} to be kept but at take-off"),
     QT_TRANSLATE_NOOP("Brief", "{0}; {1} below {2}"),
-    QT_TRANSLATE_NOOP("Brief", "Lowest above ground"),
     QT_TRANSLATE_NOOP(
         "Brief", "Nobody walks and nothing stands or hangs where the paths come down to {0} above the ground"
     ),

@@ -135,8 +135,7 @@ def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple
     total_s = sum(sortie.duration_s for sortie in brief.sorties)
     yield say("Flight time, all sorties"), duration_text(total_s)
     yield say("Coverage of what can be covered"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
-    yield say("Greatest height above ground"), length.text(brief.max_above_ground_m)
-    yield say("Lowest height above ground, beside take-off and landing"), _low(brief, units, say)
+    yield say("Height above ground"), _heights(brief, units, say)
     near = [s.smallest_clearance_m for s in brief.sorties if s.smallest_clearance_m is not None]
     kept = say("{0} along the paths, {1} to be kept").format(
         length.text(min(near)) if near else say("not measured"), length.text(brief.min_distance_m)
@@ -146,14 +145,16 @@ def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple
     yield say("Wind"), wind.format(speed.text(brief.wind_m_s), speed.text(brief.max_wind_m_s))
 
 
-def _low(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
-    length, low = length_unit(units), brief.low
+def _heights(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
+    length, low, greatest = length_unit(units), brief.low, length_unit(units).text(brief.max_above_ground_m)
     if low is None:
-        return say("not measured")
-    kept = say("{0}, {1} to be kept").format(length.text(low.lowest_m), length.text(brief.min_height_m))
-    if low.below_s is None:
-        return kept
-    return say("{0}; {1} below {2}").format(kept, duration_text(low.below_s), length.text(LOW_M))
+        return say("at most {0}").format(greatest)
+    heights = say("{0} to {1}, at least {2} to be kept but at take-off").format(
+        length.text(low.lowest_m), greatest, length.text(brief.min_height_m)
+    )
+    if low.below_s is None or low.lowest_m >= LOW_M:
+        return heights
+    return say("{0}; {1} below {2}").format(heights, duration_text(low.below_s), length.text(LOW_M))
 
 
 def _takeoff(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple[str, str]]:
@@ -174,7 +175,6 @@ def _sorties(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
         say("Battery used"),
         say("Highest above take-off"),
         say("Highest above sea (EGM96)"),
-        say("Lowest above ground"),
         say("Smallest distance"),
     )
     rows = [
@@ -186,7 +186,6 @@ def _sorties(brief: FlightBrief, units: UnitSystem, say: Say) -> str:
             f"{sortie.battery_share:.0%}",
             length.text(sortie.max_above_takeoff_m),
             length.text(sortie.max_altitude_amsl_m),
-            "–" if sortie.low is None else length.text(sortie.low.lowest_m),
             "–" if sortie.smallest_clearance_m is None else length.text(sortie.smallest_clearance_m),
         )
         for sortie in brief.sorties

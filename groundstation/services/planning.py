@@ -133,7 +133,8 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
     if share < request.share:
         text = f"covers {100.0 * share:.2f} % of what is possible at most, {100.0 * request.share:g} % were asked for"
         if request.method != "greedy":
-            text += "; the method flies a pattern of its own"
+            advice = "the method flies a pattern of its own"
+            text = f"{text}; {advice}"
         yield Finding(Severity.WARNING, "less-coverage", text, "", share, request.share)
         if request.method == "greedy":
             yield from why_open(planned)

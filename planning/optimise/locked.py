@@ -44,9 +44,9 @@ def _why_not(space: FreeSpace, position_enu_m: NDArray[np.float64]) -> str:
     """Why a position cannot be flown."""
     outside_m = float(np.maximum(space.low_enu_m - position_enu_m, position_enu_m - space.high_enu_m).max())
     if outside_m > -LEG_MARGIN_M:
-        below_m = float(space.low_enu_m[2] - position_enu_m[2])
-        where = "below the lowest flight allowed" if outside_m == below_m else "outside the airspace"
-        return f"it lies {max(outside_m, 0.0):.3f} m {where} or on its border"
+        if outside_m == float(space.low_enu_m[2] - position_enu_m[2]):
+            return f"it lies {max(outside_m, 0.0):.3f} m below the lowest flight allowed or on its border"
+        return f"it lies {max(outside_m, 0.0):.3f} m outside the airspace or on its border"
     distance_m = float(space.solids.clearance_m(position_enu_m[None])[0])
     if distance_m < space.min_distance_m + LEG_MARGIN_M:
         where = "inside a solid" if distance_m < 0.0 else "from the building or an obstacle"

@@ -86,9 +86,8 @@ def test_how_low_each_sortie_flies_and_how_long_below_ten_metres_is_told(brief, 
     assert brief.low.lowest_m == min(told.low.lowest_m for told in brief.sorties)
     assert brief.min_height_m == 5.0
     above = page_text(brief_html(brief, METRIC, {}))
-    assert (
-        f"Lowest height above ground, beside take-off and landing {brief.low.lowest_m:.1f} m, 5.0 m to be kept" in above
-    )
+    heights = f"{brief.low.lowest_m:.1f} m to {brief.max_above_ground_m:.1f} m"
+    assert f"Height above ground {heights}, at least 5.0 m to be kept but at take-off" in above
     assert "Nobody walks" not in above
     dip = replace(
         plan.sorties[1],
@@ -97,7 +96,7 @@ def test_how_low_each_sortie_flies_and_how_long_below_ten_metres_is_told(brief, 
     low = flight_brief(MODEL, replace(plan, sorties=(plan.sorties[0], dip)), (), "today")
     assert low.low.lowest_m == 6.0
     text = page_text(brief_html(low, METRIC, {}))
-    assert "6.0 m, 5.0 m to be kept; " in text
+    assert "at least 5.0 m to be kept but at take-off; " in text
     assert "below 10.0 m" in text
     assert "Nobody walks and nothing stands or hangs where the paths come down to 6.0 m above the ground" in text
 

@@ -92,6 +92,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "it looks {0} deg up, and the gimbal turns from {1} to {2} deg"),
     QT_TRANSLATE_NOOP("Sentences", "viewpoint '{0}' is locked, but cannot be flown: {1}; unlock it, or move it first"),
     QT_TRANSLATE_NOOP("Sentences", "it lies {0} m outside the airspace or on its border"),
+    QT_TRANSLATE_NOOP("Sentences", "expected 0 m or more, got {0}"),
     QT_TRANSLATE_NOOP("Sentences", "it lies {0} m below the lowest flight allowed or on its border"),
     QT_TRANSLATE_NOOP("Sentences", "lowest height above the ground beside the take-off column"),
     QT_TRANSLATE_NOOP("Sentences", "plan it again, or allow lower flights"),
@@ -102,8 +103,8 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "its ceiling lies {0} m above the ground, and flights keep {1} m from it; raise the ceiling, or allow lower "
-        "flights",
+        "airspace: its ceiling lies {0} m above the ground, and flights keep {1} m from it; raise the ceiling, or "
+        "allow lower flights",
     ),
     QT_TRANSLATE_NOOP("Sentences", "inside a solid"),
     QT_TRANSLATE_NOOP("Sentences", "from the building or an obstacle"),
@@ -206,23 +207,22 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "more time does not help"),
     QT_TRANSLATE_NOOP("Sentences", "the method flies a pattern of its own"),
     QT_TRANSLATE_NOOP("Sentences", "covers {0} % of what is possible at most, {1} % were asked for"),
-    QT_TRANSLATE_NOOP("Sentences", "covers {0} % of what is possible at most, {1} % were asked for; {2}"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} sections (on {1} panels, the first is '{2}') {3}"),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "{0} sections (on {1} panels, the first is '{2}') have no place from which they are known to be seen, and no "
-        "proof that there is none, so that they count as possible; {3}",
+        "have no place from which they are known to be seen, and no proof that there is none, so that they count as "
+        "possible; {0}",
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "{0} sections (on {1} panels, the first is '{2}') are only seen from places to which no way from home was "
-        "found that keeps {3} m from everything; move home, or lower the minimum distance",
+        "are only seen from places to which no way from home was found that keeps {0} m from everything; move home, or "
+        "lower the minimum distance",
     ),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "{0} sections (on {1} panels, the first is '{2}') are only seen from places less than {3} m from other "
-        "viewpoints, which {4} refuses; {5}",
+        "are only seen from places less than {0} m from other viewpoints, which {1} refuses; more time does not help",
     ),
-    QT_TRANSLATE_NOOP("Sentences", "{0} sections (on {1} panels, the first is '{2}') can be covered; {3}"),
+    QT_TRANSLATE_NOOP("Sentences", "can be covered; allow it more time"),
     QT_TRANSLATE_NOOP("Sentences", "the window is closing"),
     QT_TRANSLATE_NOOP("Sentences", "the system ended it, mostly because memory ran out"),
     QT_TRANSLATE_NOOP("Sentences", "exit status {0}"),

@@ -15,6 +15,7 @@ from missions.dji.write import LinkLoss
 from missions.encode import takeoff_check
 from planning.errors import InputError
 from planning.findings import Finding, Severity
+from planning.insight.flight_profile import LowFlight
 from tests.missions.plans import HONG_KONG, example_plan
 from tests.planning.plan_cases import kiosk
 from tests.services.map_files import tiles_around, write_map
@@ -110,7 +111,8 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
     high = replace(low, is_upper_edge=True, above_edge_m=2.0)
     sorties = tuple(replace(full.sorties[0], takeoff_check=check) for check in (low, high))
     pictures = brief_pictures(MODEL, plan, UNITS, say)
-    for brief in (full, empty, bare, warned, replace(full, sorties=sorties)):
+    near = replace(full, low=LowFlight(6.0, 12.0, 100.0))
+    for brief in (full, empty, bare, warned, near, replace(full, sorties=sorties)):
         brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), say)
     assert said <= set(WORDS)
     assert set(WORDS) - said == {"Page {0} of {1}"}
