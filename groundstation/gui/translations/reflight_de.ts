@@ -188,24 +188,16 @@
         <translation>Abdeckung des Erreichbaren</translation>
     </message>
     <message>
-        <source>Greatest height above ground</source>
-        <translation>Größte Höhe über Boden</translation>
-    </message>
-    <message>
-        <source>Lowest height above ground, beside take-off and landing</source>
-        <translation>Niedrigste Höhe über Boden, Start und Landung ausgenommen</translation>
-    </message>
-    <message>
-        <source>{0}, {1} to be kept</source>
-        <translation>{0}, einzuhalten sind {1}</translation>
-    </message>
-    <message>
         <source>{0}; {1} below {2}</source>
         <translation>{0}; {1} unter {2}</translation>
     </message>
     <message>
-        <source>Lowest above ground</source>
-        <translation>Niedrigste Höhe über Boden</translation>
+        <source>at most {0}</source>
+        <translation>höchstens {0}</translation>
+    </message>
+    <message>
+        <source>{0} to {1}, at least {2} to be kept but at take-off</source>
+        <translation>{0} bis {1}, einzuhalten sind außer beim Start mindestens {2}</translation>
     </message>
     <message>
         <source>Nobody walks and nothing stands or hangs where the paths come down to {0} above the ground</source>
@@ -7021,6 +7013,10 @@ Take it over?</source>
         <translation>er liegt {0} m außerhalb des Luftraums oder auf dessen Rand</translation>
     </message>
     <message>
+        <source>expected 0 m or more, got {0}</source>
+        <translation>erwartet werden 0 m oder mehr, nicht {0}</translation>
+    </message>
+    <message>
         <source>it lies {0} m below the lowest flight allowed or on its border</source>
         <translation>er liegt {0} m unter der niedrigsten erlaubten Flughöhe oder auf deren Rand</translation>
     </message>
@@ -7037,8 +7033,24 @@ Take it over?</source>
         <translation>Flüge bis hinab auf {0} m über Boden sind erlaubt, tiefer als die üblichen {1} m: auf dem ganzen Weg auf Menschen, Autos und Kabel achten</translation>
     </message>
     <message>
-        <source>its ceiling lies {0} m above the ground, and flights keep {1} m from it; raise the ceiling, or allow lower flights</source>
-        <translation>seine Decke liegt {0} m über dem Boden, und Flüge halten von ihm {1} m Abstand; die Decke anheben oder niedrigere Flüge erlauben (--min-height)</translation>
+        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) {3}</source>
+        <translation>{0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) {3}</translation>
+    </message>
+    <message>
+        <source>have no place from which they are known to be seen, and no proof that there is none, so that they count as possible; {0}</source>
+        <translation>haben keinen bekannten Ort, von dem sie zu sehen sind, und keinen Beweis, dass es keinen gibt, so dass sie als möglich zählen; {0}</translation>
+    </message>
+    <message>
+        <source>are only seen from places to which no way from home was found that keeps {0} m from everything; move home, or lower the minimum distance</source>
+        <translation>sind nur von Orten zu sehen, zu denen kein Weg vom Startplatz gefunden wurde, der von allem {0} m Abstand hält; den Startplatz verlegen oder den Mindestabstand senken</translation>
+    </message>
+    <message>
+        <source>are only seen from places less than {0} m from other viewpoints, which {1} refuses; more time does not help</source>
+        <translation>sind nur von Orten zu sehen, die weniger als {0} m von anderen Aufnahmepunkten entfernt sind, was {1} verweigert; mehr Zeit hilft nicht</translation>
+    </message>
+    <message>
+        <source>can be covered; allow it more time</source>
+        <translation>lassen sich abdecken; mehr Zeit geben</translation>
     </message>
     <message>
         <source>inside a solid</source>
@@ -7141,28 +7153,16 @@ Take it over?</source>
         <translation>deckt {0} % dessen ab, was höchstens möglich ist; gewünscht waren {1} %</translation>
     </message>
     <message>
-        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) have no place from which they are known to be seen, and no proof that there is none, so that they count as possible; {3}</source>
-        <translation>zu {0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) ist kein Ort bekannt, von dem sie zu sehen sind, und auch kein Beweis, dass es keinen gibt, so dass sie als möglich zählen; {3}</translation>
-    </message>
-    <message>
-        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) are only seen from places to which no way from home was found that keeps {3} m from everything; move home, or lower the minimum distance</source>
-        <translation>{0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) sind nur von Orten zu sehen, zu denen kein Weg vom Startplatz gefunden wurde, der von allem {3} m Abstand hält; Startplatz verlegen oder den Mindestabstand senken</translation>
-    </message>
-    <message>
-        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) are only seen from places less than {3} m from other viewpoints, which {4} refuses; {5}</source>
-        <translation>{0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) sind nur von Orten zu sehen, die weniger als {3} m von anderen Aufnahmepunkten entfernt sind, was {4} verweigert; {5}</translation>
-    </message>
-    <message>
-        <source>{0} sections (on {1} panels, the first is &apos;{2}&apos;) can be covered; {3}</source>
-        <translation>{0} Sektoren (an {1} Scheiben, die erste ist &apos;{2}&apos;) lassen sich abdecken; {3}</translation>
-    </message>
-    <message>
         <source>takes {0} of {1} batteries: more views would show nothing new or could not be flown</source>
         <translation>braucht {0} von {1} Akkus: Mehr Aufnahmen würden nichts Neues zeigen oder wären nicht zu fliegen</translation>
     </message>
     <message>
         <source>viewpoint {0}</source>
         <translation>Aufnahmepunkt {0}</translation>
+    </message>
+    <message>
+        <source>airspace: its ceiling lies {0} m above the ground, and flights keep {1} m from it; raise the ceiling, or allow lower flights</source>
+        <translation>Luftraum: seine Decke liegt {0} m über dem Boden, und Flüge halten von ihm {1} m Abstand; die Decke anheben oder niedrigere Flüge erlauben</translation>
     </message>
     <message>
         <source>expected 1 or more, got {0}</source>
@@ -7279,10 +7279,6 @@ Take it over?</source>
     <message>
         <source>the method flies a pattern of its own</source>
         <translation>das Verfahren fliegt ein eigenes Muster</translation>
-    </message>
-    <message>
-        <source>covers {0} % of what is possible at most, {1} % were asked for; {2}</source>
-        <translation>deckt höchstens {0} % des Möglichen ab, verlangt waren {1} %; {2}</translation>
     </message>
     <message>
         <source>the window is closing</source>
