@@ -105,7 +105,7 @@ _PAGE = """<!DOCTYPE html>
 @page {{ size: {size}; margin: 15mm; }}
 body {{ font-family: sans-serif; font-size: 9pt; color: #000000; }}
 h1 {{ font-size: 15pt; margin: 0px 0px 4px 0px; }}
-h2 {{ font-size: 11pt; margin: 8px 0px 2px 0px; }}
+h2 {{ font-size: 11pt; margin: 6px 0px 1px 0px; }}
 h3 {{ font-size: 10pt; margin: 8px 0px 0px 0px; }}
 p {{ margin: 2px 0px; }}
 th {{ text-align: left; background-color: #e6e9ec; }}
