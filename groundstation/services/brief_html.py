@@ -278,4 +278,4 @@ def _grid(titles: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def _checklist(steps: Iterable[str]) -> str:
     lines = [f'<tr><td width="24">&#9744;</td><td>{escape(step)}</td></tr>' for step in steps]
-    return f'<table width="100%" cellpadding="1">{"".join(lines)}</table>'
+    return f'<table width="100%" cellpadding="0">{"".join(lines)}</table>'
