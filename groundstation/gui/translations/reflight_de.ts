@@ -7026,7 +7026,7 @@ Take it over?</source>
     </message>
     <message>
         <source>plan it again, or allow lower flights</source>
-        <translation>neu planen oder niedrigere Flüge erlauben (--min-height)</translation>
+        <translation>neu planen oder niedrigere Flüge erlauben</translation>
     </message>
     <message>
         <source>flights down to {0} m above the ground are allowed, below the usual {1} m: look for people, cars and cables on the whole way</source>
