@@ -31,6 +31,9 @@ Record = TypeVar("Record")
 JSON_FILE = FileLimit("a JSON file", 512 * MIB)
 """A site of 100 000 panels is under 50 MB."""
 
+LARGEST_INTEGER = 2**64
+"""Whole numbers beyond are none of ours, and no float that is close enough."""
+
 MAX_DEPTH = 100
 """Levels of lists and objects; GeoJSON and CityJSON, the deepest that are read, have under 12."""
 
@@ -90,7 +93,7 @@ def parse_json(written: bytes, path: Path, *, names_files: bool = False) -> Any:
     return content
 
 
-def _check_values(content: Any, path: Path, names_files: bool) -> None:
+def _check_values(content: Any, path: Path, names_files: bool, *, is_toml: bool = False) -> None:
     """Refuse what JSON does not have and Python reads all the same: NaN, 1e999, half a character, endless depth."""
     level: list[Any] = [content]
     for _ in range(MAX_DEPTH):
@@ -102,8 +105,10 @@ def _check_values(content: Any, path: Path, names_files: bool) -> None:
             elif kind is dict:
                 deeper += value.values()
                 deeper += value
-            elif (kind is float and not math.isfinite(value)) or (
-                kind is str and not (names_files or value.isascii() or _is_text(value))
+            elif (
+                (kind is float and not (is_toml or math.isfinite(value)))
+                or (kind is int and not -LARGEST_INTEGER <= value <= LARGEST_INTEGER)
+                or (kind is str and not (names_files or value.isascii() or _is_text(value)))
             ):
                 _refuse_value(content, value, path)
         if not deeper:
@@ -122,6 +127,8 @@ def _is_text(text: str) -> bool:
 
 def _refuse_value(content: Any, wrong: Any, path: Path) -> NoReturn:
     place = (_place_of(content, wrong, "") or "").lstrip(".").encode("ascii", "backslashreplace").decode()
+    if isinstance(wrong, int):
+        raise InputError(f"{path}: {place}: expected a number of at most 20 digits, found one of {len(str(wrong))}")
     if isinstance(wrong, float):
         raise InputError(f"{path}: {place}: expected a finite number, got NaN or Infinity")
     raise InputError(f"{path}: {place}: expected text, found half of a character (a surrogate by itself)")
@@ -251,7 +258,9 @@ def parse_toml(written: bytes, path: Path) -> dict[str, Any]:
         if long_key is not None:
             line = text.count("\n", 0, long_key.start()) + 1
             raise InputError(f"{path}: line {line}: a key has more than {MAX_KEY_PARTS} parts; none of ours has")
-        return tomllib.loads(text)
+        content = tomllib.loads(text)
+        _check_values(content, path, False, is_toml=True)
+        return content
     except ValueError as error:  # TOMLDecodeError, UnicodeDecodeError, and numbers with thousands of digits
         raise InputError(f"{path}: not valid TOML ({error})") from error
     except RecursionError as error:

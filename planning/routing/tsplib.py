@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 MAX_POINTS = 10_000
 """Larger instances are refused: their distance matrix would take more than 0.8 GB."""
 
+LARGEST = 1e15
+"""Coordinates and distances of instances have seven digits; doubles count in ones up to here."""
+
 TSPLIB_FILE, MAX_LINES = FileLimit("a TSPLIB file", 64 * MIB), 1_000_000
 
 SECTIONS = (
@@ -111,8 +114,9 @@ class _File:
                 raise self.error(line.number, name, f"expected numbers, found '{wrong}'") from None
             lines.extend([line.number] * len(words))
         array = np.array(values, float)
-        if not np.isfinite(array).all():
-            raise self.error(lines[int(np.argmin(np.isfinite(array)))], name, "expected finite numbers")
+        is_usable = np.abs(array) <= LARGEST  # neither is what is not finite
+        if not is_usable.all():
+            raise self.error(lines[int(np.argmin(is_usable))], name, f"expected finite numbers, at most {LARGEST:g}")
         return array, np.array(lines, np.int64)
 
     def records(self, name: str, n_records: int, width: int, what: str) -> tuple[Array, NDArray[np.int64]]:

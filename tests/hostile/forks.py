@@ -27,7 +27,7 @@ LONGEST_S = 60.0
 def _run(job: dict[str, Any]) -> int:
     """Do a job in this process, as the command line would; returns its exit status."""
     from groundstation.cli.main import EXIT_FAILED, main
-    from planning.errors import GroundStationError
+    from planning.errors import GroundStationError, shortened
 
     if "command" in job:
         return main(job["command"], lambda _: 99)
@@ -35,7 +35,7 @@ def _run(job: dict[str, Any]) -> int:
     try:
         getattr(importlib.import_module(module), name)(Path(job["path"]))
     except GroundStationError as error:
-        sys.stderr.write(f"error: {' '.join(str(error).split())}\n")
+        sys.stderr.write(f"error: {' '.join(shortened(str(error)).split())}\n")
         return EXIT_FAILED
     return 0
 

@@ -150,7 +150,7 @@ def values_toml(content: bytes, rng: random.Random) -> bytes:
     """A value in TOML is of another kind, size or depth."""
     try:
         return tomli_w.dumps(_changed(tomllib.loads(content.decode()), rng)).encode()
-    except (ValueError, TypeError, AttributeError):
+    except (ValueError, TypeError, AttributeError, RecursionError):
         return b"a." * 100_000 + b"a=1\n" + content
 
 

@@ -87,8 +87,8 @@ def complaint(given: Input, folder: Path, forks: Forks) -> str:
         return f"expected one line: {told}"
     if any(len(line) > LONGEST_LINE for line in lines):
         return f"a line of {len(lines[0])} characters: {lines[0][:300]}"
-    new = sorted(set(after) - set(before))
-    temporary = [name for name in new if Path(name).name.startswith(".") and not Path(name).name.startswith(".lock")]
+    new = sorted(name for name in set(after) - set(before) if Path(name).name != ".lock")
+    temporary = [name for name in new if Path(name).name.startswith(".")]
     if temporary or (lines and new and not given.command.startswith(IN_PLACE)):
         return f"left {temporary or new}: {told}"
     return ""
@@ -112,14 +112,8 @@ def wrong(given: Input, n: int, workspace: Path, folder: Path, forks: Forks) -> 
         if said:
             found.append(f"{given.name}, {number} ({what}): {said}")
             kept = os.environ.get("REFLIGHT_KEEP")
-            if kept:
-                shutil.copytree(
-                    case,
-                    Path(kept) / f"{given.name.replace('/', '_')}-{number}",
-                    symlinks=True,
-                    dirs_exist_ok=True,
-                    ignore=lambda *_: ["images", "masks", "normals", "panels"],
-                )
+            if kept and path.is_file() and path.stat().st_size < 2**24:
+                shutil.copy(path, Path(kept) / f"{given.name.replace('/', '_')}-{number}-{path.name}")
     return found
 
 

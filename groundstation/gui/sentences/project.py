@@ -155,6 +155,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "declares a document type or entities"),
     QT_TRANSLATE_NOOP("Sentences", "is nested more than {0} levels deep"),
     QT_TRANSLATE_NOOP("Sentences", "a JSON file"),
+    QT_TRANSLATE_NOOP("Sentences", "expected a number of at most 20 digits, found one of {0}"),
     QT_TRANSLATE_NOOP("Sentences", "a TOML file"),
     QT_TRANSLATE_NOOP("Sentences", "expected text, found half of a character (a surrogate by itself)"),
     QT_TRANSLATE_NOOP("Sentences", "a text in it holds half of a character (a surrogate by itself)"),
