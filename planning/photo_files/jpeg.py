@@ -100,6 +100,12 @@ def _header(file: BinaryIO, label: str) -> JpegHeader:
                 parts.size_px = int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big")
         elif marker == APP1:
             _keep(parts, _read(file, length, label))
+    if parts.size_px is not None and 0 in parts.size_px:
+        width, height = parts.size_px
+        raise InputError(
+            f"{label}: claims to be a picture of {width} x {height} pixels, so there is none in it; copy it from the "
+            "card again"
+        )
     if parts.size_px is None:
         raise InputError(f"{label}: the JPEG file holds no picture; copy it from the card again")
     packets = tuple(packet for packet in (parts.xmp, _extended(parts)) if packet is not None)

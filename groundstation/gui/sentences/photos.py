@@ -33,6 +33,10 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "holds no .jpg photo; name the folder that was copied from the camera's card"),
     QT_TRANSLATE_NOOP("Sentences", "is no JPEG file; only .jpg photos as the camera wrote them can be read"),
     QT_TRANSLATE_NOOP("Sentences", "the JPEG file holds no picture; copy it from the card again"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "claims to be a picture of {0} x {1} pixels, so there is none in it; copy it from the card again",
+    ),
     QT_TRANSLATE_NOOP("Sentences", "the JPEG header has more than {0} parts; refused as hostile"),
     QT_TRANSLATE_NOOP("Sentences", "the header of the JPEG file is damaged; copy it from the card again"),
     QT_TRANSLATE_NOOP("Sentences", "the file ends in its header; copy it from the card again"),
