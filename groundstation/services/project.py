@@ -32,7 +32,7 @@ from planning.request import PlanRequest
 from planning.site import SiteModel
 from planning.site_file import site_of
 
-ATTEMPTS = 5
+ATTEMPTS = 30
 """To read a project that is being saved meanwhile; a save takes tenths of a second, and the next is seconds later."""
 
 

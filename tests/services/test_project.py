@@ -2,8 +2,10 @@
 
 import json
 import subprocess
+import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,6 +28,8 @@ from planning.site_import.importer import import_site
 from planning.site_import.options import ImportOptions
 from planning.site_import.output import write_imported_site
 from tests.services.project_cases import SITES, document, documents, edited, is_same, plan, small_disk
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def files_of(folder):
@@ -441,3 +445,40 @@ def test_a_real_building_survives_as_a_project(shared_data, tmp_path):
     kept = create_project(tmp_path / "b", Document(read_site(site_path)))
     assert kept.site.sha256 == model.sha256
     assert written.site.site.n_panels == model.site.n_panels
+
+
+SAVER = """
+import sys
+from dataclasses import replace
+from pathlib import Path
+import numpy as np
+from groundstation.services.project import open_project, save_project
+from planning.mesh import box_mesh
+from tests.services.project_cases import edited
+folder = Path(sys.argv[1])
+document = open_project(folder).document
+print("ready", flush=True)
+for number in range(10**6):
+    building = box_mesh(np.array([-13.0 - number % 5, -8.0, 0.0]), np.array([12.0, 8.0, 12.0]))
+    document = replace(document, site=replace(document.site, building=building))
+    document = save_project(folder, edited(document, number % 9))
+"""
+
+
+def test_a_project_that_another_process_saves_all_the_time_is_read_whole(tmp_path):
+    folder = tmp_path / "p"
+    create_project(folder, document("roof", 2))
+    saver = subprocess.Popen([sys.executable, "-c", SAVER, str(folder)], stdout=subprocess.PIPE, cwd=ROOT)
+    try:
+        assert saver.stdout.readline() == b"ready\n"
+        widths = set()
+        for _ in range(60):
+            opened = open_project(folder)
+            assert [note.code for note in opened.notes] == []
+            assert len(opened.document.plans) == 2
+            widths.add(float(opened.document.site.building.vertices_enu_m[:, 0].min()))
+        assert saver.poll() is None
+        assert len(widths) > 1
+    finally:
+        saver.kill()
+        saver.communicate()
