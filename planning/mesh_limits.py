@@ -20,6 +20,9 @@ MESH_FILE = FileLimit("a mesh file", 2048 * MIB, "reduce it, or cut out the buil
 _LINE_BYTES, _TEXT_FACTOR = 200, 6
 """That trimesh's readers of text take for a line, and for each of its characters (measured: 100 to 200, and 4 to 6)."""
 
+_FREE_BYTES, _MOST_FACTOR = 2**30, 40
+"""What any mesh may take, and how many times the bytes of its file; texts of short lines come nearest."""
+
 _BINARY_FACTOR = 16
 """The same of bytes in PLY and STL files (measured: 12 to 19)."""
 
@@ -55,14 +58,15 @@ def check_mesh_size(content: bytes, kind: str, path: Path) -> None:
         n_bytes = _TEXT_FACTOR * len(content) + _LINE_BYTES * (content.count(b"\n") + content.count(b"\r"))
     else:
         n_bytes = _BINARY_FACTOR * len(content)
-    _refuse(n_bytes, path)
+    most = min(2 * MAX_PARSED_BYTES, max(_FREE_BYTES, _MOST_FACTOR * len(content)))
+    _refuse(n_bytes, most, path)
 
 
-def _refuse(n_bytes: int, path: Path) -> None:
-    if n_bytes > 2 * MAX_PARSED_BYTES:
+def _refuse(n_bytes: int, most: int, path: Path) -> None:
+    if n_bytes > most:
         raise InputError(
-            f"{path}: this mesh would take about {n_bytes / 2**30:.0f} GiB of memory; expected at most "
-            f"{2 * MAX_PARSED_BYTES // 2**30} GiB; reduce it, or export the building alone as binary PLY"
+            f"{path}: this mesh would take about {n_bytes / 2**30:.1f} GiB of memory; expected at most "
+            f"{most / 2**30:.1f} GiB of one of its size; reduce it, or export the building alone as binary PLY"
         )
 
 

@@ -167,8 +167,8 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "reduce it, or cut out the building"),
     QT_TRANSLATE_NOOP(
         "Sentences",
-        "this mesh would take about {0} GiB of memory; expected at most {1} GiB; reduce it, or export "
-        "the building alone as binary PLY",
+        "this mesh would take about {0} GiB of memory; expected at most {1} GiB of one of its "
+        "size; reduce it, or export the building alone as binary PLY",
     ),
     QT_TRANSLATE_NOOP("Sentences", "is no GLB file, or cut off; export it again"),
     QT_TRANSLATE_NOOP("Sentences", "the GLB file does not begin with its description, or is cut off; export it again"),
