@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.hostile.inputs import make_workspace
+from tests.hostile.inputs import complete_workspace, make_workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -61,6 +61,12 @@ def workspace(tmp_path_factory):
     folder = tmp_path_factory.mktemp("workspace")
     make_workspace(folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def full_workspace(workspace):
+    complete_workspace(workspace)
+    return workspace
 
 
 @pytest.fixture(scope="session")

@@ -119,13 +119,12 @@ def written() -> list[Input]:
         _input("component", "header", "objects/component.safetensors", "export objects --format spz -o out/m.spz",
                "objects/"),
         _input("objects' records made", "json", "objects/gsscene.json", "records objects list", "objects/"),
-        _input("records", "binary", "objects/records.sqlite", "records objects list", "objects/", quick=True),
+        _input("records", "binary", "objects/records.sqlite", "records objects list", "objects/"),
         _input("records searched", "binary", "objects/records.sqlite", "records objects search crack", "objects/"),
         _input("records written", "binary", "objects/records.sqlite", "records objects set A-1 maker=x", "objects/"),
         _input("stored picture", "binary", "picture.png", "records objects add A-1 defect kind=crack severity=3 "
                "found_on=2026-01-02 picture=picture.png", "objects/"),
-        _input("table of records", "text", "tables/defects.csv", "records objects import tables", "tables/", "objects/",
-               quick=True),
+        _input("table of records", "text", "tables/defects.csv", "records objects import tables", "tables/", "objects/"),
         _input("table of attributes", "text", "tables/attributes.csv", "records objects import tables", "tables/",
                "objects/"),
         _input("settings of a training", "toml", "quick.toml", train, *model),
@@ -144,12 +143,12 @@ def written() -> list[Input]:
         _input("signing key", "text", "config/mavlink-signing-key", f"{HERE}:signer", "config/", quick=True),
         _input("signing time", "text", "config/mavlink-signing-timestamp", f"{HERE}:signer", "config/"),
         _input("map", "binary", "map.mbtiles", f"{HERE}:map_tiles", quick=True),
-        _input("SPZ", "binary", "m.spz", "reconstruction.exports.spz_reading:read_spz", quick=True),
-        _input("SOG", "zip", "m.sog", "reconstruction.exports.sog_reading:read_sog", quick=True),
+        _input("SPZ", "binary", "m.spz", "reconstruction.exports.spz_reading:read_spz"),
+        _input("SOG", "zip", "m.sog", "reconstruction.exports.sog_reading:read_sog"),
         _input("LPIPS", "binary", "heads.pth", f"{HERE}:lpips"),
         _input("LPIPS as safetensors", "header", "heads.safetensors", f"{HERE}:lpips"),
         _input("TSPLIB", "text", "t.tsp", "route t.tsp --time-budget 0.2", quick=True),
-        _input("PNG", "binary", "photo.png", "segment photo.png -o out/p.json", quick=True),
+        _input("PNG", "binary", "photo.png", "segment photo.png -o out/p.json"),
         _input("TIFF", "binary", "photo.tif", "segment photo.tif -o out/p.json"),
         _input("BMP", "binary", "photo.bmp", "segment photo.bmp -o out/p.json"),
         _input("COCO", "json", "offices/_annotations.coco.json", f"{HERE}:coco", "offices/"),
@@ -209,13 +208,19 @@ def real() -> list[Input]:
 
 
 def make_workspace(folder: Path) -> None:
-    """Write all files that the inputs need into a folder."""
+    """Write the files that quick inputs need into a folder."""
     with contextlib.chdir(folder):
         _plans()
         _meshes()
         _pictures_and_tables()
-        _models()
         _settings()
+
+
+def complete_workspace(folder: Path) -> None:
+    """Write all others into it."""
+    with contextlib.chdir(folder):
+        _models()
+        _reflight("scene render site.json --square 1 --width 16 --points 20 -o scene")
         if SHARED_DATA.is_dir():
             _copied()
 
@@ -406,7 +411,6 @@ def _settings() -> None:
     )
     Path("camera.toml").write_text("shutter_s = 0.001\nspeed_m_s = 2.0\n\n[sensor]\n\n[gimbal]\n")
     Path("search.toml").write_text('long_side_px = 800\nbeta = 12.5\ndetector = "lsd"\n')
-    _reflight("scene render site.json --square 1 --width 16 --points 20 -o scene")
 
 
 def _copied() -> None:

@@ -101,7 +101,7 @@ WRITES = [
     Write("mission", (*FLYING, "other.json"), "export other.json --format dji-kmz -o out/m.kmz",
           "export plan.json --format dji-kmz -o out/m.kmz", is_same=False, is_quick=True),
     Write("site", ("b.glb", "wall.ply"), IMPORT.format("wall.ply"), IMPORT.format("b.glb"), is_quick=True),
-    Write("objects", MODELS, "organise model -o out/o", "organise lit -o out/o", is_quick=True),
+    Write("objects", MODELS, "organise model -o out/o", "organise lit -o out/o"),
     Write("tiles", ("objects", "others"), "export objects --format 3d-tiles -o out/t",
           "export others --format 3d-tiles -o out/t"),
     Write("web page", ("objects", "others"), "export objects --format web -o out/w",
@@ -115,12 +115,11 @@ WRITES = [
     Write("records imported", ("objects", "tables"), "", "records objects import tables", kept="objects",
           check=whole_records, is_same=False),
     Write("defect with its picture", ("objects", "picture.png"), "", "records objects add A-1 defect kind=crack "
-          "severity=3 found_on=2026-01-02 picture=picture.png", kept="objects", check=whole_records, is_same=False,
-          is_quick=True),
+          "severity=3 found_on=2026-01-02 picture=picture.png", kept="objects", check=whole_records, is_same=False),
     Write("pictures", MODELS, "render model --views data -o out/r --width 16",
           "render lit --views data -o out/r --width 16", is_each=True),
     Write("training", MODELS, TRAIN, f"{TRAIN} --seed 3", again=f"{TRAIN} --seed 3 --resume", check=whole_model,
-          is_same=False, is_quick=True),
+          is_same=False),
     Write("project", ("project", "other.json"), "", "project add project other.json", kept="project",
           check=whole_project, is_same=False),
     Write("photos", ("site.json", "wall.ply"), "", "scene render site.json --square 2 --width 16 --points 20 -o out/s",
@@ -224,8 +223,8 @@ def test_a_command_that_is_killed_leaves_old_or_new(write, workspace, tmp_path, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("write", WRITES, ids=ids)
-def test_a_command_that_is_killed_at_any_write_leaves_old_or_new(write, workspace, tmp_path, forks):
-    case, rng = Case(write, workspace, tmp_path, forks), random.Random(zlib.crc32(write.name.encode()))
+def test_a_command_that_is_killed_at_any_write_leaves_old_or_new(write, full_workspace, tmp_path, forks):
+    case, rng = Case(write, full_workspace, tmp_path, forks), random.Random(zlib.crc32(write.name.encode()))
     number = 0
     while killed_at(case, number):
         number += 1 if number < 40 else rng.randrange(5, 60)
@@ -233,8 +232,8 @@ def test_a_command_that_is_killed_at_any_write_leaves_old_or_new(write, workspac
 
 @pytest.mark.slow
 @pytest.mark.parametrize("write", WRITES, ids=ids)
-def test_a_command_that_is_killed_at_any_moment_or_byte_leaves_old_or_new(write, workspace, tmp_path, forks):
-    case, rng = Case(write, workspace, tmp_path, forks), random.Random(zlib.crc32(write.name.encode()))
+def test_a_command_that_is_killed_at_any_moment_or_byte_leaves_old_or_new(write, full_workspace, tmp_path, forks):
+    case, rng = Case(write, full_workspace, tmp_path, forks), random.Random(zlib.crc32(write.name.encode()))
     for number in range(8):
         case.begin()
         how = {"kill_after_s": rng.uniform(0.05, 1.0)} if number % 2 else {
@@ -273,7 +272,7 @@ def test_a_full_disk_changes_nothing(write, workspace, tmp_path, forks):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("write", WRITES, ids=ids)
-def test_a_disk_that_is_full_at_any_size_changes_nothing(write, workspace, tmp_path, forks):
-    case = Case(write, workspace, tmp_path, forks)
+def test_a_disk_that_is_full_at_any_size_changes_nothing(write, full_workspace, tmp_path, forks):
+    case = Case(write, full_workspace, tmp_path, forks)
     for exponent in range(10, 20):  # what is said has to go somewhere, too
         full_at(case, file_limit=2**exponent)
