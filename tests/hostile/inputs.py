@@ -124,7 +124,8 @@ def written() -> list[Input]:
         _input("records written", "binary", "objects/records.sqlite", "records objects set A-1 maker=x", "objects/"),
         _input("stored picture", "binary", "picture.png", "records objects add A-1 defect kind=crack severity=3 "
                "found_on=2026-01-02 picture=picture.png", "objects/"),
-        _input("table of records", "text", "tables/defects.csv", "records objects import tables", "tables/", "objects/"),
+        _input("table of records", "text", "tables/defects.csv", "records objects import tables", "tables/",
+               "objects/"),
         _input("table of attributes", "text", "tables/attributes.csv", "records objects import tables", "tables/",
                "objects/"),
         _input("settings of a training", "toml", "quick.toml", train, *model),

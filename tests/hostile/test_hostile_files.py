@@ -127,10 +127,6 @@ def test_damaged_files_are_read_or_refused(given, workspace, tmp_path, forks):
 @pytest.mark.slow
 @pytest.mark.parametrize("given", [*written(), *real()], ids=lambda given: given.name)
 def test_many_damaged_files_of_every_kind_are_read_or_refused(given, full_workspace, tmp_path, forks):
-    assert (
-        complaint(
-            given, copied(given, full_workspace, tmp_path / "case").parents[len(Path(given.target).parts) - 1], forks
-        )
-        == ""
-    )
+    copied(given, full_workspace, tmp_path / "case")
+    assert complaint(given, tmp_path / "case", forks) == ""
     assert wrong(given, N_LONG, full_workspace, tmp_path, forks) == []
