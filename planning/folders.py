@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Sequence
+from fnmatch import fnmatch
 from pathlib import Path
 
 from planning.errors import InputError
@@ -17,6 +18,14 @@ FILE_ENDING = re.compile(
 
 PLAIN_ENDINGS = frozenset({".bin", ".log", ".txt", ".zip"})
 """That say little: a KMZ file is a ZIP, and any text may be called a text."""
+
+
+def is_empty(folder: Path) -> bool:
+    """Whether there is no file in a folder that exists, nor in those within it; of what is in the making none counts.
+
+    So a run that ended before it wrote anything leaves an empty folder.
+    """
+    return all(path.is_dir() or fnmatch(path.name, ".*.????????.part*") for path in folder.rglob("*"))
 
 
 def make_folder(folder: Path) -> None:

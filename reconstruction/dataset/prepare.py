@@ -21,6 +21,7 @@ from planning.effects import Decision, Wish, decide
 from planning.errors import InputError
 from planning.files import read_given
 from planning.findings import Finding, Severity
+from planning.folders import is_empty
 from planning.jit import n_threads
 from planning.mesh import join, write_mesh
 from planning.progress import QUIET, Monitor
@@ -234,9 +235,12 @@ def _same_file(source: Path, target: Path) -> None:
 
 def _empty(folder: Path) -> bool:
     """Make the folder; whether it was not there before."""
-    if (folder / UNFINISHED).is_file() and not (folder / DATA_SET).exists():
-        _clear(folder)
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+    if (folder / UNFINISHED).is_file():
+        if (folder / DATA_SET).exists():
+            (folder / UNFINISHED).unlink()
+        else:
+            _clear(folder)
+    if folder.exists() and (not folder.is_dir() or not is_empty(folder)):
         raise InputError(f"{folder}: is not empty; name a new folder for the data set")
     was_there = folder.exists()
     try:

@@ -14,6 +14,7 @@ import numpy as np
 from planning.effects import Decision
 from planning.errors import InputError
 from planning.files import sha256_given
+from planning.folders import is_empty
 from planning.json_file import expect_format, read_json, write_atomically
 from reconstruction.scenes.photographers import PhotoJob
 from reconstruction.scenes.record import Scene
@@ -111,7 +112,7 @@ def check_folder(folder: Path) -> None:
     """
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: expected a folder, found a file; name a folder for the photos")
-    if folder.exists() and not (folder / RUN_FILE).is_file() and any(folder.iterdir()):
+    if folder.exists() and not (folder / RUN_FILE).is_file() and not is_empty(folder):
         raise InputError(f"{folder}: is not empty, and has no {RUN_FILE} of photos to go on with; name a new folder")
 
 
