@@ -112,8 +112,8 @@ WRITES = [
           "export others --format sog -o out/m.sog"),
     Write("PLY", MODELS, "export model --format ply -o out/m.ply", "export lit --format ply -o out/m.ply"),
     Write("tables", ("objects", "others"), "records objects export -o out/t", "records others export -o out/t"),
-    Write("records imported", ("objects", "tables"), "records objects set A-1 maker=Other", "records objects import tables", kept="objects",
-          check=whole_records, is_same=False),
+    Write("records imported", ("objects", "tables"), "records objects set A-1 maker=Other",
+          "records objects import tables", kept="objects", check=whole_records, is_same=False),
     Write("defect with its picture", ("objects", "picture.png"), "", "records objects add A-1 defect kind=crack "
           "severity=3 found_on=2026-01-02 picture=picture.png", kept="objects", check=whole_records, is_same=False),
     Write("pictures", MODELS, "render model --views data -o out/r --width 16",
