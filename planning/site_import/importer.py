@@ -139,7 +139,7 @@ def read_source(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise InputError(f"{path}: expected a file ending in {', '.join(SUFFIXES)}, got '{suffix}'")
-    if not path.is_file():
+    if not path.exists():
         raise InputError(f"{path}: there is no such file")
     if suffix in IFC_SUFFIXES:
         from planning.site_import.ifc_file import read_ifc
