@@ -7709,6 +7709,10 @@ Take it over?</source>
         <translation>eine JSON-Datei</translation>
     </message>
     <message>
+        <source>expected a number of at most 20 digits, found one of {0}</source>
+        <translation>erwartet wurde eine Zahl mit höchstens 20 Stellen, gefunden eine mit {0}</translation>
+    </message>
+    <message>
         <source>a TOML file</source>
         <translation>eine TOML-Datei</translation>
     </message>
@@ -7737,8 +7741,8 @@ Take it over?</source>
         <translation>verkleinern oder das Gebäude ausschneiden</translation>
     </message>
     <message>
-        <source>this mesh would take about {0} GiB of memory; expected at most {1} GiB; reduce it, or export the building alone as binary PLY</source>
-        <translation>dieses Netz bräuchte etwa {0} GiB Speicher; höchstens {1} GiB werden erwartet; verkleinern oder das Gebäude allein als binäres PLY exportieren</translation>
+        <source>this mesh would take about {0} GiB of memory; expected at most {1} GiB of one of its size; reduce it, or export the building alone as binary PLY</source>
+        <translation>dieses Netz bräuchte etwa {0} GiB Speicher; höchstens {1} GiB werden von einem dieser Größe erwartet; verkleinern oder das Gebäude allein als binäres PLY exportieren</translation>
     </message>
     <message>
         <source>is no GLB file, or cut off; export it again</source>
@@ -10283,6 +10287,10 @@ Take it over?</source>
     <message>
         <source>the JPEG file holds no picture; copy it from the card again</source>
         <translation>die JPEG-Datei enthält kein Bild; kopieren Sie sie noch einmal von der Karte</translation>
+    </message>
+    <message>
+        <source>claims to be a picture of {0} x {1} pixels, so there is none in it; copy it from the card again</source>
+        <translation>gibt sich als Bild von {0} x {1} Pixeln aus, enthält also keines; neu von der Karte kopieren</translation>
     </message>
     <message>
         <source>the JPEG header has more than {0} parts; refused as hostile</source>
