@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from pyproj import CRS
 
 _ADV_HORIZONTAL = {"ETRS89_UTM31": 25831, "ETRS89_UTM32": 25832, "ETRS89_UTM33": 25833}
-_ADV_VERTICAL = {"DE_DHHN92_NH": 5783, "DE_DHHN2016_NH": 7837}
+_ADV_HORIZONTAL |= {f"DE_DHDN_3GK{zone}": 31464 + zone for zone in (2, 3, 4, 5)}
+_ADV_VERTICAL = {"DE_DHHN12_NOH": 7699, "DE_DHHN85_NOH": 5784, "DE_DHHN92_NH": 5783, "DE_DHHN2016_NH": 7837}
 """Names that the German surveying authorities write instead of EPSG codes (urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH)."""
 
 

@@ -51,6 +51,7 @@ def degrees(text: str) -> float:
         ("urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG:6.12:5783", "ETRS89 / UTM zone 32N + DHHN92 height"),
         ("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH", "ETRS89 / UTM zone 32N + DHHN2016 height"),
         ("urn:adv:crs:ETRS89_UTM33", "ETRS89 / UTM zone 33N"),
+        ("urn:adv:crs:DE_DHDN_3GK4*DE_DHHN92_NH", "DHDN / 3-degree Gauss-Kruger zone 4 + DHHN92 height"),
         ("EPSG:25832+7837", "ETRS89 / UTM zone 32N + DHHN2016 height"),
         ("http://www.opengis.net/gml/srs/epsg.xml#4326", "WGS 84"),
         (
@@ -72,7 +73,7 @@ def test_names_are_understood_in_every_form(name: str, meaning: str) -> None:
         ("EPSG:999999", "'EPSG:999999' is not a coordinate reference system"),
         ("EPSG:4978", "Geocentric CRS"),
         ("EPSG:5773", "Vertical CRS"),
-        ("urn:adv:crs:DE_DHDN_3GK4", "not a coordinate reference system"),
+        ("urn:adv:crs:DE_42-83_3GK9", "not a coordinate reference system"),
     ],
 )
 def test_names_that_say_nothing_are_refused_with_an_example(name: str, said: str) -> None:
