@@ -20,7 +20,7 @@ from groundstation.gui.garbage import GarbageCollector
 from groundstation.gui.languages import Translations
 from groundstation.gui.main_window import MainWindow
 from groundstation.gui.menus import Menus
-from groundstation.gui.questions import Answer, Questions
+from groundstation.gui.questions import Answer, Questions, file_name
 from groundstation.gui.theme import apply_theme
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document
@@ -71,7 +71,7 @@ class Desk(QObject):
         self.window = self._make_window()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.autosave_now)
-        self.autosaveFailed.connect(self._warn)
+        self.autosaveFailed.connect(lambda text: self._warn(text, "project.copy"))
         self.workspace.documentChanged.connect(lambda *_: self._show_title())
         self._start_timer()
 
@@ -100,7 +100,7 @@ class Desk(QObject):
 
     def _after_first_paint(self) -> None:
         for problem in self._settings_problems:
-            self.workspace.say(Severity.WARNING, self.workspace.words(problem))
+            self.workspace.say(Severity.WARNING, self.workspace.words(problem), about=f"settings.{problem}")
         if self._settings.map_tiles:
             self.window.stage.set_tiles(Path(self._settings.map_tiles))
         if self.workspace.session.folder is None:
@@ -120,8 +120,7 @@ class Desk(QObject):
         layout, geometry = old.layout_text(), old.geometry()
         old.retire()
         self.window = self._make_window()
-        for message in old.messages.messages():
-            self.window.messages.add(message)
+        self.window.messages.take_over(old.messages)
         self.window.setGeometry(geometry)
         self.window.show_tab(shown)
         self.window.set_layout_text(layout)
@@ -180,7 +179,10 @@ class Desk(QObject):
             self.workspace.say(
                 Severity.WARNING,
                 self.tr("The settings could not be kept: {0}").format(self.workspace.words(str(error))),
+                about="settings.kept",
             )
+        else:
+            self.workspace.settle("settings.kept")
 
     def _layout_key(self) -> str:
         size = self._application.primaryScreen().availableGeometry()
@@ -237,7 +239,11 @@ class Desk(QObject):
 
     def save_as(self, then: Callable[[], None] | None = None) -> None:
         """Ask for a folder, and save there."""
-        folder = self._questions.new_folder(self.window, self.tr("Save project as"))
+        session = self.workspace.session
+        site = session.document.site
+        name = self.tr("New project") if site is None else file_name(site.site.name)
+        beside = Path.home() if session.folder is None else session.folder.parent
+        folder = self._questions.new_folder(self.window, self.tr("Save project as"), beside / name)
         if folder is not None:
             self.save_in(folder, then)
 
@@ -258,6 +264,7 @@ class Desk(QObject):
             if is_new:
                 self._or_warn(lambda: self.keeper.take_saved(folder))
             self.workspace.session.saved(document, written, folder)
+            self.workspace.settle("project.copy")
             if self.workspace.session.is_saved:
                 self.keeper.drop_copy()
             self._remember(folder)
@@ -270,12 +277,13 @@ class Desk(QObject):
 
     def _opened(self, taken: TakenProject) -> None:
         project = taken.project
-        if taken.problem:
-            self._warn(taken.problem)
         site_source = project.folder / project.record.site if project.record.site else None
         self._put_on_desk(replace(project.document, site_source=site_source), project.folder, taken.lock)
+        if taken.problem:
+            self._warn(taken.problem, "project.lock")
         for note in project.notes:
-            self.workspace.say(note.severity, self.workspace.words(note.message))
+            text = self.workspace.words(note.message)
+            self.workspace.say(note.severity, text, about=f"project.note.{text}")
         self._remember(project.folder)
         site = project.document.site
         n_panels = 0 if site is None else site.site.n_panels
@@ -289,6 +297,8 @@ class Desk(QObject):
 
     def _put_on_desk(self, document: Document, folder: Path | None, lock: ProjectLock | None = None) -> None:
         self.keeper.hold(lock)
+        for topic in ("project.", "plan.", "job."):
+            self.workspace.settle(topic)
         self.workspace.session.open(document, folder)
         self._show_title()
         self.opened.emit()
@@ -302,9 +312,9 @@ class Desk(QObject):
             return False
         return True
 
-    def _warn(self, text: str) -> None:
+    def _warn(self, text: str, about: str = "") -> None:
         """Show what a part without Qt warns of."""
-        self.workspace.say(Severity.WARNING, self.workspace.words(text))
+        self.workspace.say(Severity.WARNING, self.workspace.words(text), about=about)
 
     def _remember(self, folder: Path) -> None:
         self._settings = self._settings.with_recent(folder)
@@ -352,6 +362,8 @@ class Desk(QObject):
         self.workspace.session.open(document, folder, saved=False)
         self._show_title()
         self.opened.emit()
+        text = self.tr("Your work is back. It is not saved yet: Project > Save keeps it.")
+        self.workspace.say(Severity.OK, text)
 
     def _discard(self, found: Recovery) -> None:
         self._or_warn(lambda: discard_recovery(found))

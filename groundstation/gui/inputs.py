@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QLocale, QObject, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QEvent, QLocale, QObject, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QValidator
 from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QHBoxLayout, QWidget
 
@@ -19,6 +19,9 @@ SAME = 1e-9
 """Part of a value below which a box that rounds for display still holds the value it was given."""
 
 PERCENT = Unit("%", 100.0, 1)
+
+N_LETTERS_SHOWN, ARROW_PX = 6, 40
+"""Least room of a list to choose from."""
 
 N_DIGITS_SHOWN = 9
 """Width of a box for whole numbers; longer ones scroll in it."""
@@ -47,6 +50,13 @@ class ChoiceBox(QComboBox):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         calm(self)
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802
+        """Room for a few letters: a long text is cut before it pushes other things off a small screen."""
+        hint = super().minimumSizeHint()
+        return QSize(
+            min(hint.width(), N_LETTERS_SHOWN * self.fontMetrics().averageCharWidth() + ARROW_PX), hint.height()
+        )
 
     def show_value(self, value: object, text: str = "") -> None:
         """Choose the entry with a value; where there is none, such as one from a file, it gets one."""

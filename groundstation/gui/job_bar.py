@@ -3,9 +3,19 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QProgressBar, QPushButton, QToolButton, QWidget
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QProgressBar,
+    QPushButton,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
-from groundstation.gui.workspace import Workspace
+from groundstation.gui.message_area import ShortText, severity_words
+from groundstation.gui.workspace import Message, Workspace
 from groundstation.services.jobs import JobProgress
 
 SHOW_AFTER_MS = 150
@@ -18,7 +28,7 @@ class JobBar(QWidget):
     def __init__(self, workspace: Workspace, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
-        self._label, self._bar, self._left = QLabel(), QProgressBar(), QLabel()
+        self._label, self._bar, self._left = ShortText(), QProgressBar(), QLabel()
         self._queue = QToolButton()
         self._queue.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self._queue.setMenu(QMenu(self))
@@ -26,8 +36,8 @@ class JobBar(QWidget):
         self._cancel = QPushButton(self.tr("Cancel"))
         self._cancel.setToolTip(self.tr("Throw the running job away"))
         self._cancel.clicked.connect(self.cancel_running)
-        self._bar.setMinimumWidth(100)
-        self._label.setMinimumWidth(240)
+        self._bar.setMinimumWidth(60)
+        self._label.setMinimumWidth(120)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(6, 2, 6, 2)
         for widget, stretch in ((self._label, 2), (self._bar, 3), (self._left, 1), (self._queue, 0), (self._cancel, 0)):
@@ -76,14 +86,14 @@ class JobBar(QWidget):
         if not jobs or jobs[0].id != event.job_id or jobs[0].cancel_requested:
             return
         self._label.setText(f"{event.name}: {self._workspace.words(event.stage)}")
-        self._label.setToolTip(self._label.text())
         self._bar.setRange(0, 1000 if event.total > 0 else 0)
         if event.total > 0:
             self._bar.setValue(int(1000 * min(1.0, event.done / event.total)))
+        # How long the whole takes, nobody knows; of a step it can be estimated.
         if event.remaining_s is None:
-            self._left.setText(self.tr("{0:.0f} s").format(event.elapsed_s))
+            self._left.setText(self.tr("{0:.0f} s so far").format(event.elapsed_s))
         else:
-            self._left.setText(self.tr("{0:.0f} s left").format(event.remaining_s))
+            self._left.setText(self.tr("this step: {0:.0f} s left").format(event.remaining_s))
 
     def _list_queue(self) -> None:
         menu = self._queue.menu()
@@ -91,3 +101,23 @@ class JobBar(QWidget):
         for job in self._workspace.jobs()[1:]:
             action = menu.addAction(self.tr("Cancel: {0}").format(job.name))
             action.triggered.connect(lambda _checked=False, job=job: self._workspace.cancel(job))
+
+
+class DialogFoot(QWidget):
+    """The job bar and the last message, for dialogs that lie over those of the window."""
+
+    def __init__(self, workspace: Workspace, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.job_bar, self._text = JobBar(workspace), ShortText()
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self._text)
+        layout.addWidget(self.job_bar)
+        workspace.messageShown.connect(self._show)
+
+    def text(self) -> str:
+        """What was told last since the dialog has been open."""
+        return self._text.text()
+
+    def _show(self, message: Message) -> None:
+        self._text.setText(f"{severity_words()[message.severity]}: {message.text}")

@@ -14,7 +14,6 @@ from PySide6.QtWidgets import (
     QMainWindow,
     QScrollArea,
     QSplitter,
-    QStackedWidget,
     QTabBar,
     QToolButton,
     QVBoxLayout,
@@ -24,7 +23,7 @@ from PySide6.QtWidgets import (
 from groundstation.gui.job_bar import JobBar
 from groundstation.gui.loading import BackgroundImport
 from groundstation.gui.message_area import MessageArea
-from groundstation.gui.scrolling import scrolled
+from groundstation.gui.scrolling import CurrentStack, scrolled
 from groundstation.gui.stage import Stage
 from groundstation.gui.tab_order import first_in, next_in_order
 from groundstation.gui.tabs import Place, Tab, TabSpec, find_tabs
@@ -74,7 +73,7 @@ class MainWindow(QMainWindow):
         for number, spec in enumerate(self._specs):
             self._bar.addTab(spec.shown_title())
             self._bar.setTabToolTip(number, self.tr("{0} (Ctrl+{1})").format(spec.shown_tip(), number + 1))
-        self._left, self._right, self._bottom = QStackedWidget(), QStackedWidget(), QStackedWidget()
+        self._left, self._right, self._bottom = CurrentStack(), CurrentStack(), CurrentStack()
         # The left side is as high as the window: forms are long. The lists below need width more.
         beside = 1280 - SIDE_WIDTH_PX
         self._view_and_right = _splitter(
@@ -84,7 +83,7 @@ class MainWindow(QMainWindow):
             Qt.Orientation.Vertical, (self._view_and_right, self._bottom), (450, BOTTOM_HEIGHT_PX), 0
         )
         self._around = _splitter(Qt.Orientation.Horizontal, (self._left, self._over_bottom), (SIDE_WIDTH_PX, beside), 1)
-        self._pages = QStackedWidget()
+        self._pages = CurrentStack()
         self._pages.addWidget(self._around)
         page = QWidget()
         layout = QVBoxLayout(page)
@@ -176,6 +175,7 @@ class MainWindow(QMainWindow):
             self.stage,
             self._right,
             self._bottom,
+            self.messages.sheet,
             self.messages,
             self.job_bar,
         )

@@ -37,10 +37,10 @@ from groundstation.gui.own_words import own_words
 from groundstation.gui.questions import choose_file
 from groundstation.gui.theme import colours
 from groundstation.services.document import Document, Item
-from groundstation.services.map_shapes import PlanShapes, SiteShapes, plan_shapes, site_shapes
+from groundstation.services.map_shapes import PlanShapes, SiteShapes, airspace_outline, plan_shapes, site_shapes
 from groundstation.services.map_tiles import MapTiles
 from groundstation.services.units import UnitSystem
-from groundstation.services.web_mercator import geodetic_from_world, world_from_geodetic
+from groundstation.services.web_mercator import MAX_LAT_DEG, geodetic_from_world, world_from_geodetic
 from planning.errors import InputError
 from planning.plan import Plan
 from planning.site import SiteModel
@@ -110,6 +110,7 @@ class MapView(MapCanvas):
         self._model, self._was_fitted = model, self._was_fitted and not is_elsewhere
         if is_elsewhere:
             self._site = None
+        self._fit_once()
         self._draw_plan_anew()
         if model is None:
             self._shapesReady.emit(None, None)
@@ -180,6 +181,8 @@ class MapView(MapCanvas):
         if self._site is not None and not self._site.is_on_map:
             return self.tr("This site lies beyond the end of web maps (85.05 degrees); use the 3-D view.")
         source = self._tiles.source()
+        if source is None and self._model is None:
+            return self.tr("Open or import a site on the Site tab, or a map with “Map file”; no network is used.")
         if source is None:
             return self.tr('No map is loaded. "Map file" opens one (MBTiles); no network is used.')
         if self._site is not None and not _covers(source.info.bounds_deg, self._viewport):
@@ -288,9 +291,15 @@ class MapView(MapCanvas):
 
     def _fit_once(self) -> None:
         """Bring a new site into view, once the widget has its size."""
-        if self._site is not None and not self._was_fitted and self.isVisible():
+        if self._was_fitted or self._model is None or not self.isVisible():
+            return
+        site = self._model.site
+        if self._site is not None:
             self._was_fitted = True
             self._viewport = self._viewport.fitted(self._site.extent(), MARGIN_PX)
+        elif abs(site.origin.lat_deg) < MAX_LAT_DEG:
+            # Outlines take a moment; the place is known at once.
+            self._viewport = self._viewport.fitted(airspace_outline(site), MARGIN_PX)
 
     def showEvent(self, event: QEvent) -> None:  # noqa: N802
         """The size is known now."""
@@ -326,9 +335,10 @@ class MapView(MapCanvas):
             place = place_of(self._selection, self._site, self._plan_shapes)
             if place is not None:
                 paint_ring(painter, viewport.screen(place.mean(axis=0)[None])[0], self._selection.id, found)
-        paint_scale_bar(painter, viewport, self._units, found)
-        paint_north(painter, QPointF(28, 28), found)
         source = self._tiles.source()
+        if self._model is not None or source is not None:
+            paint_scale_bar(painter, viewport, self._units, found)
+            paint_north(painter, QPointF(28, 28), found)
         if source is not None:
             corner = QPointF(viewport.width_px, viewport.height_px)
             paint_text_box(painter, corner, source.info.attribution, found, is_right=True)

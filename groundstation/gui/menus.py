@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from typing import Protocol
 
 from PySide6.QtCore import QObject, Qt
@@ -184,32 +184,13 @@ class Menus(QObject):
         else:
             self._window.showFullScreen()
 
-    def shortcuts_text(self) -> str:
-        """All actions with their keys, one in a line."""
-        actions = [action for name in self._window.tab_names() for action in self._window.tab(name).actions()]
-        for menu_action in self._window.menuBar().actions():
-            menu = menu_action.menu()
-            actions += menu.actions() if isinstance(menu, QMenu) else []
-        lines = {
-            f"{action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)}\t{_plain(action.text())}": None
-            for action in actions
-            if not action.shortcut().isEmpty()
-        }
-        return "\n".join(lines)
-
     def show_shortcuts(self) -> None:
-        """A box with all keys."""
-        rows = [tuple(line.split("\t")) for line in self.shortcuts_text().splitlines()]
-        rows += [
-            (self.tr("Arrow keys"), self.tr("3-D view: turn")),
-            ("+ -", self.tr("3-D view: nearer, farther")),
-            ("F", self.tr("3-D view: show everything")),
-            ("Esc", self.tr("Put a tool or a dialog away")),
-        ]
-        # In two columns: one is higher than small screens.
-        half = (len(rows) + 1) // 2
-        cells = "".join(f"<td>{_key_table(part)}</td>" for part in (rows[:half], rows[half:]))
-        self._box(self.tr("Shortcuts"), f"<table><tr>{cells}</tr></table>")
+        """A window with all keys."""
+        from groundstation.gui.shortcuts import ShortcutsDialog
+
+        dialog = ShortcutsDialog(self._window)
+        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        dialog.open()
 
     def _show_about(self) -> None:
         from importlib.metadata import version
@@ -226,14 +207,3 @@ class Menus(QObject):
         box.setText(text)
         box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         box.open()
-
-
-def _plain(text: str) -> str:
-    return text.replace("&", "")
-
-
-def _key_table(rows: Iterable[Sequence[str]]) -> str:
-    """Keys and what they do, each in one line."""
-    cell = '<td style="white-space: nowrap">'
-    lines = (f"<tr>{cell}<b>{key}</b>&nbsp;&nbsp;</td>{cell}{words}&nbsp;&nbsp;&nbsp;</td></tr>" for key, words in rows)
-    return f"<table>{''.join(lines)}</table>"

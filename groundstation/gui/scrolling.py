@@ -1,18 +1,150 @@
-"""Side panels scroll where the window is low."""
+"""What makes everything fit a small screen with large type: panels that scroll, rows that wrap, stacks of one page.
+
+A window of 1280 x 720 pixels with text of 160 % has room for all of its buttons: none is ever pushed off the screen.
+"""
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QScrollArea, QWidget
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QSize, Qt
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QLayout, QLayoutItem, QScrollArea, QStackedWidget, QWidget
+
+WIDEST_PX = 320
+"""Width up to which what scrolls is shown whole; with the view beside it, that leaves room at 1280 pixels."""
+
+
+class _SideArea(QScrollArea):
+    """As wide as what is in it needs, up to `WIDEST_PX`."""
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802
+        """Nothing is cut at the side; a bar comes for what is wider still."""
+        hint, inside = super().minimumSizeHint(), self.widget()
+        if inside is None:
+            return hint
+        wide = inside.minimumSizeHint().width() + self.verticalScrollBar().sizeHint().width()
+        return QSize(min(WIDEST_PX, wide), hint.height())
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Hear of it when what is inside needs another width."""
+        if watched is self.widget() and event.type() == QEvent.Type.LayoutRequest:
+            self.updateGeometry()
+        return super().eventFilter(watched, event)
 
 
 def scrolled(widget: QWidget) -> QScrollArea:
-    """A widget in a frame that scrolls up and down, never sideways."""
-    area = QScrollArea()
+    """A widget in a frame that scrolls."""
+    area = _SideArea()
     area.setWidget(widget)
     area.setWidgetResizable(True)
     # What is inside takes the keyboard, and the area follows it.
     area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
     area.setFrameShape(QFrame.Shape.NoFrame)
-    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
     return area
+
+
+class CurrentStack(QStackedWidget):
+    """Pages of which one is shown, and only that one needs room: others may be wider than the screen has left."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.currentChanged.connect(lambda _index: self.updateGeometry())
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """Of the page that is shown."""
+        page = self.currentWidget()
+        return super().sizeHint() if page is None else page.sizeHint()
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802
+        """Of the page that is shown."""
+        page = self.currentWidget()
+        return super().minimumSizeHint() if page is None else _least_size(page)
+
+
+class WrappingRow(QLayout):
+    """Widgets beside each other, and in further rows where there is no room."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._items: list[QLayoutItem] = []
+        self.setContentsMargins(0, 0, 0, 0)
+        self.setSpacing(4)
+
+    def addItem(self, item: QLayoutItem) -> None:  # noqa: N802
+        """As layouts do."""
+        self._items.append(item)
+
+    def count(self) -> int:
+        """As layouts do."""
+        return len(self._items)
+
+    def itemAt(self, index: int) -> QLayoutItem | None:  # noqa: N802
+        """As layouts do."""
+        return self._items[index] if 0 <= index < len(self._items) else None
+
+    def takeAt(self, index: int) -> QLayoutItem | None:  # noqa: N802
+        """As layouts do."""
+        return self._items.pop(index) if 0 <= index < len(self._items) else None
+
+    def expandingDirections(self) -> Qt.Orientation:  # noqa: N802
+        """It takes no more room than it needs."""
+        return Qt.Orientation(0)
+
+    def hasHeightForWidth(self) -> bool:  # noqa: N802
+        """The narrower, the more rows."""
+        return True
+
+    def heightForWidth(self, width: int) -> int:  # noqa: N802
+        """Height of as many rows as it takes."""
+        return self._arrange(QRect(0, 0, width, 0), is_trial=True)
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """All in one row."""
+        hints = [item.sizeHint() for item in self._shown()]
+        wide = sum(hint.width() for hint in hints) + self.spacing() * max(0, len(hints) - 1)
+        return QSize(wide, max((hint.height() for hint in hints), default=0))
+
+    def minimumSize(self) -> QSize:  # noqa: N802
+        """One below the other."""
+        sizes = [item.minimumSize() for item in self._shown()]
+        return QSize(
+            max((size.width() for size in sizes), default=0), max((size.height() for size in sizes), default=0)
+        )
+
+    def setGeometry(self, room: QRect) -> None:  # noqa: N802
+        """Put everything where it goes."""
+        super().setGeometry(room)
+        self._arrange(room, is_trial=False)
+
+    def _shown(self) -> list[QLayoutItem]:
+        return [item for item in self._items if not item.isEmpty()]
+
+    def _arrange(self, room: QRect, *, is_trial: bool) -> int:
+        x, y, high = room.x(), room.y(), 0
+        for item in self._shown():
+            size = item.sizeHint()
+            if size.width() > room.width():
+                size.setWidth(max(room.width(), item.minimumSize().width()))
+                if item.hasHeightForWidth():
+                    size.setHeight(item.heightForWidth(size.width()))
+            if x > room.x() and x + size.width() > room.x() + room.width():
+                x, y, high = room.x(), y + high + self.spacing(), 0
+            if not is_trial:
+                item.setGeometry(QRect(QPoint(x, y), size))
+            x, high = x + size.width() + self.spacing(), max(high, size.height())
+        return y + high - room.y()
+
+
+def labelled(title: str, box: QWidget) -> QWidget:
+    """A box and its title beside it, as one thing of a row that wraps."""
+    pair, label = QWidget(), QLabel(title)
+    label.setBuddy(box)
+    row = QHBoxLayout(pair)
+    row.setContentsMargins(0, 0, 0, 0)
+    row.addWidget(label)
+    row.addWidget(box, 1)
+    return pair
+
+
+def _least_size(widget: QWidget) -> QSize:
+    """What a layout would give it at least."""
+    hint = widget.minimumSizeHint().expandedTo(widget.minimumSize())
+    return hint.boundedTo(widget.maximumSize())

@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QButtonGroup, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
+from groundstation.gui.scrolling import WrappingRow
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem
@@ -66,7 +67,7 @@ class Stage(QWidget):
         self._loading.setProperty("role", "muted")
         self._pages.addWidget(self._loading)
         self._buttons = QButtonGroup(self)
-        self._bar = QHBoxLayout()
+        self._bar = WrappingRow()
         self._add_buttons()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -92,7 +93,6 @@ class Stage(QWidget):
             self._buttons.addButton(button)
             self._bar.addWidget(button)
         self._buttons.buttons()[0].setChecked(True)
-        self._bar.addStretch(1)
 
     def page(self) -> StagePage:
         """What is shown."""

@@ -28,11 +28,19 @@ Failed = Callable[[BaseException], None]
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """Something the user is told; with the thing it is about, where there is one."""
+    """Something the user is told; with the thing it is about, where there is one.
+
+    Parameters
+    ----------
+    about
+        Topic of something that holds until it is settled, with dots from wide to narrow: `job.Plan`, `flight.battery`.
+        Empty for what just happened.
+    """
 
     severity: Severity
     text: str
     item: Item | None = None
+    about: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +62,8 @@ class Workspace(QObject):
     selectionChanged(Item or None), lookAtRequested(Item)
         What is selected; what the 3-D view and the map should show now.
     unitsChanged(UnitSystem)
-    messageShown(Message)
+    messageShown(Message), messageSettled(str)
+        Something was told; what was said about a topic holds no more.
     jobsChanged()
         A job was queued or ended.
     """
@@ -64,6 +73,7 @@ class Workspace(QObject):
     lookAtRequested = Signal(object)  # noqa: N815
     unitsChanged = Signal(object)  # noqa: N815
     messageShown = Signal(object)  # noqa: N815
+    messageSettled = Signal(str)  # noqa: N815
     jobsChanged = Signal()  # noqa: N815
 
     def __init__(self, session: Session, runner: JobRunner, parent: QObject | None = None) -> None:
@@ -123,9 +133,13 @@ class Workspace(QObject):
         self.select(item)
         self.lookAtRequested.emit(item)
 
-    def say(self, severity: Severity, text: str, item: Item | None = None) -> None:
-        """Tell the user something."""
-        self.messageShown.emit(Message(severity, shortened(with_fields(text)), item))
+    def say(self, severity: Severity, text: str, item: Item | None = None, about: str = "") -> None:
+        """Tell the user something; with a topic, it is shown until it is settled or said otherwise."""
+        self.messageShown.emit(Message(severity, shortened(with_fields(text)), item, about))
+
+    def settle(self, about: str) -> None:
+        """What was said about a topic does not hold any more; one that ends in a dot stands for all below it."""
+        self.messageSettled.emit(about)
 
     def words(self, text: str) -> str:
         """What a part without Qt says, an error or a finding, in the user's language and units."""
@@ -139,6 +153,7 @@ class Workspace(QObject):
         `work` runs on another thread and must touch neither widgets nor the session. `when_done` gets its result, in
         the window's thread. An error is shown as a message, and passed to `when_failed`; a cancelled job calls neither.
         """
+        self.settle(f"job.{name}")
         job = self._runner.submit(name, work)
         self._waiting[job.id] = _Waiting(job, when_done, when_failed)
         self.jobsChanged.emit()
@@ -204,4 +219,4 @@ class Workspace(QObject):
             text = self.tr("{0}: Reflight failed where it should not ({1}: {2}); please report it").format(
                 name, type(error).__name__, error
             )
-        self.say(Severity.ERROR, text)
+        self.say(Severity.ERROR, text, about=f"job.{name}")

@@ -12,7 +12,7 @@ from groundstation.services.document import Item, ItemKind
 from groundstation.services.web_mercator import MAX_LAT_DEG, world_from_enu
 from planning.mesh import TriangleMesh
 from planning.plan import Plan
-from planning.site import Origin, SiteModel, panel_corners
+from planning.site import Origin, Site, SiteModel, panel_corners
 
 Floats = NDArray[np.float64]
 
@@ -103,8 +103,6 @@ def site_shapes(model: SiteModel) -> SiteShapes:
         for item, mesh in zip(items, (model.building, *model.obstacles), strict=True)
         if len(mesh.triangles)
     ]
-    (x0, y0, z0), (x1, y1, _) = site.airspace.min_enu_m, site.airspace.max_enu_m
-    box = world_from_enu(origin, [(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)])
     zones = [
         Area(
             Item(ItemKind.NO_FLY, zone.id),
@@ -116,7 +114,7 @@ def site_shapes(model: SiteModel) -> SiteShapes:
         origin=origin,
         solids=tuple(solids),
         no_fly=tuple(zones),
-        airspace=Area(Item(ItemKind.AIRSPACE), (box,)),
+        airspace=Area(Item(ItemKind.AIRSPACE), (airspace_outline(site),)),
         facades=_facades(model),
         home=world_from_enu(origin, [site.home_enu_m])[0],
         rally=tuple(
@@ -124,6 +122,12 @@ def site_shapes(model: SiteModel) -> SiteShapes:
             for point in site.rally_points
         ),
     )
+
+
+def airspace_outline(site: Site) -> Floats:
+    """Corners of the airspace, shape (4, 2): known at once, and all of a site lies in it."""
+    (x0, y0, z0), (x1, y1, _) = site.airspace.min_enu_m, site.airspace.max_enu_m
+    return world_from_enu(site.origin, [(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)])
 
 
 def _footprint(mesh: TriangleMesh, origin: Origin) -> tuple[Floats, ...]:

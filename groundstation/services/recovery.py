@@ -13,7 +13,7 @@ from pathlib import Path
 from groundstation.services.autosave import AUTOSAVE_FOLDER, HEADER_FILE, UNSAVED_FOLDER, AutosaveHeader
 from groundstation.services.document import Document, PlanEntry
 from groundstation.services.project import OpenedProject, open_project
-from groundstation.services.project_file import read_index
+from groundstation.services.project_file import is_project, read_index
 from groundstation.services.project_lock import ProjectInUse, lock_holder, lock_project
 from groundstation.services.project_site import same_site
 from groundstation.services.project_store import in_words
@@ -192,7 +192,9 @@ def _changes(folder: Path, copy: OpenedProject) -> tuple[str, ...]:
     except InputError as error:
         if copy.document.site is None and not copy.document.plans:
             return ()
-        return (f"all of it: no project can be opened in its folder ({error})",)
+        if not is_project(folder):
+            return ("all of it: it was never saved as a project",)
+        return (f"all of it: the project that was saved cannot be opened ({error})",)
     left_out = {note.place for note in copy.notes if note.code == "plan-left-out"}
     return tuple(_differences(saved, copy.document, left_out))
 

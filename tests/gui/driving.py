@@ -269,11 +269,16 @@ def close_desk(desk) -> None:
     desk.close()
 
 
+def accept_button(dialog: QFileDialog) -> QAbstractButton:
+    """The button of a file dialog that takes what is chosen, whatever it is called at the moment."""
+    box, role = dialog.findChild(QDialogButtonBox), QDialogButtonBox.ButtonRole.AcceptRole
+    return next(button for button in box.buttons() if box.buttonRole(button) == role)
+
+
 def _type_when_ready(dialog: QFileDialog, text: str) -> None:
     """Type into a file dialog and accept; while it reads its folder it forgets what was typed, or takes no click."""
     line = next(box for box in dialog.findChildren(QLineEdit) if box.objectName() == "fileNameEdit")
-    box, role = dialog.findChild(QDialogButtonBox), QDialogButtonBox.ButtonRole.AcceptRole
-    accept = next(button for button in box.buttons() if box.buttonRole(button) == role)
+    accept = accept_button(dialog)
     again = QTimer(dialog, interval=READ_MS)
     stopped: list[int] = []
     dialog.finished.connect(stopped.append)

@@ -4,8 +4,11 @@ import os
 import shutil
 import subprocess
 from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
+from PySide6.QtWidgets import QLabel, QLineEdit
 
 from groundstation.services.document import PlanEntry
 from groundstation.services.jobs import JobState
@@ -14,7 +17,20 @@ from planning.errors import InputError
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import roof
-from tests.gui.driving import choose, clicked, close_desk, escape, shut, trigger, turn_until, turn_until_idle
+from tests.gui.driving import (
+    accept_button,
+    choose,
+    click_on,
+    clicked,
+    close_desk,
+    escape,
+    press,
+    shut,
+    trigger,
+    turn_until,
+    turn_until_idle,
+    type_into,
+)
 from tests.planning.revision.cases import QUICK
 from tests.services.project_cases import small_disk
 
@@ -55,7 +71,7 @@ def with_site(application, desk):
 
 def test_a_project_is_saved_and_opened_again(application, make_desk, entry, tmp_path):
     desk = make_desk()
-    assert "Begin with a site" in desk.window.tab("site").left.start.findChild(type(desk.window.messages._text)).text()
+    assert "Begin with a site" in desk.window.tab("site").left.start.findChild(QLabel).text()
     with_site(application, desk)
     desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
     assert desk.window.isWindowModified()
@@ -70,7 +86,7 @@ def test_a_project_is_saved_and_opened_again(application, make_desk, entry, tmp_
     with clicked(choose(tmp_path / "my roof"), "Discard"):
         trigger(desk.window, "Open project ...")
     turn_until_idle(application, desk)
-    assert [found.title for found in desk.workspace.document.plans] == ["First"]
+    assert [found.title for found in desk.workspace.document.plans] == ["First"], desk.window.messages.texts()
     assert desk.workspace.document.current.plan == entry.plan
     assert desk.settings().recent_projects == (str(tmp_path / "my roof"),)
 
@@ -183,7 +199,7 @@ def test_unsaved_work_is_offered_after_a_crash(application, make_desk, entry, tm
     turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
     # What a crash leaves: the folder as it is now, and no process that has it open.
     shutil.copytree(folder, tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
-    with clicked("Discard", "Yes") as asked:
+    with clicked("Discard", "Restore") as asked:
         desk.open_folder(tmp_path / "crashed")
     turn_until_idle(application, desk)
     assert "plan 'First' is new" in asked[-1]
@@ -195,6 +211,89 @@ def test_unsaved_work_is_offered_after_a_crash(application, make_desk, entry, tm
     assert len(open_project(tmp_path / "crashed").document.plans) == 1
 
 
+def crashed(application, make_desk, tmp_path):
+    """A folder of a project with a copy of unsaved work, and a window in which nothing is open."""
+    desk = make_desk()
+    with_site(application, desk)
+    desk.save_in(tmp_path / "project")
+    turn_until_idle(application, desk)
+    desk.workspace.change("Rename", replace(desk.workspace.document, request=PlanRequest(n_views=9)))
+    desk.autosave_now()
+    turn_until(application, lambda: (tmp_path / "project" / ".autosave" / "autosave.json").exists())
+    shutil.copytree(tmp_path / "project", tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
+    make_desk.end(desk)
+    return tmp_path / "crashed", make_desk()
+
+
+@pytest.mark.parametrize("later", ["Decide later", escape, shut])
+def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, make_desk, tmp_path, later):
+    folder, desk = crashed(application, make_desk, tmp_path)
+    with clicked(later):
+        desk.open_folder(folder)
+    turn_until_idle(application, desk)
+    assert desk.workspace.document.request.n_views is None
+    assert (folder / ".autosave").exists()
+    with clicked("Delete the copy"):
+        desk.open_folder(folder)
+    turn_until_idle(application, desk)
+    assert not (folder / ".autosave").exists()
+    desk.open_folder(folder)
+    turn_until_idle(application, desk)
+    assert desk.workspace.document.request.n_views is None
+
+
+def test_save_as_proposes_a_name_that_is_free(application, make_desk, tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    (tmp_path / "roof").mkdir()
+    desk = make_desk()
+    with_site(application, desk)
+    seen = []
+
+    def accept(dialog):
+        line = dialog.findChild(QLineEdit, "fileNameEdit")
+        seen.append((dialog.directory().absolutePath(), line.text()))
+        press("Save")(dialog)
+
+    with clicked(accept):
+        trigger(desk.window, "Save as ...")
+    turn_until_idle(application, desk)
+    assert seen == [(str(tmp_path), "roof 2")]
+    assert open_project(tmp_path / "roof 2").document.site.site.name == "roof"
+    with clicked(accept):
+        trigger(desk.window, "Save as ...")
+    turn_until_idle(application, desk)
+    assert seen[-1] == (str(tmp_path), "roof 3")
+
+
+def test_a_folder_that_is_there_is_gone_into_and_the_name_stays(application, make_desk, tmp_path):
+    (tmp_path / "here").mkdir()
+    desk = make_desk()
+    with_site(application, desk)
+
+    def into(dialog):
+        line = dialog.findChild(QLineEdit, "fileNameEdit")
+        type_into(line, str(tmp_path / "here"))
+        click_on(dialog, accept_button(dialog))
+        turn_until(application, lambda: dialog.directory().absolutePath() == str(tmp_path / "here"))
+        assert dialog.isVisible()
+        turn_until(application, lambda: line.text() == "roof" and accept_button(dialog).isEnabled())
+        click_on(dialog, accept_button(dialog))
+
+    with clicked(into):
+        trigger(desk.window, "Save as ...")
+    turn_until_idle(application, desk)
+    assert open_project(tmp_path / "here" / "roof").document.site.site.name == "roof"
+
+
+@pytest.mark.parametrize(
+    ("text", "name"), [("Haus 3/4: Nord", "Haus 3-4- Nord"), ("..", "-"), ("a" * 300, "a" * 80), ("Rö\\of", "Rö-of")]
+)
+def test_names_of_sites_become_names_that_every_system_takes(text, name):
+    from groundstation.gui.questions import file_name
+
+    assert file_name(text) == name
+
+
 def test_work_without_a_project_survives_a_crash_too(application, make_desk, tmp_path):
     first = make_desk()
     with_site(application, first)
@@ -204,10 +303,14 @@ def test_work_without_a_project_survives_a_crash_too(application, make_desk, tmp
     shutil.copytree(place, place.with_name("crashed"), ignore=shutil.ignore_patterns(".lock*"))
     make_desk.end(first)
     assert not place.exists(), "an orderly end leaves nothing behind"
-    with clicked("Yes"):
+    with clicked("Restore") as asked:
         second = make_desk()
     turn_until_idle(application, second)
     assert second.workspace.document.site.site.name == "roof"
+    assert "Nothing is lost" in asked[0]
+    assert "it was never saved as a project" in asked[0]
+    assert "cannot" not in asked[0]
+    assert "Your work is back. It is not saved yet" in second.window.messages.texts()
 
 
 @pytest.mark.slow

@@ -1,10 +1,11 @@
 """The dialogs of the window, clicked: what accepting them does, and that nothing happens without."""
 
 import gc
+from pathlib import Path
 
 import pytest
 import trimesh
-from PySide6.QtWidgets import QPushButton
+from PySide6.QtWidgets import QLineEdit, QPushButton
 
 from groundstation.services.document import Document, PlanEntry
 from missions.formats import read_missions
@@ -13,6 +14,7 @@ from planning.plan_file import write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from tests.gui.driving import (
+    accept_button,
     choose,
     click_on,
     clicked,
@@ -201,11 +203,11 @@ def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(applica
         press_in(dialog, "Write ...")
     assert list(tmp_path.iterdir()) == []
     (tmp_path / "kiosk.kmz").write_bytes(b"before")
-    # The dialog of files asks itself, for the name with its ending too.
+    # For the name without its ending too.
     for name in ("kiosk.kmz", "kiosk"):
-        with clicked(choose(tmp_path / name), "No") as asked:
+        with clicked(choose(tmp_path / name), "Cancel") as asked:
             press_in(dialog, "Write ...")
-        assert "kiosk.kmz already exists" in asked[1]
+        assert "kiosk.kmz is there already" in asked[1]
         assert (tmp_path / "kiosk.kmz").read_bytes() == b"before"
     with clicked(choose(tmp_path / "kiosk"), "Yes"):
         press_in(dialog, "Write ...")
@@ -273,3 +275,39 @@ def test_the_boxes_of_the_help_menu_go_by_every_way(application, desk):
             with clicked(step) as shown:
                 trigger(desk.window, text)
             assert text in shown[0]
+
+
+@pytest.mark.parametrize("begins_in", ["/", "there"])
+def test_a_path_that_is_typed_is_taken_wherever_the_dialog_begins(application, desk, tmp_path, begins_in):
+    """Qt's own dialog takes the folder on the way to it."""
+    from groundstation.gui.questions import Questions, choose_file, choose_files
+
+    window, folder = desk.window, tmp_path / "on the way"
+    folder.mkdir()
+    for name in ("a b.json", "c.json"):
+        (folder / name).touch()
+    start = tmp_path if begins_in == "there" else Path(begins_in)
+    with clicked(choose(folder / "a b.json")):
+        assert choose_file(window, "Open", "All (*)") == folder / "a b.json"
+    with clicked(choose(folder)):
+        assert Questions().folder(window, "Folder") == folder
+    with clicked(choose(folder / "new one")):
+        assert Questions().new_folder(window, "New", start / "proposed") == folder / "new one"
+    with clicked(choose(folder / "a b.json", folder / "c.json")):
+        assert choose_files(window, "Files", "All (*)", start) == (folder / "a b.json", folder / "c.json")
+
+
+def test_a_file_that_is_not_there_is_told_and_another_can_be_named(application, desk, tmp_path):
+    from groundstation.gui.questions import choose_file
+
+    (tmp_path / "right.json").touch()
+
+    def wrong_then_right(dialog):
+        line = dialog.findChild(QLineEdit, "fileNameEdit")
+        type_into(line, str(tmp_path / "wrong.json"))
+        click_on(dialog, accept_button(dialog))
+        choose(tmp_path / "right.json")(dialog)
+
+    with clicked(wrong_then_right, "OK") as asked:
+        assert choose_file(desk.window, "Open", "All (*)") == tmp_path / "right.json"
+    assert "wrong.json: there is nothing of that name." in asked[1]

@@ -1,16 +1,23 @@
 """The window does the main job: open, look, plan, stop, cancel, undo, save; and answers while it works."""
 
+import re
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from groundstation.gui import menus
+from groundstation.gui.shortcuts import VIEWS
+from groundstation.gui.stage import StagePage
 from groundstation.services.document import Item, ItemKind
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
 from planning.request import GreedyParameters, PlanRequest
-from tests.gui.driving import close_desk, turn_until, turn_until_idle
+from tests.gui.driving import clicked, close_desk, press_in, trigger, turn_until, turn_until_idle
+
+GUI = Path(menus.__file__).parent
 
 QUICK = PlanRequest(
     n_views=8, greedy=GreedyParameters(n_candidates=400, improve=False, certify=False), time_budget_s=4.0
@@ -140,6 +147,38 @@ def test_plans_are_compared_side_by_side(application, desk):
     window.close()
 
 
+def test_a_row_that_is_clicked_to_compare_does_not_become_the_plan_that_is_flown(application, desk):
+    from PySide6.QtCore import Qt
+    from PySide6.QtTest import QTest
+
+    opened(application, desk, "roof")
+    planned(application, desk, QUICK)
+    page = planned(application, desk, replace(QUICK, n_views=6))
+    first, second = (entry.id for entry in desk.workspace.document.plans)
+    plans = page.lists.plans
+    page.lists.setCurrentWidget(plans)
+    turn_until_idle(application, desk)
+    table = plans._view
+
+    def click(row, modifier=Qt.KeyboardModifier.NoModifier, click=QTest.mouseClick):
+        place = table.visualRect(table.model().index(row, 1)).center()
+        click(table.viewport(), Qt.MouseButton.LeftButton, modifier, place)
+
+    assert desk.workspace.document.current_plan_id == second
+    click(0)
+    assert plans.selected() == (first,)
+    assert desk.workspace.document.current_plan_id == second, "a click selects"
+    click(1, Qt.KeyboardModifier.ControlModifier)
+    assert plans.selected() == (first, second)
+    assert desk.workspace.document.current_plan_id == second
+    click(0)
+    press_in(desk.window, "Make current")
+    assert desk.workspace.document.current_plan_id == first
+    click(1)
+    click(1, click=QTest.mouseDClick)
+    assert desk.workspace.document.current_plan_id == second
+
+
 def test_theme_units_and_language_change_at_once_and_are_kept(application, desk):
     from groundstation.services.settings import read_settings, settings_path
 
@@ -165,12 +204,68 @@ def test_theme_units_and_language_change_at_once_and_are_kept(application, desk)
     assert (kept.theme, kept.units, kept.language) == (Theme.LIGHT, UnitSystem.METRIC, Language.ENGLISH)
 
 
-def test_every_action_has_a_name_and_no_key_is_given_twice(application, desk):
-    for name in desk.window.tab_names():
-        desk.window.show_tab(name)
-    keys = [line.split("\t")[0] for line in desk.menus.shortcuts_text().splitlines()]
-    assert len(keys) == len(set(keys))
-    assert {"Ctrl+S", "Ctrl+Z", "Ctrl+P", "F1", "Ctrl+1"} <= set(keys)
+TOKENS = {
+    **dict.fromkeys(("Left", "Right", "Up", "Down"), "Arrows"),
+    **dict.fromkeys(("Return", "Enter"), "Enter"),
+    **{"Plus": "+", "Minus": "-", "Equal": "=", "PageUp": "Page up", "PageDown": "Page down", "Escape": "Esc"},
+    **{"Delete": "Del", "Insert": "Ins"},
+}
+"""What keys are called in the list of all, where it is not Qt's own name."""
+
+
+def keys_in(module):
+    """Names of the keys that a module of the window handles by itself."""
+    return set(re.findall(r"Qt\.Key\.Key_(\w+)", (GUI / module).read_text()))
+
+
+def test_every_key_of_a_menu_tab_or_shortcut_is_in_the_list_and_none_twice(application, desk):
+    from PySide6.QtGui import QAction, QKeySequence, QShortcut
+
+    from groundstation.gui.shortcuts import ShortcutsDialog, sections
+
+    for page in StagePage:
+        desk.window.stage.show_page(page)
+    told = dict(sections(desk.window))
+    dialog = ShortcutsDialog(desk.window)
+    listed = [keys for title, rows in told.items() if title not in VIEWS for keys, _ in rows]
+    assert len(listed) == len(set(listed))
+    assert all(words for rows in told.values() for _, words in rows)
+    everything = {key for rows in told.values() for keys, _ in rows for key in (keys, *keys.split(", "))}
+    actions = [
+        *desk.window.findChildren(QAction),
+        *(a for n in desk.window.tab_names() for a in desk.window.tab(n).actions()),
+    ]
+    native = QKeySequence.SequenceFormat.NativeText
+    keys = {key.toString(native) for action in actions for key in action.shortcuts()}
+    keys |= {shortcut.key().toString(native) for shortcut in desk.window.findChildren(QShortcut)}
+    assert len(keys) > 40
+    assert keys - {""} <= everything
+    assert {"Ctrl+S", "Ctrl+Z", "Ctrl+P", "F1", "Ctrl+1", "Ctrl+Shift+L"} <= set(listed)
+    assert all(key in dialog.text() for key in keys)
+
+
+def test_every_key_that_a_view_takes_by_itself_is_in_the_list(application):
+    from groundstation.gui.shortcuts import view_keys
+
+    taking = {
+        path.relative_to(GUI).as_posix()
+        for path in GUI.rglob("*.py")
+        if "Qt.Key.Key_" in path.read_text() and not path.name.startswith("screenshots")
+    }
+    assert taking == {module for modules in VIEWS.values() for module in modules}
+    told = dict(view_keys())
+    assert set(told) == set(VIEWS)
+    for title, modules in VIEWS.items():
+        words = " ".join(keys for keys, _ in told[title])
+        for module in modules:
+            missing = {key for key in keys_in(module) if TOKENS.get(key, key) not in words}
+            assert not missing, module
+
+
+def test_the_list_of_keys_is_shown_and_scrolls(application, desk):
+    with clicked("OK") as shown:
+        trigger(desk.window, "Shortcuts")
+    assert shown[0].startswith("Shortcuts")
 
 
 @pytest.mark.alone

@@ -3,6 +3,8 @@
 import threading
 
 import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
 
 from groundstation.services.document import Document, Item, ItemKind
 from groundstation.services.jobs import JobRunner, JobState
@@ -10,7 +12,7 @@ from groundstation.services.session import Session
 from planning.errors import InputError
 from planning.findings import Severity
 from planning.scenes import single_panel
-from tests.gui.driving import turn_until
+from tests.gui.driving import click_on, press_in, turn_until
 
 
 @pytest.fixture
@@ -130,7 +132,7 @@ def test_the_job_bar_shows_progress_queue_and_time_and_cancels(application, work
     assert "first: waiting" in bar._label.text()
     assert bar._bar.value() == 250
     assert bar._queue.text() == "1 waiting"
-    wait(application, lambda: "left" in bar._left.text())
+    wait(application, lambda: "this step: " in bar._left.text() and "left" in bar._left.text())
     bar._list_queue()
     assert [action.text() for action in bar._queue.menu().actions()] == ["Cancel: second"]
     bar.cancel_running()
@@ -165,13 +167,150 @@ def test_messages_keep_their_place_and_lead_to_it(application, workspace, messag
     workspace.lookAtRequested.connect(heard.append)
     item = Item(ItemKind.HOME)
     workspace.say(Severity.WARNING, "home stands close", item)
-    messages._jump_to_last()
+    messages._jump.click()
     assert heard == [item]
-    assert messages._severity.text() == "Warning"
+    assert messages.line() == "Warning: home stands close"
     for number in range(600):
         workspace.say(Severity.NOTE, str(number))
-    assert messages._list.count() == 500
+    assert len(messages.messages()) == 500
     assert messages.texts().endswith("Note: 599")
+
+
+class Clock:
+    now_s = 0.0
+
+    def __call__(self):
+        return self.now_s
+
+
+@pytest.fixture
+def centre(application, workspace):
+    from groundstation.gui.message_area import MessageArea
+
+    clock = Clock()
+    area = MessageArea(workspace, clock=clock)
+    area.clock = clock
+    return area
+
+
+def passes(area, seconds):
+    area.clock.now_s += seconds
+    area.look()
+
+
+def test_a_warning_stays_until_it_is_no_longer_true_whatever_else_is_told(workspace, centre):
+    workspace.say(Severity.WARNING, "the copy could not be written", about="project.copy")
+    workspace.say(Severity.OK, "Saved a file")
+    assert centre.line() == "Done: Saved a file"
+    passes(centre, 20.0)
+    assert centre.line() == "Warning: the copy could not be written"
+    passes(centre, 3600.0)
+    assert centre.line() == "Warning: the copy could not be written"
+    assert "\u26a0 1" in centre._all.text()
+    workspace.settle("project.copy")
+    assert centre.line() == ""
+    assert centre._all.text() == "Messages"
+    assert "the copy could not be written" in centre.texts(), "the list keeps it"
+
+
+def test_the_gravest_of_what_holds_is_shown_and_the_next_when_it_goes(workspace, centre):
+    workspace.say(Severity.ERROR, "the link is lost", about="link")
+    workspace.say(Severity.WARNING, "wind above the limit", about="flight.warning.wind")
+    workspace.say(Severity.WARNING, "the battery is low", about="flight.warning.battery")
+    assert centre.line() == "Error: the link is lost"
+    assert centre.standing()[0].text == "the link is lost"
+    workspace.settle("link")
+    assert centre.line().startswith("Warning: ")
+    workspace.settle("flight.warning.")
+    assert centre.line() == ""
+
+
+def test_a_message_about_the_same_takes_the_place_of_the_one_before(workspace, centre):
+    workspace.say(Severity.WARNING, "wind 9 m/s", about="flight.warning.wind")
+    workspace.say(Severity.ERROR, "wind 14 m/s", about="flight.warning.wind")
+    assert [message.text for message in centre.standing()] == ["wind 14 m/s"]
+    workspace.say(Severity.OK, "wind 3 m/s", about="flight.warning.wind")
+    assert centre.standing() == ()
+
+
+def test_what_just_happened_goes_after_a_while(workspace, centre):
+    workspace.say(Severity.OK, "Written: a.kmz")
+    passes(centre, 5.0)
+    assert centre.line() == "Done: Written: a.kmz"
+    passes(centre, 30.0)
+    assert centre.line() == ""
+    workspace.say(Severity.ERROR, "a.kmz cannot be written")
+    passes(centre, 30.0)
+    assert centre.line() == "Error: a.kmz cannot be written", "trouble is longer there to be read"
+    passes(centre, 60.0)
+    assert centre.line() == ""
+    assert len(centre.messages()) == 2
+
+
+def test_an_error_of_a_job_holds_until_it_is_tried_again(application, workspace, centre):
+    def fails(_context):
+        raise InputError("no room")
+
+    workspace.start("Save", fails)
+    wait(application, centre.standing)
+    workspace.start("Open", lambda _context: None)
+    wait(application, lambda: not workspace.jobs())
+    assert [message.text for message in centre.standing()] == ["Save: no room"]
+    workspace.start("Save", lambda _context: None)
+    assert centre.standing() == ()
+    wait(application, lambda: not workspace.jobs())
+
+
+def test_the_list_opens_over_the_window_and_moves_nothing(application, workspace):
+    from PySide6.QtWidgets import QMainWindow, QPushButton, QVBoxLayout, QWidget
+
+    from groundstation.gui.message_area import MessageArea
+
+    window, page, area = QMainWindow(), QWidget(), MessageArea(workspace)
+    above, layout = QPushButton("above"), QVBoxLayout(page)
+    layout.addWidget(above, 1)
+    layout.addWidget(area)
+    window.setCentralWidget(page)
+    window.resize(900, 500)
+    window.show()
+    wait(application, window.isVisible)
+    before = above.geometry(), area.geometry(), window.size()
+    item, heard = Item(ItemKind.HOME), []
+    workspace.lookAtRequested.connect(heard.append)
+    workspace.say(Severity.WARNING, "home stands close " * 40, item, "plan.home")
+    workspace.say(Severity.OK, "Saved")
+    click_on(window, area._all)
+    assert area.sheet.isVisible()
+    assert (above.geometry(), area.geometry(), window.size()) == before
+    rows = area.sheet.texts()
+    assert rows[0] == "Now"
+    assert rows[1].startswith("Warning: home stands close")
+    assert rows[2] == "Told so far"
+    assert rows[3].endswith("Done: Saved"), "the latest first"
+    area.sheet.rows().setCurrentRow(1)
+    press_in(window, "Show place")
+    assert heard == [item]
+    press_in(window, "Dismiss")
+    assert area.standing() == ()
+    assert area.sheet.texts()[1] == "nothing to heed"
+    window.activateWindow()
+    wait(application, window.isActiveWindow)
+    area.sheet.rows().setFocus()
+    QTest.keyClick(area.sheet.rows(), Qt.Key.Key_Escape)
+    assert not area.sheet.isVisible()
+    assert not area._all.isChecked()
+    window.close()
+
+
+def test_a_long_message_is_cut_in_the_line_and_whole_in_the_list(application, workspace, centre):
+    workspace.say(Severity.WARNING, "word " * 200, about="plan.long")
+    centre.resize(500, centre.sizeHint().height())
+    assert centre.sizeHint().height() <= 2 * centre.fontMetrics().lineSpacing() + 30
+    assert centre.minimumSizeHint().width() < 500
+    lines = centre._text._lines()
+    assert len(lines) == 2
+    assert lines[1].endswith("\u2026")
+    assert centre._text.toolTip().count("word") == 200
 
 
 def test_a_job_that_the_window_itself_throws_away_is_not_spoken_of(application, workspace, messages):

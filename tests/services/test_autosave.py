@@ -224,7 +224,7 @@ def test_work_is_found_although_its_project_is_damaged(project):
     autosave(folder).keep(work)
     (folder / "site" / "site.json").write_text("{")
     found = find_recovery(folder)
-    assert "no project can be opened in its folder" in found.changes[0]
+    assert "the project that was saved cannot be opened" in found.changes[0]
     assert is_same(recover(found).document, work)
 
 

@@ -25,7 +25,9 @@ class FlightInHand:
     photos
         By the view that they are of.
     notes
-        What happened: the vehicle's time, how severe, and the text.
+        What happened: how long after take-off (None on the ground), how severe, and the text.
+    took_off_s
+        When the motors started, by the vehicle's own clock; None on the ground.
     """
 
     sortie: LiveSortie
@@ -39,11 +41,14 @@ class FlightInHand:
     notes: list[tuple[float | None, Severity, str]] = field(default_factory=list)
     last_text_s: float = -math.inf
     battery: float | None = None
+    took_off_s: float | None = None
 
     def take_view(self, view: LiveView) -> tuple[VehicleText, ...]:
         """The flight as it stands now; returns the autopilot's texts that are new."""
         self.view = view
         state = view.state
+        if self.took_off_s is None and state.is_armed:
+            self.took_off_s = state.boot_time_s
         if state.motion is not None and view.link is LinkState.ALIVE:
             place = state.motion.value.position_enu_m
             if not self.track_enu_m or self.track_enu_m[-1] != place:
@@ -55,6 +60,11 @@ class FlightInHand:
         if texts:
             self.last_text_s = texts[-1].time_s
         return texts
+
+    def since_take_off_s(self, view: LiveView) -> float | None:
+        """How long the motors have been running, as plans and reports count; None on the ground."""
+        now_s = view.state.boot_time_s
+        return None if self.took_off_s is None or now_s is None else max(0.0, now_s - self.took_off_s)
 
     def take_photo(self, counted: PhotoCounted) -> None:
         """A photo was taken."""

@@ -73,7 +73,7 @@ class FlyDesk(QObject):
     viewChanged(LiveView), photoCounted(PhotoCounted), linkChanged(LinkState), flightEnded(FlightEnded)
         As the flight publishes them.
     noted(object, Severity, str)
-        Something to be remembered: the vehicle's time (or None), how severe, and the text.
+        Something to be remembered: how long after take-off (None on the ground), how severe, and the text.
     """
 
     stateChanged = Signal()  # noqa: N815  (Qt's own way of naming)
@@ -262,6 +262,8 @@ class FlyDesk(QObject):
         plan = sortie.case.plan
         charge = self.after.charge(plan, sortie.orders.number)
         self._flight_id = flight_id = next(self._ids)
+        for topic in ("link", "flight."):
+            self._workspace.settle(topic)
         self.in_hand = FlightInHand(sortie)
         self._flight = LiveFlight(
             sortie,
@@ -299,20 +301,23 @@ class FlyDesk(QObject):
                 self._take_link(in_hand, event)
             case Answered():
                 self._note(Severity.OK if event.is_accepted else Severity.ERROR, self._words(event.text))
-                if not event.is_accepted:
-                    self._say(Severity.ERROR, event.text)
+                if event.is_accepted:
+                    self._workspace.settle("order")
+                else:
+                    self._say(Severity.ERROR, event.text, "order")
             case WarningRaised():
                 self._note(event.warning.severity, self._words(event.warning.text))
+                self._say(event.warning.severity, event.warning.text, f"flight.warning.{event.warning.code}")
             case WarningCleared():
-                pass
+                self._workspace.settle(f"flight.warning.{event.code}")
             case LinkProblem():
                 in_hand.link_problem = event.text
                 self._note(Severity.ERROR, self._words(event.text))
-                self._say(Severity.ERROR, event.text)
+                self._say(Severity.ERROR, event.text, "link")
                 self.stateChanged.emit()
             case LogProblem():
                 self._note(Severity.WARNING, self._words(event.text))
-                self._say(Severity.WARNING, event.text)
+                self._say(Severity.WARNING, event.text, "flight.log")
             case FlightEnded():
                 self._take_end(in_hand, event)
 
@@ -330,13 +335,16 @@ class FlyDesk(QObject):
         if event.link is LinkState.LOST:
             self._note(Severity.ERROR, self.tr("link lost") if not text else self.tr("link lost: {0}").format(text))
         elif event.link is LinkState.ALIVE:
+            self._workspace.settle("link")
             self._note(
                 Severity.OK, self.tr("link alive") if before is not LinkState.LOST else self.tr("link found again")
             )
         elif event.link is LinkState.CLOSED:
             self._note(Severity.NOTE, self.tr("disconnected"))
+            for topic in ("order", "flight.warning.", "flight.log"):
+                self._workspace.settle(topic)
             if text:
-                self._say(Severity.ERROR, event.text)
+                self._say(Severity.ERROR, event.text, "link")
             self._flight = None
             self.stateChanged.emit()
         self.linkChanged.emit(event.link)
@@ -348,23 +356,24 @@ class FlyDesk(QObject):
             self.after.add(case.plan, case.site_model, event.record, in_hand.battery)
         if event.error is not None:
             self._note(Severity.ERROR, self._words(str(event.error)))
-            self._say(Severity.ERROR, str(event.error))
+            self._say(Severity.ERROR, str(event.error), "flight.ended")
         else:
             self._note(Severity.OK, self.tr("landed"))
         if event.problem:
-            self._say(Severity.WARNING, event.problem)
+            self._say(Severity.WARNING, event.problem, "flight.kept")
+        in_hand.took_off_s = None
         self.flightEnded.emit(event)
 
     def _note(self, severity: Severity, text: str) -> None:
         in_hand = self.in_hand
         view = None if in_hand is None else in_hand.view
-        when = None if view is None else view.state.boot_time_s
+        when = None if in_hand is None or view is None else in_hand.since_take_off_s(view)
         if in_hand is not None:
             in_hand.notes.append((when, severity, text))
         self.noted.emit(when, severity, text)
 
-    def _say(self, severity: Severity, text: str) -> None:
-        self._workspace.say(severity, self._words(text))
+    def _say(self, severity: Severity, text: str, about: str = "") -> None:
+        self._workspace.say(severity, self._words(text), about=about)
 
     def _words(self, text: str) -> str:
         words: str = self._workspace.words(text)

@@ -76,9 +76,10 @@ class FlightNotes(QListWidget):
         super().__init__(parent)
         self.setWordWrap(True)
         self.setAccessibleName(self.tr("What happened in the flight"))
+        self.setToolTip(self.tr("Minutes and seconds after take-off, as in the plan and the report"))
 
     def add(self, time_s: float | None, severity: Severity, text: str) -> None:
-        """Note something; `time_s` is the vehicle's own time."""
+        """Note something; `time_s` after take-off."""
         minutes, tenths = divmod(round(10.0 * (time_s or 0.0)), 600)
         when = "" if time_s is None else f"{minutes}:{tenths / 10.0:04.1f}  "
         row = QListWidgetItem(f"{when}{text}")

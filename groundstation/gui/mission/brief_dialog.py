@@ -20,8 +20,9 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
 from groundstation.gui.inputs import ChoiceBox
+from groundstation.gui.job_bar import DialogFoot
 from groundstation.gui.own_words import finding_in_own_words
-from groundstation.gui.questions import choose_new_file
+from groundstation.gui.questions import choose_new_file, file_name
 from groundstation.gui.workspace import Workspace
 from groundstation.services.brief_html import MAP, brief_html, brief_pictures
 from groundstation.services.flight_brief import flight_brief
@@ -78,6 +79,7 @@ class BriefDialog(QDialog):
             bar.addWidget(button)
         layout = QVBoxLayout(self)
         layout.addWidget(self._page, 1)
+        layout.addWidget(DialogFoot(workspace))
         layout.addLayout(bar)
         self.resize(760, 620)
         self._paper.currentIndexChanged.connect(self._lay_out)
@@ -147,7 +149,7 @@ class BriefDialog(QDialog):
             button.setEnabled(is_ready)
 
     def _choose_pdf(self) -> None:
-        proposed, kinds = self._folder / f"{self._name}.pdf", self.tr("PDF (*.pdf)")
+        proposed, kinds = self._folder / f"{file_name(self._name)}.pdf", self.tr("PDF (*.pdf)")
         path = choose_new_file(self, self.tr("Save the flight brief"), proposed, kinds, ".pdf")
         if path is not None:
             self.save_pdf(path)

@@ -8,9 +8,10 @@ from typing import Any
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
+from groundstation.gui.job_bar import DialogFoot
 from groundstation.gui.mission.export_form import ExportForm
 from groundstation.gui.mission.findings_list import FindingsList
-from groundstation.gui.questions import agrees, choose_new_file
+from groundstation.gui.questions import agrees, choose_new_file, file_name
 from groundstation.gui.workspace import Workspace
 from groundstation.services.jobs import JobContext
 from groundstation.services.mission_files import (
@@ -75,6 +76,7 @@ class ExportDialog(QDialog):
         buttons.addWidget(self._write)
         layout = QVBoxLayout(self)
         layout.addLayout(columns, 1)
+        layout.addWidget(DialogFoot(workspace))
         layout.addLayout(buttons)
         self.resize(820, 460)
         # Turning a wheel through the choices makes one set of files, not one for each.
@@ -165,7 +167,7 @@ class ExportDialog(QDialog):
     def _choose_file(self) -> None:
         file_format, _ = self._form.value()
         suffix = SUFFIXES[file_format][0]
-        proposed = self._folder / f"{self._plan.site}{suffix}"
+        proposed = self._folder / f"{file_name(self._plan.site)}{suffix}"
         kinds = self.tr("Mission files (*{0})").format(suffix)
         others = (*SUFFIXES[file_format][1:], *PLAIN_ENDINGS)
         path = choose_new_file(self, self.tr("Write mission files"), proposed, kinds, suffix, others)

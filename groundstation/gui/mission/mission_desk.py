@@ -128,11 +128,15 @@ class MissionDesk(QObject):
 
     def _say_findings(self, names: str, findings: Sequence[Finding]) -> None:
         """Say what there is to say of the files of these names; what holds of several sorties once."""
+        self._workspace.settle("plan.file.")
         told = {found.message: found for found in reversed(findings) if found.severity is not Severity.OK}
         for found in list(reversed(told.values()))[:MAX_SAID]:
             item = item_of_place(found.place, self._workspace.document)
             self._workspace.say(
-                found.severity, self.tr("{0}: {1}").format(names, self._workspace.words(found.message)), item
+                found.severity,
+                self.tr("{0}: {1}").format(names, self._workspace.words(found.message)),
+                item,
+                f"plan.file.{found.message}",
             )
         if len(told) > MAX_SAID:
             self._workspace.say(Severity.NOTE, self.tr("{0} more findings like these").format(len(told) - MAX_SAID))

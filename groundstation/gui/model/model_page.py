@@ -15,7 +15,7 @@ from groundstation.gui.model.panel_side import PanelSide
 from groundstation.gui.model.record_side import KIND_TITLES, RecordSide
 from groundstation.gui.model.report_maker import ReportMaker
 from groundstation.gui.model.scene_pane import ScenePane
-from groundstation.gui.questions import Questions, choose_new_file
+from groundstation.gui.questions import Questions, choose_new_file, file_name
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.model_export import ENDINGS, OTHER_ENDINGS, ModelFormat, with_ending
@@ -145,10 +145,10 @@ class ModelPage(QObject):
         """Where a file or folder is to be."""
         title, ending = self.tr("Export the model"), ENDINGS.get(kind)
         if ending is None:
-            return self.questions.new_folder(self._stage.window(), title)
+            return self.questions.new_folder(self._stage.window(), title, Path.home() / file_name(name))
         others = OTHER_ENDINGS.get(kind, ())
         kinds = " ".join(f"*{each}" for each in (ending, *others))
-        found = choose_new_file(self._stage.window(), title, Path(f"{name}{ending}"), kinds, ending, others)
+        found = choose_new_file(self._stage.window(), title, Path(f"{file_name(name)}{ending}"), kinds, ending, others)
         return None if found is None else with_ending(found, kind)
 
     def _make_report(self) -> None:
@@ -160,7 +160,7 @@ class ModelPage(QObject):
     def _proposed(self, ending: str) -> Path:
         """A name for a file about the model that is open."""
         name = self.tr("model") if self.desk.card is None else self.desk.card.name
-        return Path(f"{name}{ending}")
+        return Path(f"{file_name(name)}{ending}")
 
     def make_report(self, path: Path) -> None:
         """Write a report of the panels that are marked in the list, or of what records are shown of.

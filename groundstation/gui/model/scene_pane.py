@@ -18,6 +18,7 @@ from groundstation.gui.reconstruct.led_camera import USUAL_DISTANCE_M, LedCamera
 from groundstation.gui.reconstruct.looks import Looks, View
 from groundstation.gui.reconstruct.model_view import Mark, ModelView
 from groundstation.gui.reconstruct.names import layer_names
+from groundstation.gui.scrolling import WrappingRow, labelled
 from groundstation.gui.theme import colours
 from groundstation.gui.workspace import Workspace
 from groundstation.services.reconstruct_messages import Probe, Probed, Section, Seen, Subject
@@ -143,16 +144,13 @@ class ScenePane(QWidget):
         self.home.setToolTip(self.tr("See the largest facade from the front (0)"))
         self.save.setToolTip(self.tr("Save the picture as a file"))
         self.front.setToolTip(self.tr("See the chosen panel from the front"))
-        layout, bar, below = QVBoxLayout(self), QHBoxLayout(), QHBoxLayout()
+        layout, bar, below = QVBoxLayout(self), WrappingRow(), QHBoxLayout()
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
         for title, box in ((self.tr("Layer"), self.layer), (self.tr("Beside it"), self.compare)):
-            label = QLabel(title)
-            label.setBuddy(box)
             box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
             box.setMinimumContentsLength(7)
-            bar.addWidget(label)
-            bar.addWidget(box, 1)
+            bar.addWidget(labelled(title, box))
         for widget in (self.home, self.front, self.measure, self.save):
             bar.addWidget(widget)
         label = QLabel(self.tr("Section"))

@@ -5,9 +5,10 @@ from __future__ import annotations
 from enum import StrEnum
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
+from PySide6.QtWidgets import QWidget
 
 from groundstation.gui.inputs import ChoiceBox
+from groundstation.gui.scrolling import WrappingRow, labelled
 
 
 class PanelPaint(StrEnum):
@@ -48,11 +49,9 @@ class PaintBar(QWidget):
             self._panels.addItem(text, paint)
         for route, text in ((RoutePaint.SORTIE, self.tr("sortie")), (RoutePaint.CLEARANCE, self.tr("clearance"))):
             self._routes.addItem(text, route)
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
+        layout = WrappingRow(self)
         for text, box in ((self.tr("Panels by"), self._panels), (self.tr("Route by"), self._routes)):
-            layout.addWidget(QLabel(text))
-            layout.addWidget(box)
+            layout.addWidget(labelled(text, box))
             box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit(*self.value()))
 
     def value(self) -> tuple[PanelPaint, RoutePaint]:

@@ -217,6 +217,7 @@ class PlanDesk(QObject):
                 finding.severity,
                 self._workspace.words(finding.message),
                 item_of_place(finding.place, self._workspace.document),
+                f"plan.{finding.code}.{finding.place}",
             )
         return True
 
@@ -258,7 +259,8 @@ class PlanDesk(QObject):
             ),
         )
         for finding in planned.findings:
-            self._workspace.say(finding.severity, self._workspace.words(finding.message))
+            about = f"plan.{finding.code}.{finding.place}"
+            self._workspace.say(finding.severity, self._workspace.words(finding.message), about=about)
 
     def _planning_over(self) -> None:
         self._planning = None
@@ -268,6 +270,7 @@ class PlanDesk(QObject):
         plan_before = None if before.current is None else before.current.plan
         plan_after = None if after.current is None else after.current.plan
         if plan_before is not plan_after or before.site is not after.site:
+            self._workspace.settle("plan.")
             self._take_current()
 
     def _take_current(self) -> None:

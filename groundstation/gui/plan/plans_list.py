@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QItemSelectionModel, Signal
-from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractItemView, QGridLayout, QHBoxLayout, QPushButton, QWidget
 
 from groundstation.gui.plan.method_names import method_name
 from groundstation.gui.plan.table_view import Column, RowModel, table_of
@@ -34,26 +34,30 @@ class PlansList(QWidget):
         self._model: RowModel[PlanEntry] = RowModel(self._columns(), self)
         self._view = table_of(self._model, self.tr("Plans"))
         self._view.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
-        buttons = QVBoxLayout()
+        buttons = QGridLayout()
+        self._use = QPushButton(self.tr("Make current"))
+        self._use.setToolTip(self.tr("Look at this plan, edit, export and fly it; a double click does so too"))
         self._compare = QPushButton(self.tr("Compare"))
         self._compare.setToolTip(self.tr("Show the selected plans side by side (two or more)"))
         self._rename = QPushButton(self.tr("Rename ..."))
         self._remove = QPushButton(self.tr("Remove"))
         self._open = QPushButton(self.tr("Open plan ..."))
-        for button in (self._compare, self._rename, self._remove, self._open):
-            buttons.addWidget(button)
-        buttons.addStretch(1)
+        made = (self._use, self._compare, self._rename, self._remove, self._open)
+        for number, button in enumerate(made):
+            buttons.addWidget(button, number // 2, number % 2)
+        buttons.setRowStretch(len(made), 1)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
         layout.addWidget(self._view, 1)
         layout.addLayout(buttons)
+        self._use.clicked.connect(lambda: self.chosen.emit(self.selected()[0]))
         self._compare.clicked.connect(lambda: self.compareWanted.emit(self.selected()))
         self._rename.clicked.connect(self._ask_name)
         self._remove.clicked.connect(lambda: self.removed.emit(self.selected()[0]))
         self._open.clicked.connect(lambda: self.openWanted.emit())
         self._view.selectionModel().selectionChanged.connect(lambda *_: self._update())
-        self._view.activated.connect(lambda index: self.chosen.emit(self._model.row(index).id))
-        self._view.clicked.connect(lambda index: self._clicked(self._model.row(index).id))
+        for signal in (self._view.activated, self._view.doubleClicked):
+            signal.connect(lambda index: self.chosen.emit(self._model.row(index).id))
         self._update()
 
     def set_document(self, document: Document) -> None:
@@ -110,13 +114,11 @@ class PlansList(QWidget):
             ),
         )
 
-    def _clicked(self, plan_id: str) -> None:
-        # Several selected plans are about to be compared: which one is looked at stays.
-        if len(self.selected()) == 1:
-            self.chosen.emit(plan_id)
-
     def _update(self) -> None:
-        n = len(self.selected())
+        selected = self.selected()
+        n = len(selected)
+        # A click selects, to compare or rename: it must not change which plan is flown.
+        self._use.setEnabled(n == 1 and selected[0] != self._current)
         self._compare.setEnabled(n >= 2)
         self._rename.setEnabled(n == 1)
         self._remove.setEnabled(n == 1)

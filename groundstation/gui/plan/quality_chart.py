@@ -110,4 +110,4 @@ class QualityChart(QWidget):
             self._left.clear()
         else:
             left_s = max(0.0, self._budget_s - elapsed_s)
-            self._left.setText(self.tr("{0:.0f} s, at most {1:.0f} s left").format(elapsed_s, left_s))
+            self._left.setText(self.tr("at most {0:.0f} s left").format(left_s))

@@ -125,6 +125,7 @@ class PlaceDesk(QObject):
         if not self.standing.is_interrupted or (noted is not None and real_path(noted) != real_path(card.folder)):
             self._propose()
         site = self._workspace.document.site
+        self._workspace.settle("training.data")
         if site is not None and site.site.n_panels > 0 and not card.shows(site.site):
             self._workspace.say(
                 Severity.WARNING,
@@ -132,6 +133,7 @@ class PlaceDesk(QObject):
                     "This data set shows other panels than the site that is open ({0} against {1}). It can be trained "
                     "on all the same; is it the right one?"
                 ).format(len(card.source.panels.corners_enu_m), site.site.n_panels),
+                about="training.data",
             )
         self.dataSetChanged.emit()
         self.stateChanged.emit()

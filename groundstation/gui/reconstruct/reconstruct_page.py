@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QCloseEvent
@@ -126,9 +127,13 @@ class ReconstructPage(QObject):
             self.desk.read(folder)
 
     def _choose_out(self) -> None:
-        folder = self.questions.new_folder(self._stage.window(), self.tr("Folder for the model"))
+        folder = self.questions.new_folder(self._stage.window(), self.tr("Folder for the model"), self._proposed())
         if folder is not None:
             self.desk.choose_out(folder)
+
+    def _proposed(self) -> Path:
+        """Where the model goes unless it is said otherwise."""
+        return self.desk.out if self.desk.out.name else Path.home() / self.tr("model")
 
     def _chosen(self, choice: TrainChoice) -> None:
         self.desk.choose(replace(choice, light=self.light.value()))

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QComboBox, QPushButton, QWidget
 
 from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.reconstruct.names import layer_names
+from groundstation.gui.scrolling import WrappingRow, labelled
 from groundstation.services.reconstruct_places import ModelCard
 from reconstruction.modelling.layer_names import PICTURE
 from reconstruction.modelling.methods import METHODS
@@ -38,19 +39,15 @@ class ViewBar(QWidget):
             self.layer.addItem(text, name)
         self.home.setToolTip(self.tr("Show the view from where the photo was taken (0)"))
         self.layer.setToolTip(self.tr("What the picture is made of"))
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
+        layout = WrappingRow(self)
         for title, box, least in (
             (self.tr("Model"), self.model, 8),
             (self.tr("Layer"), self.layer, 7),
             (self.tr("Beside it"), self.compare, 8),
         ):
-            label = QLabel(title)
-            label.setBuddy(box)
             box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
             box.setMinimumContentsLength(least)
-            layout.addWidget(label)
-            layout.addWidget(box, 1)
+            layout.addWidget(labelled(title, box))
         layout.addWidget(self.home)
         self.set_models((), "")
         for box in (self.model, self.layer, self.compare):

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.job_bar import DialogFoot
 from groundstation.gui.site.grid_form import GridForm, GridWish
 from groundstation.gui.site.import_form import ImportForm
 from groundstation.gui.site.import_texts import preview_text
@@ -109,6 +110,7 @@ class ImportDialog(QDialog):
         buttons.addWidget(self._cancel)
         layout = QVBoxLayout(self)
         layout.addWidget(splitter, 1)
+        layout.addWidget(DialogFoot(self._workspace))
         layout.addLayout(buttons)
 
     def _connect(self) -> None:
@@ -180,7 +182,7 @@ class ImportDialog(QDialog):
 
     def _failed(self) -> None:
         self._job = None
-        self._say(self.tr("Reading failed; see the messages in the main window."))
+        self._say(self.tr("Reading failed; the reason stands below."))
 
     def _show_progress(self, event: JobProgress) -> None:
         if self._job is not None and event.job_id == self._job.id:

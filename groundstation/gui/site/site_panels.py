@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
-    QFrame,
     QGridLayout,
     QLabel,
     QPushButton,
-    QScrollArea,
     QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
 
+from groundstation.gui.scrolling import scrolled
 from groundstation.gui.site.findings_list import FindingsList
 from groundstation.gui.site.grid_form import GridForm
 from groundstation.gui.site.grid_maker import GridMaker
@@ -37,7 +35,7 @@ class SiteTab:
     def __init__(self, workspace: Workspace, stage: Stage) -> None:
         self.left = SiteSide(workspace)
         self.detail = SiteDetail(workspace, stage, self.left)
-        self.right: QWidget | None = _Column(self.detail)
+        self.right: QWidget | None = scrolled(self.detail)
         self.bottom: QWidget | None = None
 
     def shown(self) -> None:
@@ -187,22 +185,3 @@ class SiteDetail(QWidget):
         self._filled.setVisible(has_site)
         if not has_site:
             self.put_away()
-
-
-class _Column(QScrollArea):
-    """Scrolls a column up and down, and is never narrower than it."""
-
-    def __init__(self, widget: QWidget) -> None:
-        super().__init__()
-        self.setWidget(widget)
-        self.setWidgetResizable(True)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setFrameShape(QFrame.Shape.NoFrame)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        widget.installEventFilter(self)
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Ask for another width when the column needs one."""
-        if watched is self.widget() and event.type() == QEvent.Type.LayoutRequest:
-            self.setMinimumWidth(self.widget().minimumSizeHint().width() + self.verticalScrollBar().sizeHint().width())
-        return super().eventFilter(watched, event)

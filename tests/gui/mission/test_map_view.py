@@ -3,6 +3,7 @@
 import contextlib
 import math
 import sqlite3
+import threading
 import time
 from dataclasses import replace
 
@@ -15,6 +16,7 @@ from groundstation.services.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.units import UnitSystem
 from groundstation.services.web_mercator import Tile, world_from_enu, world_from_geodetic
 from planning.site import Origin
+from tests.gui.driving import turn_until
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
 from tests.services.map_files import colour_of, picture, tiles_around, write_map
@@ -373,3 +375,37 @@ def test_site_and_plan_go_when_the_document_is_empty(view, settle):
     assert view.grab().toImage() != full
     assert view.item_at(_point(350, 250)) is None
     assert math.isfinite(view.viewport().zoom)
+
+
+def test_the_first_map_is_at_the_site_before_its_outlines_are_there(application, monkeypatch):
+    """It stood at 10 000 km, in the middle of the sea, until they were computed."""
+    from groundstation.gui import map_view
+    from groundstation.services.map_shapes import site_shapes
+    from planning.scenes import SCENES
+
+    gate = threading.Event()
+
+    def late(model):
+        gate.wait(10.0)
+        return site_shapes(model)
+
+    monkeypatch.setattr(map_view, "site_shapes", late)
+    view, model = map_view.MapView(), SCENES["library"]()
+    view.resize(600, 400)
+    view.show()
+    view.set_site(model)
+    application.processEvents()
+    size_m = model.site.airspace.max_enu_m[0] - model.site.airspace.min_enu_m[0]
+    assert size_m / 2.0 < view._viewport.metres_per_px * 600 < 10.0 * size_m
+    gate.set()
+    turn_until(application, view.is_complete)
+    assert view._viewport.metres_per_px * 600 < 10.0 * size_m
+    view.close_view()
+
+
+def test_without_a_site_there_is_no_scale_but_what_to_do(application):
+    from groundstation.gui.map_view import MapView
+
+    view = MapView()
+    assert "Open or import a site" in view.note()
+    view.close_view()

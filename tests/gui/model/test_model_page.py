@@ -42,7 +42,7 @@ def names(page):
 
 
 def test_without_a_model_it_says_what_to_open(page):
-    assert "organise" in page.pane.view.note()
+    assert "training that is finished" in page.pane.view.note()
     assert not page.records.add.isEnabled()
     assert not page.pane.save.isEnabled()
     page.pane.view.clicked.emit(0.5, 0.5)

@@ -1,0 +1,281 @@
+"""Everything can be reached on a laptop of 1280 x 720 pixels with text of 160 %, in both languages.
+
+In each tab, phase and dialog, whatever can be pressed or filled in lies on the screen, whole, or in something that
+scrolls to it; and buttons are wide enough for their words.
+"""
+
+import gc
+
+import pytest
+from PySide6.QtCore import QPoint, QRect
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QAbstractScrollArea,
+    QAbstractSpinBox,
+    QApplication,
+    QComboBox,
+    QLineEdit,
+    QPushButton,
+    QScrollArea,
+    QTabBar,
+    QToolButton,
+    QWidget,
+)
+
+from groundstation.gui.stage import StagePage
+from groundstation.services.document import Document, Item, ItemKind, PlanEntry
+from groundstation.services.live_choice import ConnectionChoice
+from groundstation.services.live_events import Request, ViewState
+from groundstation.services.settings import Language
+from planning.findings import Severity
+from tests.gui.driving import clicked, close_desk, escape, turn_until, turn_until_idle
+from tests.services.live_cases import planned
+
+SCREEN = QRect(0, 0, 1280, 720)
+
+LEAST_PX = 40
+"""Of something that scrolls, to be of use."""
+
+CONTROLS = (QAbstractButton, QComboBox, QAbstractSpinBox, QLineEdit)
+
+
+def controls(window):
+    """What can be pressed or filled in now."""
+    for widget in window.findChildren(QWidget):
+        is_inside = isinstance(widget.parentWidget(), (QAbstractSpinBox, QComboBox, QTabBar))
+        is_own = not is_inside and not widget.objectName().startswith("qt_")
+        if isinstance(widget, CONTROLS) and widget.isVisible() and widget.window() is window and is_own:
+            yield widget
+
+
+def text_of(widget):
+    kind = next((kind for kind in (QAbstractButton, QLineEdit) if isinstance(widget, kind)), None)
+    return widget.accessibleName() if kind is None else kind.text(widget)
+
+
+def name_of(widget):
+    text = text_of(widget)
+    return f"{type(widget).__name__} “{text}” in {type(widget.parentWidget()).__name__}"
+
+
+def room_of(widget):
+    # Unbound: a widget may have something of its own under the name `size`.
+    return QRect(QWidget.mapToGlobal(widget, QPoint(0, 0)), QWidget.size(widget))
+
+
+def area_around(widget):
+    """The nearest area that scrolls to a widget."""
+    above = widget.parentWidget()
+    while above is not None and not above.isWindow():
+        if isinstance(above, QScrollArea) and QScrollArea.widget(above).isAncestorOf(widget):
+            return above
+        above = above.parentWidget()
+    return None
+
+
+def out_of_reach(window):
+    """Controls of a window that a user cannot get at, with why."""
+    found = []
+    for widget in controls(window):
+        target, why = widget, ""
+        while (area := area_around(target)) is not None and not why:
+            inside = QScrollArea.widget(area)
+            if not grown(inside.rect()).contains(QRect(target.mapTo(inside, QPoint(0, 0)), room_of(target).size())):
+                why = "outside of what scrolls"
+            view = QAbstractScrollArea.viewport(area)
+            if min(view.width(), view.height()) < LEAST_PX:
+                why = f"in an area that shows {view.width()} x {view.height()} pixels"
+            target = area
+        above = target.parentWidget()
+        while above is not None and not target.isWindow() and not why:
+            if not grown(room_of(above)).contains(room_of(target)):
+                why = f"{room_of(target).getRect()} sticks out of {type(above).__name__} {room_of(above).getRect()}"
+            if above.isWindow():
+                break
+            above = above.parentWidget()
+        if not why and not grown(SCREEN).contains(room_of(target)):
+            why = f"off the screen: {room_of(target).getRect()}"
+        if why:
+            found.append(f"{name_of(widget)}: {why}")
+    return found
+
+
+def grown(rectangle):
+    return rectangle.adjusted(-1, -1, 1, 1)
+
+
+def cut_short(window):
+    """Buttons that are too narrow for their words."""
+    found = []
+    for button in controls(window):
+        if isinstance(button, (QPushButton, QToolButton)) and text_of(button):
+            lines = text_of(button).replace("&", "").splitlines()
+            needed = max(button.fontMetrics().horizontalAdvance(line) for line in lines)
+            if needed > button.width():
+                found.append(f"{name_of(button)}: {needed} > {button.width()}")
+    return found
+
+
+class Looks:
+    """Looks at the window in each state."""
+
+    def __init__(self, application, desk):
+        self.application, self.desk, self.found = application, desk, {}
+
+    def at(self, state, window=None):
+        turn_until_idle(self.application, self.desk)
+        window = self.desk.window if window is None else window
+        problems = out_of_reach(window) + cut_short(window)
+        if window.width() > SCREEN.width() or window.height() > SCREEN.height():
+            problems.append(f"the window is {window.width()} x {window.height()}")
+        if problems:
+            self.found[state] = problems
+
+    def dialog(self, state, open_it):
+        """Look at a dialog that an action brings up, and leave it."""
+
+        def step(dialog):
+            self.at(state, dialog)
+            escape(dialog)
+
+        with clicked(step):
+            open_it()
+
+
+@pytest.fixture(
+    params=[
+        (Language.GERMAN, 1.6),
+        pytest.param((Language.ENGLISH, 1.6), marks=pytest.mark.slow),
+        pytest.param((Language.GERMAN, 1.0), marks=pytest.mark.slow),
+        pytest.param((Language.ENGLISH, 1.3), marks=pytest.mark.slow),
+    ],
+    ids=lambda param: f"{param[0]}-{param[1]}",
+)
+def looks(application, worker, tmp_path, monkeypatch, request):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
+    from groundstation.gui.desk import Desk
+
+    language, scale = request.param
+    desk = Desk(application, worker=worker)
+    desk.show()
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    desk.choose(language=language, text_scale=scale)
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    desk.window.setGeometry(SCREEN)
+    yield Looks(application, desk)
+    # What follows is in English and of usual size, in a window that is there no longer.
+    desk.choose(language=Language.ENGLISH, text_scale=1.0)
+    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    close_desk(desk)
+    gc.collect()
+
+
+def test_everything_can_be_reached_in_every_tab_phase_and_dialog(looks):
+    desk, window = looks.desk, looks.desk.window
+    desk.workspace.say(Severity.WARNING, "a warning of many words " * 15, about="plan.long")
+    looks.at("nothing open")
+    window.stage.show_page(StagePage.MAP)
+    looks.at("nothing open, map")
+    model, plan = planned()
+    desk.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    for page in StagePage:
+        window.stage.show_page(page)
+        for item in (None, *(Item(kind, name) for kind, name in THINGS)):
+            desk.workspace.select(item)
+            looks.at(f"site, {page.name}, {item}")
+        desk.workspace.select(Item(ItemKind.VIEWPOINT, plan.viewpoints[0].id))
+        window.show_tab("plan")
+        looks.at(f"plan, {page.name}")
+        window.show_tab("site")
+    window.stage.show_page(StagePage.SCENE)
+    _in_the_plan_tab(looks, window.tab("plan"), window)
+    _in_the_mission_tab(looks, window)
+    _in_the_fly_tab(looks, window)
+    for name in ("photos", "reconstruct", "model"):
+        window.show_tab(name)
+        looks.at(name)
+    window.messages._all.click()
+    looks.at("messages")
+    window.messages._all.click()
+    looks.dialog("shortcuts", desk.menus.show_shortcuts)
+    looks.dialog("about", desk.menus._show_about)
+    looks.dialog("save as", desk.save_as)
+    assert looks.found == {}
+
+
+THINGS = ((ItemKind.BUILDING, ""), (ItemKind.HOME, ""), (ItemKind.AIRSPACE, ""), (ItemKind.FACADE, "A"))
+
+
+def _in_the_plan_tab(looks, page, window):
+    window.show_tab("plan")
+    for number in range(page.right.count()):
+        page.right.setCurrentIndex(number)
+        looks.at(f"plan, right {number}")
+    for number in range(page.lists.count()):
+        page.lists.setCurrentIndex(number)
+        looks.at(f"plan, list {number}")
+    page.form._more.click()
+    looks.at("plan, more settings")
+    page.form._more.click()
+    page.lists.setCurrentIndex(0)
+
+
+def _in_the_mission_tab(looks, window):
+    from groundstation.gui.mission.brief_dialog import BriefDialog
+
+    window.show_tab("mission")
+    page = window.tab("mission")
+    for number in range(page.lists.count()):
+        page.lists.setCurrentIndex(number)
+        looks.at(f"mission, list {number}")
+    page.lists.setCurrentIndex(0)
+    dialog = page.export()
+    turn_until(looks.application, lambda: dialog.prepared() is not None)
+    looks.at("export", dialog)
+    dialog.reject()
+    page.print_brief()
+    dialog = window.findChildren(BriefDialog)[-1]
+    turn_until(looks.application, dialog.is_ready)
+    looks.at("brief", dialog)
+    dialog.reject()
+
+
+def _in_the_fly_tab(looks, window):
+    window.show_tab("fly")
+    page = window.tab("fly")
+    looks.at("fly, not connected")
+    for number in range(page.right.count()):
+        page.right.setCurrentIndex(number)
+        looks.at(f"fly, right {number}")
+    page.right.setCurrentIndex(0)
+    page.desk.set_choice(ConnectionChoice(speed_up=20.0))
+    page.connection.setValue(page.desk.choice)
+    page.connection.button.click()
+    turn_until(looks.application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
+    looks.at("fly, connected")
+    page.buttons.button(Request.UPLOAD).click()
+    turn_until(looks.application, lambda: page.buttons.button(Request.START).isEnabled())
+    looks.at("fly, ready")
+    looks.dialog("fly, start", page.buttons.button(Request.START).click)
+    page.strip.set_states(tuple((f"v{n:04d}", ViewState.TO_COME) for n in range(700)))
+    page.band.show_lost(7.0)
+    looks.at("fly, link lost")
+    page.band.hide()
+    for number in range(page._lists.count()):
+        page._lists.setCurrentIndex(number)
+        looks.at(f"fly, list {number}")
+    page.connection.button.click()
+    turn_until(looks.application, lambda: not page.desk.is_connected)
+
+
+def test_the_import_dialog_can_be_reached(looks, tmp_path):
+    import trimesh
+
+    path = tmp_path / "tower.obj"
+    trimesh.creation.box((20.0, 10.0, 30.0)).export(path)
+    dialog = looks.desk.window.tab("site").left.opener.import_site(path)
+    turn_until(looks.application, lambda: not dialog.is_busy())
+    looks.at("import", dialog)
+    QApplication.processEvents()
+    dialog.reject()
+    assert looks.found == {}
