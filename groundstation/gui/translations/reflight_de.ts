@@ -1027,6 +1027,10 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <source>{0}: {1} panels, {2} plans</source>
         <translation>{0}: Scheiben {1}, Pläne {2}</translation>
     </message>
+    <message>
+        <source>Your work is back. It is not saved yet: Project &gt; Save keeps it.</source>
+        <translation>Ihre Arbeit ist wieder da. Gespeichert ist sie noch nicht: Projekt &gt; Speichern behält sie.</translation>
+    </message>
 </context>
 <context>
     <name>EffectsDesk</name>
@@ -1520,6 +1524,10 @@ Blickrichtung: {2}</translation>
         <source>What happened in the flight</source>
         <translation>Was im Flug geschah</translation>
     </message>
+    <message>
+        <source>Minutes and seconds after take-off, as in the plan and the report</source>
+        <translation>Minuten und Sekunden nach dem Start, wie im Plan und im Bericht</translation>
+    </message>
 </context>
 <context>
     <name>FlightQuestions</name>
@@ -2000,8 +2008,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Vorschau {0}</translation>
     </message>
     <message>
-        <source>Reading failed; see the messages in the main window.</source>
-        <translation>Lesen fehlgeschlagen; siehe Meldungen im Hauptfenster.</translation>
+        <source>Reading failed; the reason stands below.</source>
+        <translation>Das Lesen ist gescheitert; der Grund steht unten.</translation>
     </message>
     <message>
         <source>Reading {0}: {1} ...</source>
@@ -2227,12 +2235,12 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>{0} wartend</translation>
     </message>
     <message>
-        <source>{0:.0f} s</source>
-        <translation>{0:.0f} s</translation>
+        <source>{0:.0f} s so far</source>
+        <translation>bisher {0:.0f} s</translation>
     </message>
     <message>
-        <source>{0:.0f} s left</source>
-        <translation>noch {0:.0f} s</translation>
+        <source>this step: {0:.0f} s left</source>
+        <translation>dieser Schritt: noch {0:.0f} s</translation>
     </message>
     <message>
         <source>Cancel: {0}</source>
@@ -2513,6 +2521,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Dieser Standort liegt jenseits des Randes von Webkarten (85.05 Grad); die 3D-Ansicht nutzen.</translation>
     </message>
     <message>
+        <source>Open or import a site on the Site tab, or a map with “Map file”; no network is used.</source>
+        <translation>Im Reiter Standort einen Standort öffnen oder importieren, oder mit „Kartendatei“ eine Karte; ein Netz wird nicht benutzt.</translation>
+    </message>
+    <message>
         <source>No map is loaded. &quot;Map file&quot; opens one (MBTiles); no network is used.</source>
         <translation>Keine Karte geladen. „Kartendatei“ öffnet eine (MBTiles); ohne Netzzugriff.</translation>
     </message>
@@ -2696,30 +2708,6 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>noch keine</translation>
     </message>
     <message>
-        <source>Arrow keys</source>
-        <translation>Pfeiltasten</translation>
-    </message>
-    <message>
-        <source>3-D view: turn</source>
-        <translation>3D-Ansicht: drehen</translation>
-    </message>
-    <message>
-        <source>3-D view: nearer, farther</source>
-        <translation>3D-Ansicht: näher, weiter weg</translation>
-    </message>
-    <message>
-        <source>3-D view: show everything</source>
-        <translation>3D-Ansicht: alles zeigen</translation>
-    </message>
-    <message>
-        <source>Put a tool or a dialog away</source>
-        <translation>Werkzeug oder Dialog weglegen</translation>
-    </message>
-    <message>
-        <source>Shortcuts</source>
-        <translation>Tastenkürzel</translation>
-    </message>
-    <message>
         <source>Reflight {0}: ground station for the second flight over a glass facade.</source>
         <translation>Reflight {0}: Bodenstation für den zweiten Flug über eine Glasfassade.</translation>
     </message>
@@ -2735,12 +2723,16 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Meldungen</translation>
     </message>
     <message>
-        <source>Show all messages</source>
-        <translation>Alle Meldungen zeigen</translation>
+        <source>All messages: what holds now, and what was told before</source>
+        <translation>Alle Meldungen: was jetzt gilt und was vorher gemeldet wurde</translation>
     </message>
     <message>
         <source>Show place</source>
         <translation>Stelle zeigen</translation>
+    </message>
+    <message>
+        <source>Messages: {0}</source>
+        <translation>Meldungen: {0}</translation>
     </message>
     <message>
         <source>Error</source>
@@ -2757,6 +2749,45 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Done</source>
         <translation>Fertig</translation>
+    </message>
+</context>
+<context>
+    <name>MessageSheet</name>
+    <message>
+        <source>All messages</source>
+        <translation>Alle Meldungen</translation>
+    </message>
+    <message>
+        <source>Show place</source>
+        <translation>Stelle zeigen</translation>
+    </message>
+    <message>
+        <source>Dismiss</source>
+        <translation>Erledigt</translation>
+    </message>
+    <message>
+        <source>The message is read; it stays in the list</source>
+        <translation>Die Meldung ist gelesen; in der Liste bleibt sie</translation>
+    </message>
+    <message>
+        <source>Copy all</source>
+        <translation>Alle kopieren</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>Now</source>
+        <translation>Jetzt</translation>
+    </message>
+    <message>
+        <source>nothing to heed</source>
+        <translation>nichts zu beachten</translation>
+    </message>
+    <message>
+        <source>Told so far</source>
+        <translation>Bisher gemeldet</translation>
     </message>
 </context>
 <context>
@@ -4124,6 +4155,14 @@ Blickrichtung: {3}</translation>
         <translation>Pläne</translation>
     </message>
     <message>
+        <source>Make current</source>
+        <translation>Verwenden</translation>
+    </message>
+    <message>
+        <source>Look at this plan, edit, export and fly it; a double click does so too</source>
+        <translation>Diesen Plan ansehen, bearbeiten, exportieren und fliegen; ein Doppelklick tut dasselbe</translation>
+    </message>
+    <message>
         <source>Compare</source>
         <translation>Vergleichen</translation>
     </message>
@@ -4474,8 +4513,8 @@ Blickrichtung: {3}</translation>
         <translation>{0:.0f} Sektoren abgedeckt</translation>
     </message>
     <message>
-        <source>{0:.0f} s, at most {1:.0f} s left</source>
-        <translation>{0:.0f} s, noch höchstens {1:.0f} s</translation>
+        <source>at most {0:.0f} s left</source>
+        <translation>höchstens noch {0:.0f} s</translation>
     </message>
 </context>
 <context>
@@ -4493,22 +4532,42 @@ Blickrichtung: {3}</translation>
         <translation>Dieses Projekt hat ungesicherte Änderungen. Zuerst speichern?</translation>
     </message>
     <message>
-        <source>Reflight ended before this work was saved (copy of {0}):
+        <source>Nothing is lost: Reflight ended before this work was saved, and kept a copy of it at {0}. In the copy, and not in what was saved:
 {1}
 
-Take it over?</source>
-        <translation>Reflight endete, bevor diese Arbeit gespeichert war (Kopie von {0}):
+Go on with it? What was saved stays as it is until you save again.</source>
+        <translation>Nichts ist verloren: Reflight endete, bevor diese Arbeit gespeichert war, und hat um {0} eine Kopie behalten. In der Kopie, aber nicht im Gespeicherten:
 {1}
 
-Übernehmen?</translation>
+Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speichern.</translation>
     </message>
     <message>
-        <source>The project was saved by others since then: their changes would be taken back.</source>
-        <translation>Das Projekt wurde seither von anderen gespeichert: Deren Änderungen gingen verloren.</translation>
+        <source>The project was saved by others since then: what they changed is not in the copy.</source>
+        <translation>Das Projekt wurde seitdem von anderen gespeichert: was sie geändert haben, ist nicht in der Kopie.</translation>
     </message>
     <message>
-        <source>Unsaved work</source>
-        <translation>Ungesicherte Arbeit</translation>
+        <source>Unsaved work was kept</source>
+        <translation>Nicht gespeicherte Arbeit ist noch da</translation>
+    </message>
+    <message>
+        <source>Restore</source>
+        <translation>Wiederherstellen</translation>
+    </message>
+    <message>
+        <source>Delete the copy</source>
+        <translation>Kopie löschen</translation>
+    </message>
+    <message>
+        <source>Decide later</source>
+        <translation>Später entscheiden</translation>
+    </message>
+    <message>
+        <source>New folder:</source>
+        <translation>Neuer Ordner:</translation>
+    </message>
+    <message>
+        <source>{0}: there is nothing of that name.</source>
+        <translation>{0}: das gibt es nicht.</translation>
     </message>
 </context>
 <context>
@@ -4684,6 +4743,10 @@ Take it over?</source>
     <message>
         <source>Folder for the model</source>
         <translation>Ordner für das Modell</translation>
+    </message>
+    <message>
+        <source>model</source>
+        <translation>Modell</translation>
     </message>
     <message>
         <source>starting</source>
@@ -7597,8 +7660,12 @@ Take it over?</source>
         <translation>{0}; diese Kopie ungesicherter Arbeit ist beschädigt und nicht zu übernehmen</translation>
     </message>
     <message>
-        <source>all of it: no project can be opened in its folder ({0})</source>
-        <translation>alles: In ihrem Ordner lässt sich kein Projekt öffnen ({0})</translation>
+        <source>all of it: it was never saved as a project</source>
+        <translation>alles: es wurde nie als Projekt gespeichert</translation>
+    </message>
+    <message>
+        <source>all of it: the project that was saved cannot be opened ({0})</source>
+        <translation>alles: das gespeicherte Projekt lässt sich nicht öffnen ({0})</translation>
     </message>
     <message>
         <source>the site</source>
@@ -12154,6 +12221,200 @@ Take it over?</source>
     <message>
         <source>Start waits for RTK, and a warning comes when it is lost in flight.</source>
         <translation>Der Start wartet auf RTK, und geht es im Flug verloren, kommt eine Warnung.</translation>
+    </message>
+</context>
+<context>
+    <name>Shortcuts</name>
+    <message>
+        <source>Everywhere</source>
+        <translation>Überall</translation>
+    </message>
+    <message>
+        <source>To the next part of the window; with Shift to the one before</source>
+        <translation>Zum nächsten Teil des Fensters; mit Umschalt zum vorigen</translation>
+    </message>
+    <message>
+        <source>{0} tab</source>
+        <translation>Reiter {0}</translation>
+    </message>
+    <message>
+        <source>Arrows</source>
+        <translation>Pfeile</translation>
+    </message>
+    <message>
+        <source>Enter</source>
+        <translation>Eingabe</translation>
+    </message>
+    <message>
+        <source>Page up</source>
+        <translation>Bild auf</translation>
+    </message>
+    <message>
+        <source>Page down</source>
+        <translation>Bild ab</translation>
+    </message>
+    <message>
+        <source>with Shift</source>
+        <translation>mit Umschalt</translation>
+    </message>
+    <message>
+        <source>3-D view</source>
+        <translation>3D-Ansicht</translation>
+    </message>
+    <message>
+        <source>Turn</source>
+        <translation>Drehen</translation>
+    </message>
+    <message>
+        <source>Nearer, farther</source>
+        <translation>Näher, weiter weg</translation>
+    </message>
+    <message>
+        <source>Show everything</source>
+        <translation>Alles zeigen</translation>
+    </message>
+    <message>
+        <source>Tools in the 3-D view</source>
+        <translation>Werkzeuge in der 3D-Ansicht</translation>
+    </message>
+    <message>
+        <source>Move what is held by a step</source>
+        <translation>Was gehalten wird, einen Schritt bewegen</translation>
+    </message>
+    <message>
+        <source>Nearer to the facade, farther from it</source>
+        <translation>Näher an die Fassade, weiter weg</translation>
+    </message>
+    <message>
+        <source>Finish</source>
+        <translation>Abschließen</translation>
+    </message>
+    <message>
+        <source>Backspace</source>
+        <translation>Rückschritt</translation>
+    </message>
+    <message>
+        <source>Take the last corner back</source>
+        <translation>Letzte Ecke zurücknehmen</translation>
+    </message>
+    <message>
+        <source>Put the tool away</source>
+        <translation>Werkzeug weglegen</translation>
+    </message>
+    <message>
+        <source>Map</source>
+        <translation>Karte</translation>
+    </message>
+    <message>
+        <source>Shift</source>
+        <translation>Verschieben</translation>
+    </message>
+    <message>
+        <source>Camera preview</source>
+        <translation>Kameravorschau</translation>
+    </message>
+    <message>
+        <source>Fly through the sortie, or stop</source>
+        <translation>Durch den Einsatz fliegen oder anhalten</translation>
+    </message>
+    <message>
+        <source>Tree of the site</source>
+        <translation>Baum des Standorts</translation>
+    </message>
+    <message>
+        <source>Remove what is selected</source>
+        <translation>Ausgewähltes entfernen</translation>
+    </message>
+    <message>
+        <source>Photo strip of a flight</source>
+        <translation>Fotostreifen eines Flugs</translation>
+    </message>
+    <message>
+        <source>To the view before, to the next</source>
+        <translation>Zur vorigen Aufnahme, zur nächsten</translation>
+    </message>
+    <message>
+        <source>Show the view&apos;s place</source>
+        <translation>Ort der Aufnahme zeigen</translation>
+    </message>
+    <message>
+        <source>Photos</source>
+        <translation>Fotos</translation>
+    </message>
+    <message>
+        <source>Move the line or choose the panel, else shift the picture</source>
+        <translation>Linie bewegen oder Scheibe wählen, sonst das Bild verschieben</translation>
+    </message>
+    <message>
+        <source>Move the line by ten pixels</source>
+        <translation>Linie um zehn Bildpunkte bewegen</translation>
+    </message>
+    <message>
+        <source>Show all of the photo</source>
+        <translation>Das ganze Foto zeigen</translation>
+    </message>
+    <message>
+        <source>Choose the next line</source>
+        <translation>Nächste Linie wählen</translation>
+    </message>
+    <message>
+        <source>Remove the line, or the panel</source>
+        <translation>Linie oder Scheibe entfernen</translation>
+    </message>
+    <message>
+        <source>Add a line beside it, or put the panel back</source>
+        <translation>Linie daneben hinzufügen oder Scheibe zurückholen</translation>
+    </message>
+    <message>
+        <source>The panel on or off</source>
+        <translation>Scheibe ein oder aus</translation>
+    </message>
+    <message>
+        <source>Leave the line where it is</source>
+        <translation>Linie lassen, wo sie ist</translation>
+    </message>
+    <message>
+        <source>Let go of the line or panel</source>
+        <translation>Linie oder Scheibe loslassen</translation>
+    </message>
+    <message>
+        <source>Models</source>
+        <translation>Modelle</translation>
+    </message>
+    <message>
+        <source>Fly around what is in the middle</source>
+        <translation>Um die Mitte fliegen</translation>
+    </message>
+    <message>
+        <source>Ctrl and arrows</source>
+        <translation>Strg und Pfeile</translation>
+    </message>
+    <message>
+        <source>Look elsewhere</source>
+        <translation>Woandershin sehen</translation>
+    </message>
+    <message>
+        <source>Fly: forward, left, back, right, up, down</source>
+        <translation>Fliegen: vor, links, zurück, rechts, auf, ab</translation>
+    </message>
+    <message>
+        <source>Back to the first view</source>
+        <translation>Zurück zur ersten Ansicht</translation>
+    </message>
+    <message>
+        <source>Messages</source>
+        <translation>Meldungen</translation>
+    </message>
+    <message>
+        <source>Close the list</source>
+        <translation>Liste schließen</translation>
+    </message>
+</context>
+<context>
+    <name>ShortcutsDialog</name>
+    <message>
+        <source>Shortcuts</source>
+        <translation>Tastenkürzel</translation>
     </message>
 </context>
 <context>
