@@ -82,6 +82,43 @@ def test_only_one_module_each_imports_nlopt_casadi_and_pyvrp():
         assert len(users) == 1, (library, users)
 
 
+READS = re.compile(
+    r"\.read_bytes\(|\.read_text\(|\.open\(\"r|(?<![\w.])(?<!def )open\(|tomllib\.loads?\(|json\.loads?\(|imdecode\(|imread\(|"
+    r"ZipFile\((?!.*\"w\")|np\.load\(|np\.fromfile\(|sqlite3\.connect\(|load_mesh\(|ifcopenshell\.open\(|torch\.load\(|"
+    r"safe_open\(|fromstring\(|ElementTree\.parse\(|QImage\(str|QPixmap\(str"
+)
+
+READERS = {
+    # Where files of others are opened, and texts parsed within bounds.
+    "planning/files.py", "planning/json_file.py", "planning/mesh.py",
+    # Behind that: what was read or looked at there is given to the library of its kind.
+    "planning/site_import/ifc_content.py", "reconstruction/records/ifc_extract.py", "missions/safe_files.py",
+    "reconstruction/exports/sog_reading.py", "reconstruction/exports/sog_images.py", "reconstruction/photos/decode.py",
+    "reconstruction/scores/lpips_weights.py", "reconstruction/modelling/checkpoints.py",
+    "reconstruction/objects/store.py", "reconstruction/splatting/ply_file.py",
+    # SQLite looks at its files itself, and texts of one cell are short.
+    "reconstruction/records/database.py", "reconstruction/records/schema.py", "groundstation/services/map_tiles.py",
+    "reconstruction/records/book.py", "reconstruction/records/rows.py", "reconstruction/records/csv_cells.py",
+    # Files of our own: in the package, or made by a process of ours a moment ago; the system's; texts of our own.
+    "planning/geodesy/geoid.py", "planning/geodesy/make_egm96_grid.py", "planning/step_file.py",
+    "planning/site_import/ifc_worker.py", "reconstruction/records/ifc_process.py", "reconstruction/exports/web.py",
+    "reconstruction/scenes/cluster_photographers.py", "reconstruction/scenes/run_record.py",
+    "reconstruction/objects/organise.py", "groundstation/services/reconstruct_choices.py",
+    "groundstation/services/flying_sitl.py", "groundstation/cli/tradeoff_train.py",
+}  # fmt: skip
+
+
+def test_files_of_others_are_opened_in_one_place():
+    found = {
+        path.relative_to(ROOT).as_posix()
+        for folder in ("planning", "missions", "groundstation", "reconstruction")
+        for path in (ROOT / folder).rglob("*.py")
+        if READS.search(path.read_text("utf-8"))
+    }
+    assert found - READERS == set(), "read them by planning.files: read_given, open_given or check_given"
+    assert READERS - found == set(), "these read nothing any more"
+
+
 def qt_names(tree):
     """Names in a module that stand for something of PySide6: imported, or another name for such a thing."""
     names = set()

@@ -19,7 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.errors import InputError
+from planning.json_file import parse_json
 from planning.mesh import TriangleMesh, load_triangles, mesh_content
+from planning.mesh_limits import check_mesh_size
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -65,6 +67,8 @@ def read_mesh_parts(path: Path, max_coordinate: float) -> tuple[TriangleMesh, tu
         The file is missing, of another kind, cut off or beyond reading, or no triangle is whole.
     """
     content, kind = mesh_content(path)
+    if kind != ".glb":  # of those it is looked at without what is taken out
+        check_mesh_size(content, kind, path)
     found = {".obj": _obj, ".ply": _ply, ".stl": _stl, ".glb": _glb}[kind](content, kind, path)
     in_range = ((found.triangles >= 0) & (found.triangles < len(found.vertices))).all(axis=1)
     inside = found.triangles[in_range]
@@ -230,7 +234,7 @@ def _counted(words: Sequence[bytes]) -> list[int] | None:
 
 
 def _glb(content: bytes, kind: str, path: Path) -> _Found:
-    document, rest = _glb_parts(content)
+    document, rest = _glb_parts(content, path)
     if document is None:
         return _Found(*load_triangles(content, kind, path), [])
     whole = copy.deepcopy(document)
@@ -240,14 +244,14 @@ def _glb(content: bytes, kind: str, path: Path) -> _Found:
     return _Found(*load_triangles(content, kind, path), left_out)
 
 
-def _glb_parts(content: bytes) -> tuple[dict[str, Any] | None, bytes]:
+def _glb_parts(content: bytes, path: Path) -> tuple[dict[str, Any] | None, bytes]:
     """The JSON of a GLB file, None where it is none, and what follows it."""
     try:
         magic, _, _ = GLB_HEADER.unpack_from(content)
         length, name = GLB_CHUNK.unpack_from(content, GLB_HEADER.size)
         start = GLB_HEADER.size + GLB_CHUNK.size
-        document = json.loads(content[start : start + length])
-    except (struct.error, ValueError, RecursionError):
+        document = parse_json(content[start : start + length], path)
+    except (struct.error, InputError):
         return None, b""
     is_one = magic == b"glTF" and name == b"JSON" and isinstance(document, dict)
     return (document if is_one else None), content[start + length :]

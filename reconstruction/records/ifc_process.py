@@ -16,9 +16,10 @@ from typing import TypeVar
 import msgspec
 
 from planning.errors import InputError
+from planning.files import read_given
 from planning.json_file import check_output, write_atomically
 from planning.progress import QUIET, Monitor
-from planning.step_file import check_ends
+from planning.step_file import IFC_FILE, check_ends
 from reconstruction.records.ifc_extend import Extension, extension
 from reconstruction.records.ifc_extract import IfcProperties, extract, open_model
 from reconstruction.records.ifc_sets import PropertySet
@@ -126,7 +127,7 @@ def _extend(path: Path, copy: Path, wanted: _Sets) -> Extension:
     """Write the copy, and see that it has as many instances as it should."""
     found = extension(path, wanted.sets, wanted.known)
     try:
-        copy.write_bytes(edited(path.read_bytes(), found.lines, found.replaced))
+        copy.write_bytes(edited(read_given(path, IFC_FILE), found.lines, found.replaced))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     n_instances = len(list(open_model(copy)))

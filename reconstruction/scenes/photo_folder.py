@@ -19,6 +19,7 @@ import numpy as np
 
 from planning.effects import Decision
 from planning.errors import InputError
+from planning.files import read_given
 from planning.json_file import write_atomically
 from planning.mesh import TriangleMesh, from_corners, join
 from planning.progress import QUIET, Monitor
@@ -26,6 +27,7 @@ from planning.site import panel_triangles
 from reconstruction.cameras import PosedPhoto
 from reconstruction.dataset.points import start_points
 from reconstruction.dataset.records import transforms, write_records
+from reconstruction.photos.decode import PICTURE_FILE, decoded
 from reconstruction.ray_casting import RayCaster
 from reconstruction.scenes.effect_names import DISTORTION
 from reconstruction.scenes.effects import decide_effects
@@ -143,7 +145,8 @@ def _write_records(job: PhotoJob, folder: Path, decisions: Sequence[Decision], m
     everything = RayCaster(_mesh(job.scene, tuple(Layer)))
     for done, photo in enumerate(job.photos):
         monitor.report("colouring points", done, len(job.photos))
-        points.add(photo, np.asarray(cv2.imread(str(photo.path), cv2.IMREAD_COLOR), np.uint8), everything)
+        picture = decoded(read_given(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
+        points.add(photo, np.asarray(picture, np.uint8), everything)
     monitor.report("writing cameras and points", 0, 1)
     # What an earlier end of this run left; models are written into empty folders only.
     shutil.rmtree(folder / "sparse" / "0", ignore_errors=True)
