@@ -83,9 +83,9 @@ def test_only_one_module_each_imports_nlopt_casadi_and_pyvrp():
 
 
 READS = re.compile(
-    r"\.read_bytes\(|\.read_text\(|\.open\(\"r|(?<![\w.])(?<!def )open\(|tomllib\.loads?\(|json\.loads?\(|imdecode\(|imread\(|"
-    r"ZipFile\((?!.*\"w\")|np\.load\(|np\.fromfile\(|sqlite3\.connect\(|load_mesh\(|ifcopenshell\.open\(|torch\.load\(|"
-    r"safe_open\(|fromstring\(|ElementTree\.parse\(|QImage\(str|QPixmap\(str"
+    r"\.read_bytes\(|\.read_text\(|\.open\(\"r|(?<![\w.])(?<!def )open\(|tomllib\.loads?\(|json\.loads?\(|imdecode\(|"
+    r"imread\(|ZipFile\((?!.*\"w\")|np\.load\(|np\.fromfile\(|sqlite3\.connect\(|load_mesh\(|ifcopenshell\.open\(|"
+    r"torch\.load\(|safe_open\(|fromstring\(|ElementTree\.parse\(|QImage\(str|QPixmap\(str"
 )
 
 READERS = {

@@ -20,6 +20,7 @@ import pytest
 from tests.conftest import SHARED_DATA
 from tests.hostile.conftest import Forks
 from tests.hostile.inputs import FLYING
+from tests.services.project_cases import small_disk
 
 
 @dataclass(frozen=True)
@@ -142,8 +143,9 @@ quick = [write for write in WRITES if write.is_quick]
 class Case:
     """A folder in which a command is interrupted again and again, each time from the same start."""
 
-    def __init__(self, write: Write, workspace: Path, folder: Path, forks: Forks) -> None:
+    def __init__(self, write: Write, workspace: Path, folder: Path, forks: Forks, said: Path | None = None) -> None:
         self.write, self.folder, self._forks, self._start = write, folder / "case", forks, folder / "start"
+        self._said = (said or folder) / "said"
         (self._start / "out").mkdir(parents=True)
         for name in write.needs:
             source = workspace / name
@@ -166,7 +168,7 @@ class Case:
 
     def run(self, command: str, **options: object) -> tuple[int, list[str]]:
         """Run a command; returns its status and what it had left that nobody owns."""
-        out, err = self.folder.with_suffix(".out"), self.folder.with_suffix(".err")
+        out, err = self._said.with_suffix(".out"), self._said.with_suffix(".err")
         job = {"folder": str(self.folder), "out": str(out), "err": str(err), "command": command.split(), **options}
         status = self._forks.run(job)["status"]
         self.said = err.read_text("utf-8", "replace")
@@ -279,3 +281,27 @@ def test_a_disk_that_is_full_at_any_size_changes_nothing(write, full_workspace, 
     case = Case(write, full_workspace, tmp_path, forks)
     for exponent in range(10, 20):  # what is said has to go somewhere, too
         full_at(case, file_limit=2**exponent)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("write", WRITES, ids=ids)
+def test_a_small_disk_that_gets_full_changes_nothing(write, full_workspace, tmp_path, forks):
+    with small_disk(tmp_path / "disk", 100_000) as disk:
+        if disk is None:
+            pytest.skip("a file system of a few megabytes cannot be mounted here")
+        case, filler = Case(write, full_workspace, disk, forks, tmp_path), disk / "filler"
+        for free_kib in (0, 4, 12, 40, 120, 400):
+            filler.unlink(missing_ok=True)
+            case.begin()
+            filler.write_bytes(bytes(max(0, shutil.disk_usage(disk).free - 1024 * free_kib)))
+            status, hidden = case.run(case.write.new)
+            after = case.state()
+            assert status in (0, 1), case.said
+            assert hidden == []
+            if status:
+                assert case.said.startswith("error: ")
+                assert "failed where it should not" not in case.said, case.said
+                if case.write.is_each:
+                    case.check()
+                else:
+                    assert after.items() >= case.old.items()
