@@ -62,7 +62,7 @@ def test_a_file_that_has_gone_is_told(application, store, photos, tmp_path):
     store.largeReady.connect(came.append)
     store.ask_large(replace(photos[0], path=tmp_path / "gone.jpg"))
     turn_until(application, lambda: bool(came))
-    assert "cannot be read any more" in came[0].problem
+    assert came[0].problem == f"{tmp_path / 'gone.jpg'}: cannot be read: there is no such file"
     assert came[0].levels == ()
 
 
