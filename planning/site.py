@@ -243,6 +243,7 @@ class Site:
 
     A site without panels has a building mesh: the coarse model on which photos of a first flight show them. Or it is
     bare: a place alone, to look at missions that were imported.
+    `place_from` is `ifc-site` where the origin is what a BIM file says of its place, and nobody has said it since.
     """
 
     name: str
@@ -253,6 +254,7 @@ class Site:
     building_mesh: str | None = None
     obstacles: tuple[Obstacle, ...] = ()
     rally_points: tuple[RallyPoint, ...] = ()
+    place_from: str = ""
     format: str = SITE_FORMAT
     is_bare: bool = False
 

@@ -62,10 +62,9 @@ def site_to_json(site: Site) -> dict[str, Any]:
     content = {"format": content.pop("format"), **content}
     if content["building_mesh"] is None:
         del content["building_mesh"]
-    if not content["rally_points"]:
-        del content["rally_points"]
-    if not content["is_bare"]:
-        del content["is_bare"]
+    for name in ("rally_points", "place_from", "is_bare"):
+        if not content[name]:
+            del content[name]
     if content["airspace"]["min_height_above_ground_m"] is None:
         del content["airspace"]["min_height_above_ground_m"]
     content["obstacles"] = [_without_none(obstacle) for obstacle in content["obstacles"]]

@@ -87,6 +87,21 @@ def print_findings(findings: Iterable[Finding]) -> None:
             print(f"{MARKS[severity]}: {len(texts) - MAX_SHOWN} more like this (--json lists all)", file=sys.stderr)
 
 
+def verdict_text(findings: Iterable[Finding]) -> str:
+    """Whether a plan is ready to fly, in words."""
+    from groundstation.services.readiness import Readiness, readiness_of
+
+    findings = tuple(findings)
+    match readiness_of(findings):
+        case Readiness.READY:
+            return "ready to fly"
+        case Readiness.WITH_WARNINGS:
+            n_warnings = sum(finding.severity is Severity.WARNING for finding in findings)
+            return f"ready to fly, but read {counted(n_warnings, 'warning')} above"
+        case Readiness.NOT_READY:
+            return "not ready to fly: see the errors above"
+
+
 def flight_status(report: FlightReport) -> int:
     """Exit status of a flight's report: 1, and a line that says why, where the flight did not end as it should."""
     from missions.flight.report_rules import ENDED_BADLY

@@ -13,6 +13,7 @@ from planning.errors import InputError
 from planning.folders import PLAIN_ENDINGS, check_ending, check_folder_name
 
 if TYPE_CHECKING:
+    from groundstation.services.readiness import FlightDay
     from planning.effects import Wish
 
 OPTIONS = {
@@ -164,3 +165,37 @@ def checked_seed(seed: int) -> int:
     if not 0 <= seed <= LARGEST_SEED:
         raise InputError(f"--seed: expected 0 to {LARGEST_SEED}, got {seed}")
     return seed
+
+
+def add_day(parser: argparse.ArgumentParser) -> None:
+    """Options that say what is known of the day of the flight."""
+    add = parser.add_argument
+    add("--at", metavar="TIME", help="middle of the flight, such as 2026-06-21T10:30 or 2026-06-21T10:30+02:00")
+    add("--temperature", type=number, metavar="C", help="of air and batteries, degrees Celsius")
+
+
+def flight_day(options: argparse.Namespace) -> FlightDay:
+    """The day as the options say it.
+
+    Raises
+    ------
+    InputError
+        They are no time, or no temperature.
+    """
+    from datetime import datetime
+
+    from groundstation.services.readiness import FlightDay
+
+    at = None
+    if options.at is not None:
+        try:
+            given = datetime.fromisoformat(options.at) if "T" in options.at else None
+            at = given.astimezone() if given is not None and given.tzinfo is None else given
+        except (ValueError, OverflowError, OSError):
+            at = None
+        if at is None:
+            raise InputError(f"--at: expected a time such as 2026-06-21T10:30, got '{options.at}'")
+    try:
+        return FlightDay(at, options.temperature)
+    except ValueError as error:
+        raise InputError(f"--temperature: {str(error).partition(': ')[2]}") from error

@@ -8,7 +8,7 @@ from pathlib import Path
 from groundstation.services.flying import FlightWish, Flown, fly_files
 from groundstation.services.missions import SUFFIXES, export_plan
 from groundstation.services.planning import plan_site
-from planning.checks import check_plan
+from groundstation.services.preflight import preflight
 from planning.errors import InputError
 from planning.findings import Finding, is_flyable
 from planning.plan_file import read_plan
@@ -53,7 +53,7 @@ def demonstrate(
     site_path = write_scene(scene, folder)
     plan_path = folder / f"{scene}.plan.json"
     planned = plan_site(site_path, request, plan_path, monitor=monitor)
-    findings = check_plan(read_plan(plan_path), read_site(site_path), monitor)
+    findings = preflight(read_plan(plan_path), read_site(site_path), monitor=monitor).findings
     missions: list[Path] = []
     export_findings: list[Finding] = []
     for file_format, (suffix, *_) in SUFFIXES.items():

@@ -10,9 +10,10 @@ from typing import Any
 import msgspec
 
 from groundstation.services.given_files import read_given_plan, read_given_site
+from groundstation.services.preflight import preflight
 from groundstation.services.project_file import check_not_index
+from groundstation.services.readiness import UNKNOWN_DAY, FlightDay
 from planning.catalogue import profile
-from planning.checks import check_plan
 from planning.checks.geometry_rules import low_flight_allowed
 from planning.errors import InputError
 from planning.findings import Finding, Severity
@@ -160,9 +161,11 @@ def why_open(planned: Planned) -> Iterator[Finding]:
             yield Finding(Severity.WARNING, f"open-{why}", message, on[0], float(len(on)), 0.0, "sections")
 
 
-def check_files(plan_path: Path, site_path: Path, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
-    """All findings on a plan file and its site file."""
-    return check_plan(read_given_plan(plan_path), read_given_site(site_path), monitor)
+def check_files(
+    plan_path: Path, site_path: Path, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET
+) -> tuple[Finding, ...]:
+    """All findings on a plan file and its site file, for a day of which something is known or not."""
+    return preflight(read_given_plan(plan_path), read_given_site(site_path), day, monitor).findings
 
 
 def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:

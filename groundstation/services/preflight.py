@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from planning.checks import check_case
+from groundstation.services.readiness import UNKNOWN_DAY, FlightDay, readiness_findings
 from planning.checks.case import Case
 from planning.checks.measures import pose_of
 from planning.findings import Finding
@@ -36,11 +36,11 @@ class Preflight:
         return self.plan is plan and self.site_model is site_model
 
 
-def preflight(plan: Plan, site_model: SiteModel, monitor: Monitor = QUIET) -> Preflight:
-    """Check a plan on its site."""
+def preflight(plan: Plan, site_model: SiteModel, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET) -> Preflight:
+    """Check a plan on its site, for a day of which something is known or not."""
     monitor.report("measuring", 0, 1)
     case = Case.of(plan, site_model)
     seen = case.measures.seen
     # A view sees a panel in one section only: as many elements, as many panels.
     covered = {view.id: len(seen[pose_of(view)].elements) for view in plan.viewpoints}
-    return Preflight(plan, site_model, check_case(case, monitor), covered)
+    return Preflight(plan, site_model, readiness_findings(case, day, monitor), covered)

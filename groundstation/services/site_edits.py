@@ -264,7 +264,8 @@ def set_origin(
     InputError
         There is no such place.
     """
-    return with_site(model, replace(model.site, origin=origin_at(lat_deg, lon_deg, height_m, reference)))
+    origin = origin_at(lat_deg, lon_deg, height_m, reference)
+    return with_site(model, replace(model.site, origin=origin, place_from=""))
 
 
 def origin_at(lat_deg: float, lon_deg: float, height_m: float, reference: HeightReference) -> Origin:

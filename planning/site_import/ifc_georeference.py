@@ -140,4 +140,5 @@ def _site_frame(site: SitePlace, north_rad: float, notes: tuple[str, ...] = ()) 
         "ellipsoid, makes it ellipsoidal, to about 1 m",
         f"true north is {round(math.degrees(north_rad), 2) + 0.0:g} degrees counter-clockwise from the model's y axis",
     )
-    return LocalFrame(Origin(site.lat_deg, site.lon_deg, height_m), site.zero_m, north_rad, notes)
+    origin = Origin(site.lat_deg, site.lon_deg, height_m)
+    return LocalFrame(origin, site.zero_m, north_rad, notes, place_from="ifc-site")

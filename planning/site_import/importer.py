@@ -123,6 +123,7 @@ def site_of_facades(
         home_enu_m=around.home_enu_m,
         building_mesh="building.ply" if len(source.building.triangles) else None,
         obstacles=(Obstacle("neighbours", mesh="neighbours.ply"),) if has_neighbours else (),
+        place_from=getattr(source.placement.georeference, "place_from", ""),
     )
     model = SiteModel(site, source.building, (source.neighbours,) if has_neighbours else ())
     return ImportedSite(model, (*notes, *around.notes))

@@ -55,12 +55,15 @@ class LocalFrame:
         Direction of true north in the file's x-y plane, counter-clockwise from its y axis.
     notes
         See `Georeference`.
+    place_from
+        Of the site: `ifc-site` where the place may be just the city; else empty.
     """
 
     origin: Origin
     zero: Vec3 = (0.0, 0.0, 0.0)
     north_rad: float = 0.0
     notes: tuple[str, ...] = ()
+    place_from: str = ""
 
     def geodetic(self, coordinates: Array) -> Geodetic:
         """WGS 84 positions of file coordinates, shape (n, 3)."""

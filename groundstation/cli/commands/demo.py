@@ -30,7 +30,7 @@ def run(options: argparse.Namespace) -> int:
     import msgspec
 
     from groundstation.cli.commands.plan import print_summary
-    from groundstation.cli.console import print_findings, print_json, run_job
+    from groundstation.cli.console import print_findings, print_json, run_job, verdict_text
     from groundstation.services.demo import demonstrate
     from groundstation.services.planning import planned_summary
     from missions.flight.report_text import report_text
@@ -53,9 +53,7 @@ def run(options: argparse.Namespace) -> int:
         print(f"site:     {made.site_path}")
         print_summary(made.planned, made.plan_path, seconds)
         kept = sum(finding.severity is Severity.OK for finding in made.findings)
-        print(
-            f"check:    {kept} of {len(made.findings)} rules kept, {'ready to fly' if flyable else 'NOT ready to fly'}"
-        )
+        print(f"check:    {kept} of {len(made.findings)} rules kept, {verdict_text(made.findings)}")
         print("missions: " + ", ".join(str(path) for path in made.mission_paths))
         if made.flown is not None and made.flown.flight.report is not None:
             print(f"flight:   {made.flight_path} ({made.flown.flight.sorties[0].vehicle}, {made.flown.seconds:.1f} s)")

@@ -4,15 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QDateTime, QEvent, QLocale, QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDateTimeEdit,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
+from groundstation.gui.inputs import NumberBox, calm
 from groundstation.gui.mission.findings_list import FindingsList
 from groundstation.gui.mission.severity_icon import SIZE_PX, severity_icon
 from groundstation.gui.theme import colours
 from groundstation.services.finding_texts import SEVERITIES, counts_by_severity
+from groundstation.services.readiness import UNKNOWN_DAY, FlightDay, Readiness, readiness_of
 from groundstation.services.units import UnitSystem
-from planning.findings import Finding, Severity, is_flyable
+from planning.findings import Finding, Severity
 
 
 class FindingsView(QWidget):
@@ -23,10 +35,13 @@ class FindingsView(QWidget):
     placePicked(str)
         The user wants to see the place of a finding.
     checkRequested()
+    dayChanged(FlightDay)
+        The user says when it is flown, or how cold it is.
     """
 
     placePicked = Signal(str)  # noqa: N815  (Qt's own way of naming)
     checkRequested = Signal()  # noqa: N815
+    dayChanged = Signal(object)  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -37,7 +52,7 @@ class FindingsView(QWidget):
         self._state.setWordWrap(True)
         self._check = QPushButton(self.tr("Check"))
         self._check.setToolTip(self.tr("Measure every pre-flight rule again"))
-        self._list = FindingsList()
+        self._list, self._day = FindingsList(), DayBox()
         self._show = {severity: self._filter_button(severity) for severity in SEVERITIES}
         head, filters = QHBoxLayout(), QHBoxLayout()
         head.addWidget(self._verdict_icon)
@@ -48,10 +63,12 @@ class FindingsView(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(6, 6, 6, 6)
         layout.addLayout(head)
+        layout.addWidget(self._day)
         layout.addWidget(self._state)
         layout.addLayout(filters)
         layout.addWidget(self._list, 1)
         self._check.clicked.connect(self.checkRequested)
+        self._day.valueChanged.connect(self.dayChanged)
         self._list.placePicked.connect(self.placePicked)
         self._filter()
         self.set_findings(None)
@@ -84,6 +101,10 @@ class FindingsView(QWidget):
     def set_units(self, units: UnitSystem) -> None:
         """Show values in other units."""
         self._list.set_units(units)
+
+    def day_box(self) -> DayBox:
+        """What is known of the day of the flight."""
+        return self._day
 
     def verdict(self) -> str:
         """The verdict as it is read."""
@@ -125,10 +146,12 @@ class FindingsView(QWidget):
             self._show[severity].setIcon(severity_icon(severity, colours()))
         if self._findings is None or self._is_stale:
             text, severity, role = self.tr("Readiness not known"), Severity.WARNING, "warning"
-        elif is_flyable(self._findings):
-            text, severity, role = self.tr("Ready to fly"), Severity.OK, "ok"
         else:
-            text, severity, role = self.tr("NOT ready to fly"), Severity.ERROR, "error"
+            text, severity, role = {
+                Readiness.READY: (self.tr("Ready to fly"), Severity.OK, "ok"),
+                Readiness.WITH_WARNINGS: (self.tr("Ready to fly, but read the warnings"), Severity.WARNING, "warning"),
+                Readiness.NOT_READY: (self.tr("NOT ready to fly"), Severity.ERROR, "error"),
+            }[readiness_of(self._findings)]
         self._verdict.setText(text)
         self._verdict.setProperty("role", role)
         self._verdict.style().polish(self._verdict)
@@ -137,3 +160,66 @@ class FindingsView(QWidget):
     def _say_state(self, text: str) -> None:
         self._state.setText(text)
         self._state.setVisible(bool(text))
+
+
+class DayBox(QWidget):
+    """Edits a `FlightDay`: when the flight is planned, and how cold it is; each may be left open.
+
+    Signals
+    -------
+    valueChanged(FlightDay)
+    """
+
+    valueChanged = Signal(object)  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.has_time, self.has_temperature = QCheckBox(self.tr("Planned for")), QCheckBox(self.tr("Temperature"))
+        self.has_time.setToolTip(self.tr("Look where the sun stands, and where glass mirrors it"))
+        self.has_temperature.setToolTip(self.tr("Look what cold takes from the batteries"))
+        self.when = QDateTimeEdit(QDateTime.currentDateTime())
+        calm(self.when)
+        self.when.setDisplayFormat("yyyy-MM-dd HH:mm")
+        self.when.setLocale(QLocale.c())
+        self.when.setCalendarPopup(True)
+        self.when.setAccessibleName(self.tr("Date and time of the flight"))
+        self.when.setToolTip(self.tr("By this computer's clock and time zone"))
+        self.temperature = NumberBox(-40.0, 55.0, 1.0, " \u00b0C", 0)
+        self.temperature.setValue(20.0)
+        self.temperature.setAccessibleName(self.tr("Temperature at the flight"))
+        layout = QGridLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for row, (check, box) in enumerate(((self.has_time, self.when), (self.has_temperature, self.temperature))):
+            layout.addWidget(check, row, 0)
+            layout.addWidget(box, row, 1)
+            check.toggled.connect(self._edited)
+        layout.setColumnStretch(1, 1)
+        self.when.dateTimeChanged.connect(self._edited)
+        self.temperature.valueChanged.connect(self._edited)
+        self._show(UNKNOWN_DAY)
+
+    def value(self) -> FlightDay:
+        """What is known of the day."""
+        at = self.when.dateTime().toPython().astimezone() if self.has_time.isChecked() else None
+        return FlightDay(at, self.temperature.value() if self.has_temperature.isChecked() else None)
+
+    def setValue(self, day: FlightDay) -> None:  # noqa: N802
+        """Show another day."""
+        blockers = [QSignalBlocker(box) for box in (self.has_time, self.has_temperature, self.when, self.temperature)]
+        if day.at is not None:
+            self.when.setDateTime(QDateTime.fromSecsSinceEpoch(round(day.at.timestamp())))
+        if day.temperature_c is not None:
+            self.temperature.setValue(day.temperature_c)
+        self.has_time.setChecked(day.at is not None)
+        self.has_temperature.setChecked(day.temperature_c is not None)
+        del blockers
+        self._show(day)
+
+    def _show(self, day: FlightDay) -> None:
+        self.when.setEnabled(day.at is not None)
+        self.temperature.setEnabled(day.temperature_c is not None)
+
+    def _edited(self, *_changed: object) -> None:
+        day = self.value()
+        self._show(day)
+        self.valueChanged.emit(day)

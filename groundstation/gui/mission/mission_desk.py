@@ -14,6 +14,7 @@ from groundstation.services.mission_compare import MissionComparison, compare_wi
 from groundstation.services.mission_files import bare_site, missions_as_plan, plan_of_missions, read_mission_files
 from groundstation.services.places import item_of_place
 from groundstation.services.preflight import Preflight, preflight
+from groundstation.services.readiness import UNKNOWN_DAY
 from groundstation.services.site_sources import with_new_site
 from planning.findings import Finding, Severity
 from planning.plan import Plan
@@ -41,6 +42,7 @@ class MissionDesk(QObject):
         super().__init__(parent)
         self._workspace = workspace
         self._check_id = 0
+        self.day = UNKNOWN_DAY
 
     @property
     def plan(self) -> Plan | None:
@@ -61,12 +63,12 @@ class MissionDesk(QObject):
 
     def check(self) -> None:
         """Check the current plan; one check at a time."""
-        plan, site_model = self.plan, self._workspace.document.site
+        plan, site_model, day = self.plan, self._workspace.document.site, self.day
         if plan is None or site_model is None or not self.can_check or self.is_checking:
             return
 
         def work(context: JobContext) -> Preflight:
-            return preflight(plan, site_model, context)
+            return preflight(plan, site_model, day, context)
 
         self._check_id = self._workspace.start(self.tr("Check"), work, self.checked.emit).id
 

@@ -22,6 +22,7 @@ from groundstation.services.finding_texts import duration_text
 from groundstation.services.mission_files import in_order_of_sorties
 from groundstation.services.places import item_of_place
 from groundstation.services.preflight import Preflight
+from groundstation.services.readiness import FlightDay
 from groundstation.services.units import UnitSystem
 from planning.findings import Severity
 
@@ -182,6 +183,7 @@ class MissionPage(QObject):
     def _connect(self) -> None:
         workspace = self._workspace
         self.findings.checkRequested.connect(self.desk.check)
+        self.findings.dayChanged.connect(self._day_changed)
         self.findings.placePicked.connect(self._go_to)
         self.lists.picked.connect(workspace.select)
         self.lists.activated.connect(workspace.jump_to)
@@ -261,6 +263,11 @@ class MissionPage(QObject):
                     duration_text(plan.duration_s).replace(" ", NO_BREAK_SPACE),
                 )
             )
+
+    def _day_changed(self, day: FlightDay) -> None:
+        self.desk.day = day
+        self.findings.set_stale()
+        self._check_soon.start()
 
     def _go_to(self, place: str) -> None:
         item = item_of_place(place, self._workspace.document)

@@ -1,7 +1,12 @@
 """The findings view: verdict, filters, units, freshness, and the way to a place."""
 
-import pytest
+from datetime import UTC, datetime
 
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from groundstation.services.readiness import FlightDay
 from groundstation.services.units import UnitSystem
 from planning.findings import Finding, Severity
 
@@ -28,7 +33,32 @@ def test_verdict_says_whether_anything_grounds_the_flight(view):
     view.set_findings(FINDINGS)
     assert view.verdict() == "NOT ready to fly"
     view.set_findings([f for f in FINDINGS if f.severity is not Severity.ERROR])
+    assert view.verdict() == "Ready to fly, but read the warnings"
+    view.set_findings([f for f in FINDINGS if f.severity is Severity.OK])
     assert view.verdict() == "Ready to fly"
+
+
+def test_the_day_of_the_flight_is_said_by_clicks_and_may_be_left_open(view):
+    box, said = view.day_box(), []
+    view.dayChanged.connect(said.append)
+    assert box.value() == FlightDay()
+    assert not box.when.isEnabled()
+    box.has_time.click()
+    box.has_temperature.click()
+    assert box.when.isEnabled()
+    box.temperature.setValue(-5.0)
+    assert said[-1].temperature_c == -5.0
+    assert said[-1].at.tzinfo is not None
+    box.has_time.click()
+    assert said[-1] == FlightDay(None, -5.0)
+
+
+@given(at=st.datetimes(datetime(2000, 1, 1), datetime(2090, 1, 1), timezones=st.just(UTC)), cold=st.integers(-40, 55))
+@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_day_is_shown_to_the_minute(view, at, cold):
+    at = at.replace(second=0, microsecond=0)
+    view.day_box().setValue(FlightDay(at, float(cold)))
+    assert view.day_box().value() == FlightDay(at, float(cold))
 
 
 def test_old_findings_are_no_verdict_even_after_units_change(view):
