@@ -1,4 +1,4 @@
-"""Before a link is opened: the item limit, what an upload would set, and the battery of a simulation."""
+"""Before a link is opened: the item limit, and the battery of a simulation."""
 
 from dataclasses import replace
 
@@ -8,13 +8,11 @@ from hypothesis import strategies as st
 
 from groundstation.services.live_battery import FlownBefore, with_charge
 from groundstation.services.live_limit import shared_out, too_long
-from groundstation.services.live_settings import parameters_to_set
-from groundstation.vehicle.setup import needs_reboot, wanted_parameters
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import photos_that_fit
 from missions.simulator.airframe import Target
 from missions.simulator.build import make_airframe
-from tests.services.live_cases import planned, sortie
+from tests.services.live_cases import planned
 
 
 def with_long_sortie(n):
@@ -46,15 +44,6 @@ def test_views_are_shared_out_so_that_each_is_in_one_sortie_that_fits():
     assert sorted(flown) == sorted(plan.sorties[0].viewpoint_ids)
     assert max(len(each.viewpoint_ids) for each in anew.sorties) <= 4
     assert anew.viewpoints == plan.viewpoints
-
-
-@pytest.mark.parametrize("autopilot", Autopilot)
-def test_what_an_upload_would_set_names_every_parameter_and_those_that_need_a_restart(autopilot):
-    orders = sortie().orders
-    found = parameters_to_set(autopilot, orders)
-    wanted = wanted_parameters(autopilot, orders.mission, orders.return_height_m)
-    assert {each.name: each.value for each in found} == wanted
-    assert {each.name for each in found if each.needs_reboot} <= needs_reboot(autopilot)
 
 
 def airframe(sags):

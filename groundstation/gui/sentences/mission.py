@@ -252,4 +252,41 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "the vehicle would refuse this mission: {0}"),
     QT_TRANSLATE_NOOP("Sentences", "expected viewpoints of the sortie, got {0}"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "{0} of the {1} sections that flights can cover are covered ({2}): plan with more --views, or a --coverage",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the site lies where its BIM file says, which is often just the city: compare it with a map, and "
+        "give its --origin",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "a sortie has {0} photos, and {1} keeps items for {2}: it is shared out among more sorties "
+        "before it is uploaded",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "obstacle sensing does not see glass: the distance kept, {0} m at the least, rests on the "
+        "position alone; fly with RTK",
+    ),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "obstacle sensing does not see glass: the distance kept, {0} m at the least, rests on the position alone",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "where the sun stands is not looked at: no time is planned (--at)"),
+    QT_TRANSLATE_NOOP("Sentences", "the sun is below the horizon ({0} degrees) at the planned time"),
+    QT_TRANSLATE_NOOP("Sentences", "; at {0} it would be {1}"),
+    QT_TRANSLATE_NOOP("Sentences", "the sun is in the picture of {0} of {1} photos at the planned time{2}"),
+    QT_TRANSLATE_NOOP("Sentences", "glass mirrors the sun into {0} of {1} photos at the planned time{2}"),
+    QT_TRANSLATE_NOOP("Sentences", "the sun is in no photo at the planned time, and no glass mirrors it into one"),
+    QT_TRANSLATE_NOOP("Sentences", "what cold takes from the batteries is not looked at (--temperature)"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "at {0} degrees a battery gives some {1} of its charge, {2} s above the reserve, and the longest "
+        "sortie takes {3} s: warm the batteries to 20 degrees, or plan shorter sorties with a larger "
+        "--reserve",
+    ),
+    QT_TRANSLATE_NOOP("Sentences", "at {0} degrees a battery gives some {1} of its charge, and that is enough"),
 )

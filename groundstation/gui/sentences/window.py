@@ -161,6 +161,8 @@ OPTION_FIELDS = {
     "--rows": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Rows")),
     "--units": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Unit of lengths")),
     "--up": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Axis that points up")),
+    "--at": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Planned for")),
+    "--temperature": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Temperature")),
     "--batteries": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Batteries")),
     "--coverage": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Coverage")),
     "--min-distance": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Safety distance")),
