@@ -982,6 +982,37 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
+    <name>DayBox</name>
+    <message>
+        <source>Planned for</source>
+        <translation>Geplant für</translation>
+    </message>
+    <message>
+        <source>Temperature</source>
+        <translation>Temperatur</translation>
+    </message>
+    <message>
+        <source>Look where the sun stands, and where glass mirrors it</source>
+        <translation>Betrachten, wo die Sonne steht und wo Glas sie spiegelt</translation>
+    </message>
+    <message>
+        <source>Look what cold takes from the batteries</source>
+        <translation>Betrachten, was Kälte den Akkus nimmt</translation>
+    </message>
+    <message>
+        <source>Date and time of the flight</source>
+        <translation>Datum und Uhrzeit des Flugs</translation>
+    </message>
+    <message>
+        <source>By this computer&apos;s clock and time zone</source>
+        <translation>Nach Uhr und Zeitzone dieses Rechners</translation>
+    </message>
+    <message>
+        <source>Temperature at the flight</source>
+        <translation>Temperatur beim Flug</translation>
+    </message>
+</context>
+<context>
     <name>Desk</name>
     <message>
         <source>Something is running: the language changes when Reflight is started next.</source>
@@ -1457,6 +1488,10 @@ Blickrichtung: {2}</translation>
     <message>
         <source>Ready to fly</source>
         <translation>Flugbereit</translation>
+    </message>
+    <message>
+        <source>Ready to fly, but read the warnings</source>
+        <translation>Bereit zum Flug, aber die Warnungen lesen</translation>
     </message>
     <message>
         <source>NOT ready to fly</source>
@@ -6202,6 +6237,62 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     <message>
         <source>expected viewpoints of the sortie, got {0}</source>
         <translation>erwartet wurden Aufnahmen des Einsatzes, gefunden {0}</translation>
+    </message>
+    <message>
+        <source>{0} of the {1} sections that flights can cover are covered ({2}): plan with more --views, or a --coverage</source>
+        <translation>{0} der {1} Sektoren, die Flüge abdecken können, sind abgedeckt ({2}): mit mehr --views oder einer --coverage planen</translation>
+    </message>
+    <message>
+        <source>the site lies where its BIM file says, which is often just the city: compare it with a map, and give its --origin</source>
+        <translation>der Standort liegt, wo seine BIM-Datei ihn angibt, was oft nur die Stadt ist: mit einer Karte vergleichen und seinen --origin angeben</translation>
+    </message>
+    <message>
+        <source>a sortie has {0} photos, and {1} keeps items for {2}: it is shared out among more sorties before it is uploaded</source>
+        <translation>ein Einsatz hat {0} Fotos, und {1} speichert Punkte für {2}: er wird vor dem Hochladen auf mehr Einsätze verteilt</translation>
+    </message>
+    <message>
+        <source>obstacle sensing does not see glass: the distance kept, {0} m at the least, rests on the position alone; fly with RTK</source>
+        <translation>die Hinderniserkennung sieht kein Glas: der gehaltene Abstand, mindestens {0} m, beruht allein auf der Position; mit RTK fliegen</translation>
+    </message>
+    <message>
+        <source>obstacle sensing does not see glass: the distance kept, {0} m at the least, rests on the position alone</source>
+        <translation>die Hinderniserkennung sieht kein Glas: der gehaltene Abstand, mindestens {0} m, beruht allein auf der Position</translation>
+    </message>
+    <message>
+        <source>where the sun stands is not looked at: no time is planned (--at)</source>
+        <translation>wo die Sonne steht, wird nicht betrachtet: keine Zeit ist geplant (--at)</translation>
+    </message>
+    <message>
+        <source>the sun is below the horizon ({0} degrees) at the planned time</source>
+        <translation>die Sonne steht zur geplanten Zeit unter dem Horizont ({0} Grad)</translation>
+    </message>
+    <message>
+        <source>; at {0} it would be {1}</source>
+        <translation>; um {0} wären es {1}</translation>
+    </message>
+    <message>
+        <source>the sun is in the picture of {0} of {1} photos at the planned time{2}</source>
+        <translation>die Sonne ist zur geplanten Zeit im Bild von {0} von {1} Fotos{2}</translation>
+    </message>
+    <message>
+        <source>glass mirrors the sun into {0} of {1} photos at the planned time{2}</source>
+        <translation>Glas spiegelt die Sonne zur geplanten Zeit in {0} von {1} Fotos{2}</translation>
+    </message>
+    <message>
+        <source>the sun is in no photo at the planned time, and no glass mirrors it into one</source>
+        <translation>die Sonne ist zur geplanten Zeit in keinem Foto, und kein Glas spiegelt sie in eines</translation>
+    </message>
+    <message>
+        <source>what cold takes from the batteries is not looked at (--temperature)</source>
+        <translation>was Kälte den Akkus nimmt, wird nicht betrachtet (--temperature)</translation>
+    </message>
+    <message>
+        <source>at {0} degrees a battery gives some {1} of its charge, {2} s above the reserve, and the longest sortie takes {3} s: warm the batteries to 20 degrees, or plan shorter sorties with a larger --reserve</source>
+        <translation>bei {0} Grad gibt ein Akku etwa {1} seiner Ladung ab, {2} s über der Reserve, und der längste Einsatz dauert {3} s: die Akkus auf 20 Grad wärmen oder mit größerer --reserve kürzere Einsätze planen</translation>
+    </message>
+    <message>
+        <source>at {0} degrees a battery gives some {1} of its charge, and that is enough</source>
+        <translation>bei {0} Grad gibt ein Akku etwa {1} seiner Ladung ab, und das reicht</translation>
     </message>
     <message>
         <source>a region of interest of mode {0} is not followed</source>
