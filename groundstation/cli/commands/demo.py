@@ -53,7 +53,8 @@ def run(options: argparse.Namespace) -> int:
         print(f"site:     {made.site_path}")
         print_summary(made.planned, made.plan_path, seconds)
         kept = sum(finding.severity is Severity.OK for finding in made.findings)
-        print(f"check:    {kept} of {len(made.findings)} rules kept, {verdict_text(made.findings)}")
+        of = sum(finding.severity is not Severity.NOTE for finding in made.findings)
+        print(f"check:    {kept} of {of} rules kept, {verdict_text(made.findings)}")
         print("missions: " + ", ".join(str(path) for path in made.mission_paths))
         if made.flown is not None and made.flown.flight.report is not None:
             print(f"flight:   {made.flight_path} ({made.flown.flight.sorties[0].vehicle}, {made.flown.seconds:.1f} s)")
