@@ -61,6 +61,8 @@ WORDS = (
     QT_TRANSLATE_NOOP("Brief", "Ready to fly, but read the warnings."),
     QT_TRANSLATE_NOOP("Brief", "NOT ready to fly: see the findings."),
     QT_TRANSLATE_NOOP("Brief", "Date"),
+    QT_TRANSLATE_NOOP("Brief", "Planned for"),
+    QT_TRANSLATE_NOOP("Brief", "Temperature"),
     QT_TRANSLATE_NOOP("Brief", "Plan"),
     QT_TRANSLATE_NOOP("Brief", "Aircraft and camera"),
     QT_TRANSLATE_NOOP("Brief", "Photos"),

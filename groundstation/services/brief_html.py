@@ -15,6 +15,7 @@ from groundstation.services.finding_texts import duration_text, measured_text
 from groundstation.services.flight_brief import FlightBrief
 from groundstation.services.map_shapes import plan_shapes, site_shapes
 from groundstation.services.profiles import height_limits, plan_profiles
+from groundstation.services.readiness import Readiness
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, speed_unit
 from missions.dji.write import LinkLoss
 from missions.encode import TakeoffCheck
@@ -118,16 +119,19 @@ _TABLE = '<table width="100%" border="1" cellspacing="0" cellpadding="2" style="
 
 
 def _verdict(brief: FlightBrief, say: Say) -> str:
-    if brief.is_flyable:
+    if brief.readiness is not Readiness.NOT_READY:
         kept, warned = "All pre-flight rules are kept: ready to fly.", "Ready to fly, but read the warnings."
-        has_warnings = any(found.severity is Severity.WARNING for found in brief.findings)
-        return f"<p><b>{escape(say(warned if has_warnings else kept))}</b></p>"
+        return f"<p><b>{escape(say(kept if brief.readiness is Readiness.READY else warned))}</b></p>"
     return f'<p><b><span style="color: #b3261e">{escape(say("NOT ready to fly: see the findings."))}</span></b></p>'
 
 
 def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple[str, str]]:
     length, speed = length_unit(units), speed_unit(units)
     yield say("Date"), brief.planned_on
+    if brief.day.at is not None:
+        yield say("Planned for"), f"{brief.day.at:%Y-%m-%d %H:%M}"
+    if brief.day.temperature_c is not None:
+        yield say("Temperature"), f"{brief.day.temperature_c:g} \u00b0C"
     yield say("Plan"), brief.plan_title
     yield say("Aircraft and camera"), ", ".join(dict.fromkeys((brief.aircraft, brief.camera)))
     yield say("Photos"), str(brief.n_photos)

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from groundstation.services.finding_texts import by_severity
+from groundstation.services.readiness import UNKNOWN_DAY, FlightDay, Readiness, readiness_of
 from groundstation.services.waypoints import WaypointRow, waypoint_rows
 from missions.build import missions_from_plan
 from missions.dji.write import LinkLoss
 from missions.encode import ExportOptions, TakeoffCheck, dji_return_height, takeoff_check
 from planning.errors import GroundStationError
-from planning.findings import Finding, Severity, is_flyable
+from planning.findings import Finding, Severity
 from planning.insight.flight_profile import LowFlight, low_flight, lowest_flight
 from planning.plan import Plan
 from planning.site import Site, SiteModel
@@ -67,6 +68,8 @@ class FlightBrief:
     ----------
     planned_on
         Date of printing, as text.
+    day
+        When it is flown and how cold it is, as far as that is known.
     max_above_ground_m
         What rules of the air count from.
     low
@@ -84,6 +87,7 @@ class FlightBrief:
     site: str
     plan_title: str
     planned_on: str
+    day: FlightDay
     aircraft: str
     camera: str
     takeoff: TakeoffPlace
@@ -103,8 +107,12 @@ class FlightBrief:
     link_loss: LinkLoss
     no_fly: tuple[str, ...]
     obstacles: tuple[str, ...]
-    is_flyable: bool
     findings: tuple[Finding, ...]
+
+    @property
+    def readiness(self) -> Readiness:
+        """The verdict on the findings."""
+        return readiness_of(self.findings)
 
     @property
     def n_batteries(self) -> int:
@@ -119,6 +127,7 @@ def flight_brief(
     planned_on: str,
     title: str = "",
     options: ExportOptions | None = None,
+    day: FlightDay = UNKNOWN_DAY,
 ) -> FlightBrief:
     """The brief of a plan on its site.
 
@@ -128,6 +137,8 @@ def flight_brief(
         Of the pre-flight check of this very plan.
     options
         Those of the export, for the return height and what happens without a radio link.
+    day
+        For which the findings hold.
     """
     options = options or ExportOptions(site=site_model)
     site = site_model.site
@@ -141,6 +152,7 @@ def flight_brief(
         site=site.name,
         plan_title=title or plan.method,
         planned_on=planned_on,
+        day=day,
         aircraft=plan.aircraft.name,
         camera=plan.camera.name,
         takeoff=_takeoff(site_model),
@@ -160,7 +172,6 @@ def flight_brief(
         link_loss=options.link_loss,
         no_fly=tuple(zone.id for zone in site.airspace.no_fly),
         obstacles=tuple(obstacle.id for obstacle in site.obstacles),
-        is_flyable=is_flyable((*findings, *objections)),
         findings=by_severity(found for found in (*findings, *objections) if found.severity is not Severity.OK),
     )
 

@@ -24,12 +24,15 @@ class Preflight:
         What was checked: findings are as fresh as these are the ones in the window.
     panels_covered
         Number of panels by viewpoint.
+    day
+        What was known of the day of the flight.
     """
 
     plan: Plan
     site_model: SiteModel
     findings: tuple[Finding, ...]
     panels_covered: Mapping[str, int]
+    day: FlightDay = UNKNOWN_DAY
 
     def is_of(self, plan: Plan | None, site_model: SiteModel | None) -> bool:
         """Whether this is about these very values."""
@@ -43,4 +46,4 @@ def preflight(plan: Plan, site_model: SiteModel, day: FlightDay = UNKNOWN_DAY, m
     seen = case.measures.seen
     # A view sees a panel in one section only: as many elements, as many panels.
     covered = {view.id: len(seen[pose_of(view)].elements) for view in plan.viewpoints}
-    return Preflight(plan, site_model, readiness_findings(case, day, monitor), covered)
+    return Preflight(plan, site_model, readiness_findings(case, day, monitor), covered, day)

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from datetime import datetime, timedelta, timezone
 from html.parser import HTMLParser
 from xml.etree import ElementTree
 
@@ -12,6 +13,7 @@ from groundstation.services.brief_pictures import map_svg
 from groundstation.services.flight_brief import flight_brief
 from groundstation.services.map_shapes import plan_shapes, site_shapes
 from groundstation.services.preflight import preflight
+from groundstation.services.readiness import FlightDay
 from groundstation.services.units import UnitSystem
 from missions.build import missions_from_plan
 from missions.dji.write import LinkLoss
@@ -125,7 +127,6 @@ def test_findings_that_are_not_ok_are_all_told_the_gravest_first(plan):
     ]
     brief = flight_brief(MODEL, plan, findings, "today")
     assert [finding.code for finding in brief.findings] == ["c", "b"]
-    assert not brief.is_flyable
     text = page_text(brief_html(brief, METRIC, {}))
     assert "NOT ready to fly" in text
     assert "a note <b>" in text
@@ -138,6 +139,16 @@ def test_a_flight_with_warnings_is_not_said_to_keep_every_rule(plan):
     for findings, verdict in (((warning,), "but read the warnings"), ((), "All pre-flight rules are kept")):
         text = page_text(brief_html(flight_brief(MODEL, plan, findings, "today"), METRIC, {}))
         assert verdict in text
+
+
+def test_what_is_known_of_the_day_stands_on_the_page(plan):
+    day = FlightDay(datetime(2027, 6, 21, 10, 30, tzinfo=timezone(timedelta(hours=2))), -5.0)
+    text = page_text(brief_html(flight_brief(MODEL, plan, (), "today", day=day), METRIC, {}))
+    assert "Planned for 2027-06-21 10:30" in text
+    assert "Temperature -5 \u00b0C" in text
+    unknown = page_text(brief_html(flight_brief(MODEL, plan, (), "today"), METRIC, {}))
+    assert "Planned for" not in unknown
+    assert "Temperature" not in unknown
 
 
 def test_page_names_every_height_reference_and_uses_the_users_units(brief):
@@ -200,7 +211,6 @@ def test_a_plan_that_is_no_mission_still_has_a_brief_that_says_so(plan):
     brief = flight_brief(MODEL, empty, (), "today")
     assert brief.return_height_m is None
     assert [finding.code for finding in brief.findings] == ["no-mission"]
-    assert not brief.is_flyable
     text = page_text(brief_html(brief, METRIC, sources_in_page(brief_pictures(MODEL, empty, METRIC))))
     assert "The plan has no sorties." in text
     assert "not known" in text

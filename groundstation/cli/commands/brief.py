@@ -42,6 +42,7 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.services.given_files import read_given_plan, read_given_site
     from groundstation.services.jobs import JobContext
     from groundstation.services.preflight import preflight
+    from groundstation.services.readiness import Readiness
     from groundstation.services.units import UnitSystem
     from planning.errors import InputError
     from planning.json_file import check_output, write_atomically
@@ -55,17 +56,20 @@ def run(options: argparse.Namespace) -> int:
     plan, site_model = read_given_plan(options.plan), read_given_site(options.site)
     units, day = UnitSystem(options.units), flight_day(options)
 
-    def work(context: JobContext) -> tuple[str, bool, int]:
+    def work(context: JobContext) -> tuple[str, Readiness, int]:
         found = preflight(plan, site_model, day, context)
-        brief = flight_brief(site_model, plan, found.findings, date.today().isoformat(), options.plan.name)
+        today = date.today().isoformat()
+        brief = flight_brief(site_model, plan, found.findings, today, options.plan.name, day=day)
         sources = sources_in_page(brief_pictures(site_model, plan, units))
         is_letter = None if options.paper is None else options.paper == "letter"
-        return brief_html(brief, units, sources, is_letter=is_letter), brief.is_flyable, len(brief.findings)
+        return brief_html(brief, units, sources, is_letter=is_letter), brief.readiness, len(brief.findings)
 
-    page, is_flyable, n_findings = run_job("brief", work)
+    page, readiness, n_findings = run_job("brief", work)
     write_atomically(options.out, page.encode())
+    is_flyable = readiness is not Readiness.NOT_READY
     if options.json:
-        print_json({"file": str(options.out), "flyable": is_flyable, "findings": n_findings})
+        said = {"flyable": is_flyable, "readiness": readiness.value, "findings": n_findings}
+        print_json({"file": str(options.out), **said})
     else:
         print(options.out)
         if not is_flyable:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,28 +27,28 @@ from groundstation.services.brief_html import MAP, brief_html, brief_pictures
 from groundstation.services.flight_brief import flight_brief
 from groundstation.services.jobs import JobContext
 from groundstation.services.map_shapes import plan_shapes, site_shapes
+from groundstation.services.preflight import Preflight
 from groundstation.services.units import UnitSystem
 from planning.errors import InputError
-from planning.findings import Finding, Severity
+from planning.findings import Severity
 from planning.plan import Plan
 from planning.site import SiteModel
 
 
 class BriefDialog(QDialog):
-    """One brief; `tiles` is the map file that lies under its map."""
+    """The brief of a plan that was checked; `tiles` is the map file that lies under its map."""
 
     def __init__(
         self,
         workspace: Workspace,
-        site_model: SiteModel,
-        plan: Plan,
-        findings: Sequence[Finding],
+        checked: Preflight,
         tiles: Path | None,
         folder: Path,
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Flight brief"))
+        plan, site_model = checked.plan, checked.site_model
         self._workspace, self._folder, self._name = workspace, folder, site_model.site.name
         self._units = workspace.units
         self._html = ""
@@ -58,7 +57,7 @@ class BriefDialog(QDialog):
         entry = workspace.document.current
         today = QLocale().toString(QDate.currentDate(), QLocale.FormatType.LongFormat)
         title = entry.title if entry is not None and entry.plan is plan else ""
-        found = flight_brief(site_model, plan, findings, today, title)
+        found = flight_brief(site_model, plan, checked.findings, today, title, day=checked.day)
         told = tuple(finding_in_own_words(finding, self._units) for finding in found.findings)
         self._brief = replace(found, findings=told)
         self._page, self._paper = QTextBrowser(), ChoiceBox()

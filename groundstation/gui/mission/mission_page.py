@@ -88,21 +88,12 @@ class MissionPage(QObject):
 
     def print_brief(self) -> None:
         """Show the flight brief of the current plan, to be printed or saved as PDF."""
-        plan, document = self.desk.plan, self._workspace.document
-        if plan is None or document.site is None or self._preflight is None:
+        if self._preflight is None:
             return
         from groundstation.gui.mission.brief_dialog import BriefDialog
 
-        dialog = BriefDialog(
-            self._workspace,
-            document.site,
-            plan,
-            self._preflight.findings,
-            self._tiles(),
-            self._export_folder(),
-            self._stage.window(),
-        )
-        dialog.open()
+        folder = self._export_folder()
+        BriefDialog(self._workspace, self._preflight, self._tiles(), folder, self._stage.window()).open()
 
     def _tiles(self) -> Path | None:
         """The map file that the stage shows; a map that was never looked at has none."""
@@ -216,7 +207,8 @@ class MissionPage(QObject):
             self._check_soon.start()
 
     def _is_fresh(self) -> bool:
-        return self._preflight is not None and self._preflight.is_of(self.desk.plan, self._workspace.document.site)
+        found, plan, site_model = self._preflight, self.desk.plan, self._workspace.document.site
+        return found is not None and found.is_of(plan, site_model) and found.day == self.desk.day
 
     def _show_freshness(self) -> None:
         """Say whether the findings are of the plan as it is, and what can be done with it; hidden tabs wait."""
@@ -266,7 +258,7 @@ class MissionPage(QObject):
 
     def _day_changed(self, day: FlightDay) -> None:
         self.desk.day = day
-        self.findings.set_stale()
+        self._show_freshness()
         self._check_soon.start()
 
     def _go_to(self, place: str) -> None:

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from groundstation.services import brief_html as brief_html_module
 from groundstation.services.brief_html import brief_html, brief_pictures
 from groundstation.services.flight_brief import flight_brief
 from groundstation.services.map_shapes import plan_shapes, site_shapes
+from groundstation.services.readiness import FlightDay
 from groundstation.services.units import UnitSystem
 from missions.dji.write import LinkLoss
 from missions.encode import takeoff_check
@@ -103,10 +105,10 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
         Finding(Severity.WARNING, "x", "w"),
         Finding(Severity.NOTE, "x", "n"),
     )
-    full = flight_brief(MODEL, plan, errors, "today")
+    full = flight_brief(MODEL, plan, errors, "today", day=FlightDay(datetime(2027, 6, 21, 10, 30, tzinfo=UTC), -5.0))
     empty = flight_brief(kiosk(obstacles=()), replace(plan, sorties=(), viewpoints=()), (), "today")
-    bare = replace(full, findings=(), is_flyable=True, link_loss=LinkLoss.GO_HOME)
-    warned = replace(full, findings=errors[1:], is_flyable=True)
+    bare = replace(full, findings=(), link_loss=LinkLoss.GO_HOME)
+    warned = replace(full, findings=errors[1:])
     low = replace(takeoff_check(plan, MODEL.site, 1), is_upper_edge=False, above_edge_m=-2.0)
     high = replace(low, is_upper_edge=True, above_edge_m=2.0)
     sorties = tuple(replace(full.sorties[0], takeoff_check=check) for check in (low, high))
