@@ -196,6 +196,14 @@
         <translation>höchstens {0}</translation>
     </message>
     <message>
+        <source>Planned for</source>
+        <translation>Geplant für</translation>
+    </message>
+    <message>
+        <source>Temperature</source>
+        <translation>Temperatur</translation>
+    </message>
+    <message>
         <source>{0} to {1}, at least {2} to be kept but at take-off</source>
         <translation>{0} bis {1}, einzuhalten sind außer beim Start mindestens {2}</translation>
     </message>
