@@ -113,6 +113,9 @@ class Constraints:
     min_height_above_ground_m: float | None = None
     """To be kept by viewpoints and paths, but for the column above home. None: the site's, or else the usual. Plans
     hold the height that was kept."""
+    wanted_gsd_mm: float | None = None
+    """Largest pixel on a panel with which a view counts as sharp. None: `usual_gsd_m`; 0: any. Plans hold the one that
+    held. Coarser views still cover (`max_distance_m` is what makes them count for nothing)."""
 
     def __post_init__(self) -> None:
         check_min_height(self.min_height_above_ground_m)
@@ -121,11 +124,35 @@ class Constraints:
         check_section_step(self.section_step_deg)
         if self.occlusion not in ("auto", "on", "off"):
             raise ValueError(f"occlusion: expected auto, on or off, got '{self.occlusion}'")
+        if self.wanted_gsd_mm is not None and not (math.isfinite(self.wanted_gsd_mm) and self.wanted_gsd_mm >= 0.0):
+            raise ValueError(f"wanted_gsd_mm: expected 0 mm or more, got {self.wanted_gsd_mm}")
         if self.max_distance_m is not None and not self.max_distance_m > self.min_distance_m:
             raise ValueError(
                 f"max_distance_m: expected more than the minimum distance {self.min_distance_m}, "
                 f"got {self.max_distance_m}"
             )
+
+
+USUAL_GSD_M = 0.020
+"""Largest pixel with which a panel-by-panel model shows what it is for: the finest thing on a facade is the profile
+between two panes, some 50 mm wide, which has to be two pixels to be seen at all (sampling theorem); half a pixel is
+left for what demosaicing blurs. Profiles of 1 to 3 pixels are still measured (docs/segmentation.md)."""
+
+NEAREST_REACH = 2.5
+"""Views from so many times the minimum distance always count as sharp: from as near as is allowed, a facade is seen up
+to 66 degrees aside, and no flight could do better."""
+
+
+def usual_gsd_m(camera: Camera, min_distance_m: float) -> float:
+    """Largest pixel on a panel with which a view counts as sharp where nothing else is wanted, metres."""
+    return max(USUAL_GSD_M, camera.gsd_m(NEAREST_REACH * min_distance_m))
+
+
+def sharp_distance_m(camera: Camera, constraints: Constraints) -> float | None:
+    """Distance up to which views are sharp; None where any counts as that."""
+    wanted_mm = constraints.wanted_gsd_mm
+    gsd_m = usual_gsd_m(camera, constraints.min_distance_m) if wanted_mm is None else wanted_mm / 1000.0
+    return camera.distance_for_gsd_m(gsd_m) if gsd_m > 0.0 else None
 
 
 def check_section_step(step_deg: float) -> None:
@@ -212,13 +239,21 @@ class Sortie:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """Hemisphere sections covered, all there are, and an upper bound on what any allowed views could cover."""
+    """Hemisphere sections covered, all there are, and an upper bound on what any allowed views could cover.
+
+    `sharp` counts the covered sections of which a view is sharp (`sharp_distance_m`), and `coarsest_gsd_mm` is the
+    pixel of the sharpest view of the section that is seen most coarsely; None in plans that do not say.
+    """
 
     covered: int
     total: int
     reachable_upper_bound: int
+    sharp: int | None = None
+    coarsest_gsd_mm: float | None = None
 
     def __post_init__(self) -> None:
+        if self.sharp is not None and not 0 <= self.sharp <= self.total:
+            raise ValueError(f"coverage: expected sharp from 0 to {self.total}, got {self.sharp}")
         if not 0 <= self.covered <= self.reachable_upper_bound <= self.total:
             raise ValueError(
                 "coverage: expected 0 <= covered <= reachable_upper_bound <= total, got "

@@ -35,6 +35,7 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
     """Content of `plan.json`; optional fields that are not set are left out."""
     content: dict[str, Any] = msgspec.to_builtins(plan)
     content = {"format": content.pop("format"), **content}
+    content["coverage"] = {key: value for key, value in content["coverage"].items() if value is not None}
     for viewpoint in content["viewpoints"]:
         if not viewpoint["locked"]:
             del viewpoint["locked"]

@@ -13,7 +13,7 @@ from planning.errors import InfeasibleError
 from planning.findings import Finding, Severity
 from planning.occlusion import Occlusion, OcclusionScene, line_of_sight
 from planning.optimise.problem import ViewProblem, nothing_to_see
-from planning.plan import Camera, Constraints
+from planning.plan import Camera, Constraints, sharp_distance_m, usual_gsd_m
 from planning.positions import spread_positions
 from planning.progress import QUIET, Monitor, Stop, never
 from planning.reach_kernel import UNREACHABLE
@@ -36,7 +36,7 @@ class Prepared:
     site_model
         The site that was prepared.
     constraints
-        As asked for, with occlusion as it was decided and the lowest height that holds on this site.
+        As asked for, with occlusion as it was decided, and the lowest height and largest pixel that hold.
     effects
         Decisions of all effects.
     findings
@@ -64,7 +64,7 @@ class Prepared:
         """
         is_by_user = any(effect.decided_by == "user" for effect in self.effects)
         asked = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
-        constraints = with_lowest_height(constraints, site_model)
+        constraints = settled(constraints, site_model, camera)
         differs = {
             "site": not is_same_place(site_model, self.site_model),
             "camera": camera != self.problem.model.camera,
@@ -75,10 +75,13 @@ class Prepared:
         return ", ".join(name for name, is_other in differs.items() if is_other)
 
 
-def with_lowest_height(constraints: Constraints, site_model: SiteModel) -> Constraints:
-    """The constraints with the lowest height that holds on a site."""
+def settled(constraints: Constraints, site_model: SiteModel, camera: Camera) -> Constraints:
+    """The constraints with the lowest height and the largest pixel of sharp views that hold on a site for a camera."""
     lowest_m = site_model.site.airspace.lowest_height_m(constraints.min_height_above_ground_m)
-    return replace(constraints, min_height_above_ground_m=lowest_m)
+    wanted_mm = constraints.wanted_gsd_mm
+    if wanted_mm is None:
+        wanted_mm = round(1000.0 * usual_gsd_m(camera, constraints.min_distance_m), 6)
+    return replace(constraints, min_height_above_ground_m=lowest_m, wanted_gsd_mm=wanted_mm)
 
 
 def is_same_place(first: SiteModel, second: SiteModel) -> bool:
@@ -111,6 +114,7 @@ def coverage_model(
         SectionGrid(constraints.section_step_deg),
         whole_panel=constraints.whole_panel,
         max_distance_m=constraints.max_distance_m,
+        sharp_m=sharp_distance_m(camera, constraints),
         sight=line_of_sight(space.solids.bvh.corners) if constraints.occlusion == "on" else None,
         precision=precision,
     )
@@ -153,7 +157,7 @@ def prepare(
     """
     require_panels(site_model.site)
     monitor.report("reading the site", 0, 1)
-    constraints = with_lowest_height(constraints, site_model)
+    constraints = settled(constraints, site_model, camera)
     space = free_space(site_model, constraints.min_distance_m, constraints.min_height_above_ground_m)
     decision = decide_occlusion(site_model, space, wish_of(constraints), seed)
     decided = replace(constraints, occlusion="on" if decision.on else "off")

@@ -23,7 +23,7 @@ from planning.optimise.closing_flights import Batteries, ClosingFlights, closing
 from planning.optimise.locked import NONE_LOCKED
 from planning.plan import HistoryPoint, Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.plan_records import plan_records
-from planning.prepare import Prepared, prepare, with_lowest_height
+from planning.prepare import Prepared, prepare, settled
 from planning.progress import QUIET, Monitor, QualityPoint, Stop, TimeLimit, Trace, any_of, never
 from planning.reach_kernel import REACHABLE, UNREACHABLE
 from planning.reachability import MAX_CELLS
@@ -246,7 +246,7 @@ def _prepared(
             stop=stop,
             monitor=monitor,
         )
-    wanted = with_lowest_height(replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model)
+    wanted = settled(replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model, plan.camera)
     if plan.camera != prepared.problem.model.camera or wanted != prepared.constraints:
         raise ValueError(f"prepared: is for {prepared.constraints}, not for {plan.constraints} and {plan.camera.name}")
     return prepared

@@ -25,6 +25,7 @@ OPTIONS = {
     "min_distance_m": "--min-distance",
     "min_height_above_ground_m": "--min-height",
     "max_distance_m": "--max-distance",
+    "wanted_gsd_mm": "--wanted-gsd",
     "section_step_deg": "--step",
     "battery_reserve": "--reserve",
     "settle_s": "--settle",

@@ -69,6 +69,8 @@ WORDS = (
     QT_TRANSLATE_NOOP("Brief", "Batteries needed"),
     QT_TRANSLATE_NOOP("Brief", "Flight time, all sorties"),
     QT_TRANSLATE_NOOP("Brief", "Coverage of what can be covered"),
+    QT_TRANSLATE_NOOP("Brief", "Pixel on the panel"),
+    QT_TRANSLATE_NOOP("Brief", "{0} of what is covered with up to {1}, the coarsest with {2}"),
     QT_TRANSLATE_NOOP("Brief", "at most {0}"),
     QT_TRANSLATE_NOOP("Brief", "{0} to {1}, at least {2} to be kept but at take-off"),
     QT_TRANSLATE_NOOP("Brief", "{0}; {1} below {2}"),

@@ -16,7 +16,15 @@ from groundstation.services.flight_brief import FlightBrief
 from groundstation.services.map_shapes import plan_shapes, site_shapes
 from groundstation.services.profiles import height_limits, plan_profiles
 from groundstation.services.readiness import Readiness
-from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, speed_unit
+from groundstation.services.units import (
+    UnitSystem,
+    distance_unit,
+    length_unit,
+    minutes_text,
+    per_cent,
+    sampling_unit,
+    speed_unit,
+)
 from missions.dji.write import LinkLoss
 from missions.encode import TakeoffCheck
 from planning.findings import Severity
@@ -139,6 +147,16 @@ def _overview(brief: FlightBrief, units: UnitSystem, say: Say) -> Iterable[tuple
     total_s = sum(sortie.duration_s for sortie in brief.sorties)
     yield say("Flight time, all sorties"), duration_text(total_s)
     yield say("Coverage of what can be covered"), f"{per_cent(brief.covered_share, 1.0):.1f} %"
+    if brief.sharp_share is not None and brief.wanted_gsd_mm and brief.coarsest_gsd_mm is not None:
+        pixel = sampling_unit(units)
+        yield (
+            say("Pixel on the panel"),
+            say("{0} of what is covered with up to {1}, the coarsest with {2}").format(
+                f"{per_cent(brief.sharp_share, 1.0):.1f} %",
+                pixel.text(brief.wanted_gsd_mm / 1000.0),
+                pixel.text(brief.coarsest_gsd_mm / 1000.0),
+            ),
+        )
     yield say("Height above ground"), _heights(brief, units, say)
     near = [s.smallest_clearance_m for s in brief.sorties if s.smallest_clearance_m is not None]
     kept = say("{0} along the paths, {1} to be kept").format(

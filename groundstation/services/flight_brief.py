@@ -82,6 +82,10 @@ class FlightBrief:
         All that are not OK, the gravest first.
     covered_share
         Of what can be covered.
+    sharp_share
+        Of what is covered, by pixels up to `wanted_gsd_mm`; None where the plan does not say.
+    coarsest_gsd_mm
+        Pixel of the sharpest view of the section that is seen most coarsely.
     """
 
     site: str
@@ -98,6 +102,9 @@ class FlightBrief:
     min_height_m: float
     min_distance_m: float
     covered_share: float
+    sharp_share: float | None
+    wanted_gsd_mm: float | None
+    coarsest_gsd_mm: float | None
     wind_m_s: float
     max_wind_m_s: float
     battery_reserve: float
@@ -147,7 +154,7 @@ def flight_brief(
     height_m, objections = _return_height(plan, site_model, options)
     home_z = site.home_enu_m[2]
     highest_z = max((point[2] for sortie in plan.sorties for point in sortie.path_enu_m), default=home_z)
-    bound = plan.coverage.reachable_upper_bound
+    stated, bound = plan.coverage, plan.coverage.reachable_upper_bound
     return FlightBrief(
         site=site.name,
         plan_title=title or plan.method,
@@ -162,7 +169,10 @@ def flight_brief(
         low=lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m),
         min_height_m=site.airspace.lowest_height_m(plan.constraints.min_height_above_ground_m),
         min_distance_m=plan.constraints.min_distance_m,
-        covered_share=plan.coverage.covered / bound if bound else 0.0,
+        covered_share=stated.covered / bound if bound else 0.0,
+        sharp_share=None if stated.sharp is None else stated.sharp / max(1, stated.covered),
+        wanted_gsd_mm=plan.constraints.wanted_gsd_mm,
+        coarsest_gsd_mm=stated.coarsest_gsd_mm,
         wind_m_s=plan.rules.wind_m_s,
         max_wind_m_s=plan.aircraft.max_wind_m_s,
         battery_reserve=plan.rules.battery_reserve,

@@ -20,7 +20,7 @@ from planning.insight.reasons import SectionReasons, section_reasons
 from planning.insight.sampling import PanelSampling, panel_sampling
 from planning.insight.sections import PlanInsight, assembled
 from planning.plan import Camera, Constraints, Plan, viewpoint_arrays
-from planning.prepare import Prepared, is_same_place, prepare, with_lowest_height
+from planning.prepare import Prepared, is_same_place, prepare, settled
 from planning.progress import QUIET, Monitor
 from planning.request import PlanRequest
 from planning.revision import Revision, revise
@@ -180,8 +180,8 @@ def _measured_since(revision: Revision, before: PlanInHand) -> tuple[NDArray[np.
 
 def _fits(prepared: Prepared, plan: Plan, site_model: SiteModel) -> bool:
     camera: Camera = prepared.problem.model.camera
-    wanted: Constraints = with_lowest_height(
-        replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model
+    wanted: Constraints = settled(
+        replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model, camera
     )
     occlusion = plan.constraints.occlusion
     return (

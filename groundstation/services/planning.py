@@ -14,13 +14,14 @@ from groundstation.services.preflight import preflight
 from groundstation.services.project_file import check_not_index
 from groundstation.services.readiness import UNKNOWN_DAY, FlightDay
 from planning.catalogue import profile
+from planning.checks.flight_rules import sharpness
 from planning.checks.geometry_rules import low_flight_allowed
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.insight.flight_profile import lowest_flight
 from planning.json_file import check_output
 from planning.optimise.shortfall import WhyOpen
-from planning.plan import Viewpoint
+from planning.plan import Plan, Viewpoint
 from planning.plan_file import write_plan
 from planning.planner import Planned, plan_flight
 from planning.prepare import Prepared
@@ -117,6 +118,7 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
     lowest_m = plan.constraints.min_height_above_ground_m
     if lowest_m is not None and lowest_m < MIN_HEIGHT_ABOVE_GROUND_M:
         yield low_flight_allowed(lowest_m)
+    yield from _too_coarse(plan)
     n_views = len(plan.viewpoints)
     if request.n_views is not None and n_views < request.n_views:
         text = (
@@ -139,6 +141,12 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
         yield Finding(Severity.WARNING, "less-coverage", text, "", share, request.share)
         if request.method == "greedy":
             yield from why_open(planned)
+
+
+def _too_coarse(plan: Plan) -> Iterator[Finding]:
+    found, wanted_mm = plan.coverage, plan.constraints.wanted_gsd_mm
+    if found.sharp is not None and found.coarsest_gsd_mm is not None and wanted_mm and found.sharp < found.covered:
+        yield sharpness(found.covered - found.sharp, found.covered, found.coarsest_gsd_mm, wanted_mm)
 
 
 def why_open(planned: Planned) -> Iterator[Finding]:
@@ -177,6 +185,9 @@ def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
         "covered": plan.coverage.covered,
         "total": plan.coverage.total,
         "reachable_upper_bound": plan.coverage.reachable_upper_bound,
+        "sharp": plan.coverage.sharp,
+        "wanted_gsd_mm": plan.constraints.wanted_gsd_mm,
+        "coarsest_gsd_mm": plan.coverage.coarsest_gsd_mm,
         "undecided": planned.n_undecided,
         "bound_for_views": planned.bound_for_views,
         "occlusion": plan.constraints.occlusion,

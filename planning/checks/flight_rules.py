@@ -11,6 +11,7 @@ import numpy as np
 from planning.checks.case import Array, Case, Rule, judge
 from planning.checks.measures import pose_of
 from planning.errors import InfeasibleError
+from planning.evaluate import nearest_views_m
 from planning.findings import Finding, Severity
 from planning.plan import Sortie, Viewpoint
 from planning.rally import RETURN_TOLERANCE_M, return_height
@@ -21,6 +22,9 @@ from planning.timing import motion_limits, photo_stop_s
 LENGTH_TOLERANCE = 0.01
 DURATION_TOLERANCE = 0.05
 """Part by which lengths and durations in the file may differ from ours (other programs round and model otherwise)."""
+
+FEW_COARSE = 0.01
+"""Part of the covered sections that may be seen too coarsely without a warning: plans leave as much out by default."""
 
 SHORT_SETTLE_S = 1.0
 """Less hover before a photo blurs it or catches the gimbal on its way (DJI and PX4 users report it again and again)."""
@@ -230,6 +234,31 @@ def ground_sampling(case: Case) -> Iterator[Finding]:
     yield judge(value <= limit * (1.0 + 1e-9), "gsd", subject, value, limit, "mm", place, advice, Severity.WARNING)
 
 
+def sharp_views(case: Case) -> Iterator[Finding]:
+    """Covered sections of which no view is sharp."""
+    nearest_m = nearest_views_m(case.model, case.measures.seen.values())
+    covered = np.isfinite(nearest_m)
+    if not covered.any() or case.model.sharp_m is None:
+        return
+    n_coarse = int(np.count_nonzero(nearest_m[covered] > case.model.sharp_m))
+    worst = int(np.argmax(np.where(covered, nearest_m, 0.0)))
+    panel = case.site_model.site.panels[worst // case.model.grid.n_sections].id
+    camera = case.model.camera
+    coarsest_mm, wanted_mm = 1e3 * camera.gsd_m(float(nearest_m[worst])), 1e3 * camera.gsd_m(case.model.sharp_m)
+    yield sharpness(n_coarse, int(covered.sum()), coarsest_mm, wanted_mm, panel)
+
+
+def sharpness(n_coarse: int, n_covered: int, coarsest_mm: float, wanted_mm: float, panel: str = "") -> Finding:
+    """A finding on the sections that are covered by views with too large pixels only."""
+    text = f"sections seen only with pixels larger than {wanted_mm:.1f} mm: {n_coarse} of {n_covered} covered"
+    text = f"{text}, the coarsest with {coarsest_mm:.1f} mm"
+    if n_coarse == 0:
+        return Finding(Severity.OK, "sharpness", text, panel, 0.0, 0.0, "sections")
+    severity = Severity.WARNING if n_coarse > FEW_COARSE * n_covered else Severity.NOTE
+    text = f"{text}; allow more views, or a larger pixel"
+    return Finding(severity, "sharpness", text, panel, float(n_coarse), 0.0, "sections")
+
+
 def stated_coverage(case: Case) -> Iterator[Finding]:
     """The coverage that the plan states is what its viewpoints cover."""
     stated, total = case.plan.coverage, case.model.n_elements
@@ -316,6 +345,7 @@ FLIGHT_RULES: tuple[Rule, ...] = (
     durations,
     photo_times,
     ground_sampling,
+    sharp_views,
     duplicates,
     stated_coverage,
     return_home,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -60,6 +60,8 @@ class CoverageModel:
         All four corners must be in the picture, not only the centroid.
     max_distance_m
         Views from further away cover nothing; None for no limit.
+    sharp_m
+        Views from further away cover, but are not sharp; None for no limit.
     sight
         Line-of-sight test where occlusion is taken into account, else None.
     precision
@@ -71,6 +73,7 @@ class CoverageModel:
     grid: SectionGrid
     whole_panel: bool = False
     max_distance_m: float | None = None
+    sharp_m: float | None = None
     sight: LineOfSight | None = None
     precision: Precision = "f32"
     _arguments: _Arguments = field(init=False, repr=False)
@@ -87,6 +90,13 @@ class CoverageModel:
     def targets_enu_m(self) -> NDArray[np.float64]:
         """Where lines of sight end, shape (m, 3): just in front of each centroid."""
         return self.frames.centroids + OCCLUSION_OFFSET_M * self.frames.normals
+
+    def of_sharp_views(self) -> CoverageModel:
+        """The model in which views that are not sharp cover nothing; this one where they are all sharp."""
+        limits = [limit for limit in (self.sharp_m, self.max_distance_m) if limit is not None]
+        if min(limits, default=None) == self.max_distance_m:
+            return self
+        return replace(self, max_distance_m=min(limits))
 
     def covered_count(self, views: ViewpointArrays) -> int:
         """Number of elements that at least one view covers: the paper's fitness E (Eq. 10)."""

@@ -38,6 +38,7 @@ CONSTRAINT_WORDS = {
     "occlusion": "occlusion",
     "whole_panel": "whole panels only",
     "max_distance_m": "largest distance (m)",
+    "wanted_gsd_mm": "pixel of sharp views (mm)",
 }
 
 

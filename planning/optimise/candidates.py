@@ -25,7 +25,7 @@ MAX_ENTRIES = 60_000_000
 WITNESS_COVERS_WANTED = 3
 """Sections that fewer spread candidates cover get a candidate of their own."""
 
-FEWEST_AROUND, MOST_AROUND, MAX_AROUND = 4, 24, 4000
+FEWEST_AROUND, MOST_AROUND, MAX_AROUND = 1, 24, 4000
 """Places tried around each of these candidates, and for all together, at a time. Where sections are seen from a narrow
 strip only, one place that several share is found in place of one for each, and these may be too close together."""
 

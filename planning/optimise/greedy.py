@@ -8,6 +8,7 @@ of each section and on finer sections.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +19,7 @@ from planning.coverage.model import CoverageModel, Elements
 from planning.coverage.sections import SectionGrid
 from planning.optimise import cover_kernel as kernel
 from planning.optimise.bounds import dual_bound
-from planning.optimise.candidates import Pool, candidate_pool, join_pools
+from planning.optimise.candidates import Pool, candidate_pool, join_pools, keep
 from planning.optimise.improve import Exchange, cover_state, improve_views
 from planning.optimise.locked import NONE_LOCKED, covered_by
 from planning.optimise.problem import Goal, ViewProblem, ViewSet, concatenate, take
@@ -30,6 +31,7 @@ from planning.request import GreedyParameters
 Array = NDArray[np.float64]
 
 NOTHING = np.zeros(0, np.int64)
+NO_ELEMENTS = np.zeros(0, np.int32)
 
 NEAR_SPACINGS = 3.0
 """What views within so many spacings of a place alone cover may be seen from elsewhere, to make room there."""
@@ -71,8 +73,10 @@ def greedy(
     everything = float(weights[coverable].sum())
     choice = Choice(problem, weights, covered, locked, rounding_spacing_m(spacing_m), seed, stop, trace, monitor)
     if goal.share is not None:
-        found = _fewest_views(choice, pool, goal.share * everything, parameters)
-        return ViewSet(concatenate([locked, found]))
+        sharp = _fewest_sharp_views(choice, pool, goal.share, parameters)
+        beside = choice.beside(sharp)
+        found = _fewest_views(beside, pool, goal.share * everything, parameters)
+        return ViewSet(concatenate([beside.locked, found]))
     assert goal.n_views is not None  # Goal's own check
     n_free = goal.n_views - len(locked.heading_rad)
     pool, chosen, value = choice.greedily(pool, n_free, np.inf)
@@ -111,6 +115,27 @@ class Choice:
     trace: Trace
     monitor: Monitor
 
+    def beside(self, views: ViewpointArrays) -> Choice:
+        """The choice of further views where some are there in any case, too."""
+        if len(views.heading_rad) == 0:
+            return self
+        locked = concatenate([self.locked, views])
+        covered = covered_by(self.problem.model, locked)
+        self.trace.record(int(np.count_nonzero(covered)))
+        return replace(self, locked=locked, covered=covered)
+
+    def of_sharp_views(self) -> Choice:
+        """The choice where only sharp views count; this one where all are. It leaves no trace."""
+        model = self.problem.model.of_sharp_views()
+        if model is self.problem.model:
+            return self
+        return replace(
+            self,
+            problem=replace(self.problem, model=model),
+            covered=covered_by(model, self.locked),
+            trace=Trace(self.trace.clock),
+        )
+
     def greedily(
         self, pool: Pool, n_wanted: int, enough: float, first: NDArray[np.int64] = NOTHING
     ) -> tuple[Pool, NDArray[np.int64], float]:
@@ -148,7 +173,7 @@ class Choice:
         """With further candidates for the lost elements, and for what chosen views close to those alone cover."""
         seen_from = pool.views.positions_enu_m[shown_by[lost]]
         counts = self.covered + np.bincount(
-            np.concatenate([pool.elements.of(c) for c in chosen]), minlength=len(self.weights)
+            np.concatenate([NO_ELEMENTS, *(pool.elements.of(c) for c in chosen)]), minlength=len(self.weights)
         )
         positions = pool.views.positions_enu_m[chosen]
         near = np.flatnonzero(cdist(positions, seen_from).min(axis=1, initial=np.inf) < NEAR_SPACINGS * self.spacing_m)
@@ -239,6 +264,19 @@ def choose_greedily(
     return chosen[:n_chosen], float(kernel.objective(state))
 
 
+def _fewest_sharp_views(choice: Choice, pool: Pool, share: float, parameters: GreedyParameters) -> ViewpointArrays:
+    """Fewest views found that cover sharply the share of what candidates cover sharply; none where all views are."""
+    sharp = choice.of_sharp_views()
+    if sharp is choice:
+        return NONE_LOCKED
+    near = Pool(pool.views, sharp.problem.model.elements(pool.views))
+    near = keep(near, np.diff(near.elements.starts) > 0)
+    if len(near.views.heading_rad) == 0:
+        return NONE_LOCKED
+    coverable = (np.bincount(near.elements.items, minlength=len(sharp.weights)) > 0) | (sharp.covered > 0)
+    return _fewest_views(sharp, near, share * float(sharp.weights[coverable].sum()), parameters)
+
+
 def _fewest_views(choice: Choice, pool: Pool, target: float, parameters: GreedyParameters) -> ViewpointArrays:
     """Fewest views found that bring what is covered to the weight `target`.
 
@@ -278,16 +316,15 @@ def spend_spare_views(
 ) -> NDArray[np.int64]:
     """Numbers of the chosen candidates and of further ones, until there are `n_views` or nothing is left to gain.
 
-    Further ones bring more views of each section, then finer sections (`SPARE_STAGES`); what the `locked` views show
-    counts as shown. Another photo from a place that has one is no further view.
+    Further ones bring a sharp view of each section, then more views of each, then finer sections (`SPARE_STAGES`); what
+    the `locked` views show counts as shown. Another photo from a place that has one is no further view.
     """
-    for division, depth in SPARE_STAGES:
+    for finer, depth in _spare_stages(model):
         n_spare = n_views - len(chosen)
         if n_spare <= 0:
             break
         monitor.report("spending spare views", len(chosen), n_views)
-        finer = replace(model, grid=SectionGrid(model.grid.step_deg / division))
-        elements = pool.elements if division == 1 else finer.elements(pool.views)
+        elements = pool.elements if finer is model else finer.elements(pool.views)
         taken = np.concatenate([locked.positions_enu_m, pool.views.positions_enu_m[chosen]])
         apart = Apart(pool.views.positions_enu_m, taken, spacing_m)
         state = cover_state(elements, np.ones(finer.n_elements), covered_by(finer, locked), apart)
@@ -300,6 +337,15 @@ def spend_spare_views(
         n_added = kernel.greedy_steps(state, added, 0, n_spare, np.inf)
         chosen = np.concatenate([chosen, added[:n_added]])
     return chosen
+
+
+def _spare_stages(model: CoverageModel) -> Iterator[tuple[CoverageModel, int]]:
+    """What spare views are spent on, in this order: what counts, and how many views of each element are wanted."""
+    sharp = model.of_sharp_views()
+    if sharp is not model:
+        yield sharp, 1
+    for division, depth in SPARE_STAGES:
+        yield (model if division == 1 else replace(model, grid=SectionGrid(model.grid.step_deg / division))), depth
 
 
 def _at_places(positions_enu_m: Array, places_enu_m: Array) -> NDArray[np.bool_]:

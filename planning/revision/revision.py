@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from planning.checks import check_case
 from planning.checks.case import Case
 from planning.checks.measures import flight_key, legs_of, pose_of
-from planning.evaluate import coverage_of_counts
+from planning.evaluate import coverage_of_sights
 from planning.findings import Finding
 from planning.plan import Plan, Sortie, Viewpoint
-from planning.prepare import Prepared, with_lowest_height
+from planning.prepare import Prepared, settled
 from planning.revision.ways import Ways
 
 LENGTH_DECIMALS, DURATION_DECIMALS = 3, 2
@@ -87,7 +87,7 @@ def revise(plan: Plan, prepared: Prepared, before: Revision | None = None) -> Re
     if plan.camera != prepared.problem.model.camera:
         raise ValueError(f"prepared: is for the camera {prepared.problem.model.camera.name}, not {plan.camera.name}")
     wanted = replace(plan.constraints, occlusion=prepared.constraints.occlusion)
-    wanted = with_lowest_height(wanted, prepared.site_model)
+    wanted = settled(wanted, prepared.site_model, plan.camera)
     if wanted != prepared.constraints or plan.constraints.occlusion not in ("auto", wanted.occlusion):
         raise ValueError(f"prepared: is for {prepared.constraints}, not {plan.constraints}")
     if before is None or before.prepared is not prepared:
@@ -107,7 +107,7 @@ def with_route(revision: Revision, viewpoints: Iterable[Viewpoint], sorties: Ite
     plan = replace(
         case.plan,
         sorties=tuple(sortie if id(sortie) in known else _stated(case, sortie) for sortie in case.plan.sorties),
-        coverage=coverage_of_counts(case.measures.counts, revision.prepared.problem.reachability),
+        coverage=coverage_of_sights(case.model, case.measures.seen.values(), revision.prepared.problem.reachability),
     )
     case = replace(case, plan=plan)
     return replace(revision, case=case, findings=check_case(case))

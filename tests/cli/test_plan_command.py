@@ -83,12 +83,15 @@ def test_every_other_option_reaches_the_plan(reflight, pane, tmp_path):
     options = ["--profile", "m4e", "--min-distance", 8, "--step", 45, "--occlusion", "on", "--max-distance", 30]
     options += ["--whole-panel", "--reserve", 0.4, "--settle", 1.5, "--speed", 5, "--wind", 3, "--turn-in-flight"]
     options += ["--seed", 7, "--precision", "f64", "--candidates", 500, "--weights", "solid-angle", "--max-gsd", 9]
+    options += ["--wanted-gsd", 4]
     told = plan_json(reflight, pane / "site.json", out, "--views", 4, *options)
     plan = read_plan(out)
     assert (plan.profile, plan.aircraft.name, plan.seed) == ("m4e", "DJI M4E", 7)
     assert (plan.constraints.min_distance_m, plan.constraints.section_step_deg) == (8.0, 45.0)
     assert plan.constraints.whole_panel
     assert plan.constraints.max_distance_m == 30.0
+    assert plan.constraints.wanted_gsd_mm == told["wanted_gsd_mm"] == 4.0
+    assert told["sharp"] == plan.coverage.sharp < told["covered"]
     assert plan.constraints.occlusion == told["occlusion"] == "on"
     assert plan.effects[0].decided_by == "user"
     rules = plan.rules
@@ -165,6 +168,7 @@ WRONG_VALUES = [
     (["--max-distance", 5], "--max-distance: expected more than the minimum distance 10"),
     (["--max-gsd", 0.01], "--max-gsd: this camera has pixels of 0.01 mm at 0.04 m"),
     (["--max-gsd", 0], "--max-gsd: expected a positive number"),
+    (["--wanted-gsd", -1], "--wanted-gsd: expected 0 mm or more, got -1"),
     (["--time-budget", 0], "--time-budget: expected more than 0 s"),
     (["--reserve", 1], "--reserve: expected 0 to below 1"),
     (["--settle", -1], "--settle: expected 0 or more"),

@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from groundstation.services.effects import EffectChoice
 from groundstation.services.units import UnitSystem
+from planning.catalogue import profile
 from planning.effects import Decision
 from planning.insight.sections import SectionState
-from planning.plan import Constraints, FlightRules, Viewpoint
+from planning.plan import Constraints, FlightRules, Viewpoint, usual_gsd_m
 from planning.progress import QualityPoint
 from planning.request import PlanRequest
 
@@ -36,6 +37,7 @@ REQUESTS = st.builds(
         occlusion=st.sampled_from(["auto", "on", "off"]),
         whole_panel=st.booleans(),
         max_distance_m=st.none() | st.floats(60.0, 90.0),
+        wanted_gsd_mm=st.none() | st.just(0.0) | st.floats(0.01, 600.0),
     ),
     rules=st.builds(
         FlightRules, wind_m_s=st.floats(0.0, 12.0), battery_reserve=st.floats(0.0, 0.5), settle_s=st.floats(0.0, 10.0)
@@ -65,6 +67,21 @@ def test_one_edit_changes_one_thing_and_is_announced_once(form):
     form._wind.box().setValue(4.0)
     form.valueChanged.disconnect(heard.append)
     assert heard == [replace(request, rules=FlightRules(wind_m_s=4.0))]
+
+
+def test_the_wanted_pixel_is_that_of_camera_and_distance_until_one_is_typed(form):
+    form.setValue(PlanRequest())
+    assert form._sharp.value() == pytest.approx(usual_gsd_m(profile("m3e").camera, 10.0))
+    form._distance.box().setValue(60.0)
+    assert form._sharp.value() == pytest.approx(usual_gsd_m(profile("m3e").camera, 60.0))
+    assert form.value().constraints.wanted_gsd_mm is None
+    form._sharp.box().setValue(12.5)
+    assert form.value().constraints.wanted_gsd_mm == pytest.approx(12.5)
+    form._distance.box().setValue(20.0)
+    assert form.value().constraints.wanted_gsd_mm == pytest.approx(12.5)
+    form._sharp.box().setValue(0.0)
+    assert form.value().constraints.wanted_gsd_mm == 0.0
+    assert form._sharp.box().text() == "any"
 
 
 def test_a_request_that_makes_no_sense_is_explained_and_not_announced(form):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -12,7 +13,7 @@ import pytest
 from planning.checks import RULES, check_plan
 from planning.errors import OperationCancelled
 from planning.findings import Finding, Severity, is_flyable
-from planning.plan import Constraints, FlightRules, Plan, Sortie, Viewpoint
+from planning.plan import Constraints, FlightRules, Plan, Sortie, Viewpoint, usual_gsd_m
 from planning.planner import plan_flight
 from planning.request import GreedyParameters, PlanRequest
 from planning.site import Airspace, NoFlyZone, Obstacle, SiteModel
@@ -81,7 +82,7 @@ def test_a_good_plan_keeps_every_rule_and_every_measured_value_is_stated() -> No
     assert codes == {
         *("airspace", "low-flight", "distance", "leg-distance", "no-fly", "altitude", "leg-spacing"),
         *("site", "sorties", "gimbal", "heading", "waypoints", "wind", "endurance", "duration", "length"),
-        *("photo-interval", "settle", "gsd", "duplicates", "coverage", "return-height"),
+        *("photo-interval", "settle", "gsd", "sharpness", "duplicates", "coverage", "return-height"),
     }
     for f in findings:
         if f.value is not None and f.code not in ("site", "sorties"):
@@ -405,6 +406,43 @@ def test_photos_too_coarse_to_count_are_a_warning(allowed: float, kept: bool) ->
     assert found.place == "v0001"
     assert found.value == pytest.approx(1e3 * plan().camera.gsd_m(nearest))
     assert found.limit == pytest.approx(allowed * found.value)
+
+
+def best_gsd_mm(viewpoints: tuple[Viewpoint, ...]) -> dict[tuple[int, int], float]:
+    """Pixel of the nearest view of each covered section, by the contract."""
+    centroids = [np.mean(panel.corners_enu_m, axis=0) for panel in site().site.panels]
+    best: dict[tuple[int, int], float] = {}
+    for viewpoint in viewpoints:
+        for panel, section in seen_by_contract(site(), plan().camera, (viewpoint,), 30.0, occlusion=True):
+            away_m = float(np.linalg.norm(centroids[panel] - np.array(viewpoint.position_enu_m)))
+            best[panel, section] = min(best.get((panel, section), math.inf), 1e3 * plan().camera.gsd_m(away_m))
+    return best
+
+
+def test_sections_seen_too_coarsely_are_counted_and_the_coarsest_is_named() -> None:
+    best = best_gsd_mm(plan().viewpoints)
+    coarsest = max(best.values())
+    for wanted in (0.999 * min(best.values()), float(np.median(list(best.values()))) * 1.0001, 1.001 * coarsest):
+        n_coarse = sum(gsd > wanted for gsd in best.values())
+        found = finding(with_wanted(wanted), "sharpness")
+        assert found.value == n_coarse
+        assert found.severity is (Severity.WARNING if n_coarse else Severity.OK)
+        assert f"larger than {wanted:.1f} mm: {n_coarse} of {len(best)} covered" in found.message
+        assert f"coarsest with {coarsest:.1f} mm" in found.message
+        worst = {site().site.panels[panel].id for (panel, _), gsd in best.items() if gsd > coarsest - 1e-9}
+        assert found.place in worst
+    any_pixel = check_plan(with_wanted(0.0), site())
+    assert "sharpness" not in {found.code for found in any_pixel}
+
+
+def with_wanted(gsd_mm: float) -> Plan:
+    return replace(plan(), constraints=replace(plan().constraints, wanted_gsd_mm=gsd_mm))
+
+
+def test_plans_that_do_not_say_which_pixel_they_want_are_held_to_the_usual_one() -> None:
+    limit_mm = 1e3 * usual_gsd_m(plan().camera, plan().constraints.min_distance_m)
+    old = replace(plan(), constraints=replace(plan().constraints, wanted_gsd_mm=None))
+    assert finding(old, "sharpness") == finding(with_wanted(limit_mm), "sharpness")
 
 
 def test_repeated_photos_are_a_warning() -> None:

@@ -157,6 +157,43 @@ def test_without_a_goal_nearly_everything_is_covered_with_few_views() -> None:
     assert_keeps_the_contract(model, planned.plan)
 
 
+def sharply_seen(plan: Plan, limit_m: float) -> set[tuple[int, int]]:
+    """Panels and sections that a view from at most so far covers, by the contract's own words."""
+    centroids = [np.mean(panel.corners_enu_m, axis=0) for panel in kiosk().site.panels]
+    return {
+        (panel, section)
+        for view in plan.viewpoints
+        for panel, section in seen_by_contract(kiosk(), plan.camera, (view,), 30.0, occlusion=True)
+        if np.linalg.norm(centroids[panel] - np.array(view.position_enu_m)) <= limit_m
+    }
+
+
+@pytest.mark.parametrize("share", [0.9, 0.99])
+def test_a_share_is_covered_sharply_too_as_far_as_that_can_be(share: float) -> None:
+    greedy, limit_m = GreedyParameters(3000), profile("m3e").camera.distance_for_gsd_m(0.004)
+    request = PlanRequest(share=share, constraints=replace(NEAR, wanted_gsd_mm=4.0), greedy=greedy)
+    plan = plan_flight(kiosk(), request).plan
+    any_pixel = plan_flight(kiosk(), replace(request, constraints=replace(NEAR, wanted_gsd_mm=0.0))).plan
+    near = replace(request, share=1.0, constraints=replace(NEAR, max_distance_m=limit_m))
+    can_be_sharp = plan_flight(kiosk(), near).plan.coverage.covered
+    assert plan.coverage.sharp == len(sharply_seen(plan, limit_m))
+    # Candidates are spread over the whole air: some sections are seen sharply from none of them.
+    assert plan.coverage.sharp >= 0.93 * share * can_be_sharp
+    assert plan.coverage.covered >= any_pixel.coverage.covered - 2
+    assert len(sharply_seen(any_pixel, limit_m)) < plan.coverage.sharp
+    assert any_pixel.coverage.sharp == any_pixel.coverage.covered
+    assert plan.constraints.wanted_gsd_mm == 4.0
+
+
+def test_spare_views_are_spent_on_sharp_ones_first() -> None:
+    limit_m = profile("m3e").camera.distance_for_gsd_m(0.005)
+    request = PlanRequest(n_views=90, constraints=replace(NEAR, wanted_gsd_mm=5.0), greedy=GreedyParameters(3000))
+    plan = plan_flight(kiosk(), request).plan
+    any_pixel = plan_flight(kiosk(), replace(request, constraints=replace(NEAR, wanted_gsd_mm=0.0))).plan
+    assert plan.coverage.covered >= any_pixel.coverage.covered - 1
+    assert plan.coverage.sharp > 1.5 * len(sharply_seen(any_pixel, limit_m))
+
+
 def without_wall_times(plan: Plan) -> str:
     content = plan_to_json(plan)
     content["history"] = [point["covered"] for point in content["history"]]

@@ -79,7 +79,14 @@ def add_request_arguments(parser: argparse.ArgumentParser) -> None:
     rules("--step", type=number, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
     rules("--occlusion", choices=("auto", "on", "off"), default="auto", help="default: as the scene calls for")
     rules("--max-distance", type=number, metavar="M", help="views from further away do not count")
-    rules("--max-gsd", type=number, metavar="MM", help="views with larger pixels on the panel do not count")
+    rules("--max-gsd", type=number, metavar="MM", help="views with larger pixels on the panel do not count at all")
+    rules(
+        "--wanted-gsd",
+        type=number,
+        metavar="MM",
+        help="each direction is wanted with pixels up to this size (default: 20 mm, or the camera's at 2.5 times the "
+        "minimum distance if that is more; 0: any)",
+    )
     rules("--whole-panel", action="store_true", help="all four corners must be in the picture")
     flight_group = parser.add_argument_group("flight")
     add_profile_argument(flight_group)
@@ -119,6 +126,7 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
                 options.whole_panel,
                 _max_distance_m(options),
                 options.min_height,
+                options.wanted_gsd,
             ),
             rules=FlightRules(
                 battery_reserve=options.reserve,
@@ -198,6 +206,12 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
     print(
         f"no flight can cover more than {coverage.reachable_upper_bound}, so this is {share:.2f} % of what is possible"
     )
+    wanted_mm = plan.constraints.wanted_gsd_mm
+    if coverage.sharp is not None and wanted_mm:
+        print(
+            f"{coverage.sharp} of these with pixels up to {wanted_mm:.1f} mm on the panel, the coarsest with "
+            f"{coverage.coarsest_gsd_mm:.1f} mm"
+        )
     bound = planned.bound_for_views
     if bound is not None and coverage.covered < bound < coverage.reachable_upper_bound:
         print(f"no choice of as many viewpoints from those compared covers more than {math.floor(bound)}")

@@ -23,6 +23,7 @@ from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.catalogue import profile
 from planning.errors import GroundStationError
 from planning.methods import METHODS
+from planning.plan import Constraints, usual_gsd_m
 from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, LARGEST_SEED, PlanRequest
 
 COVERAGE, VIEWS, BATTERIES = range(3)
@@ -89,6 +90,14 @@ class PlanForm(QWidget):
         self._wind = SpeedBox(0.0, 20.0)
         self._is_gsd_limited = QCheckBox(self.tr("Limit the pixel size"))
         self._gsd = QuantityBox(sampling_unit, *COARSEST_GSD_M, 0.5)
+        self._sharp = QuantityBox(sampling_unit, 0.0, COARSEST_GSD_M[1], 0.5)
+        self._sharp.box().setSpecialValueText(self.tr("any"))
+        self._sharp.setToolTip(
+            self.tr(
+                "Each direction of view is wanted with pixels up to this size on the panel; those seen only more "
+                "coarsely are counted and named"
+            )
+        )
         self._step = ChoiceBox()
         for step in SECTION_STEPS_DEG:
             self._step.addItem(_degrees(step), float(step))
@@ -121,6 +130,7 @@ class PlanForm(QWidget):
             (self.tr("Hover before photo"), self._settle),
             ("", self._is_gsd_limited),
             (self.tr("Coarsest pixel"), self._gsd),
+            (self.tr("Wanted pixel"), self._sharp),
             (self.tr("Section step"), self._step),
             ("", self._whole_panel),
             ("", self._solid_angle),
@@ -155,6 +165,7 @@ class PlanForm(QWidget):
             self._budget,
             self._wind,
             self._gsd,
+            self._sharp,
             self._reserve,
             self._settle,
             self._seed,
@@ -204,7 +215,16 @@ class PlanForm(QWidget):
             return own_words(str(error), self._units)
         self._gsd.setValue(profile(request.profile_id).camera.gsd_m(furthest_m))
         self._shown_gsd = request.profile_id, self._gsd.value()
+        self._show_sharp(constraints)
         return ""
+
+    def _show_sharp(self, constraints: Constraints) -> None:
+        """Show the pixel wanted; where none is, the one that camera and safety distance make of that."""
+        wanted_mm = constraints.wanted_gsd_mm
+        camera, near_m = profile(self.aircraft.value()).camera, constraints.min_distance_m
+        with QSignalBlocker(self._sharp):
+            self._sharp.setValue(usual_gsd_m(camera, near_m) if wanted_mm is None else wanted_mm / 1000.0)
+        self._shown_sharp_m = self._sharp.value()
 
     def problem(self) -> str:
         """Why what stands in the boxes makes no sense; empty where it does.
@@ -225,7 +245,7 @@ class PlanForm(QWidget):
     def set_units(self, system: UnitSystem) -> None:
         """Show lengths and speeds in other units."""
         self._units = system
-        for box in (self._distance, self._wind, self._gsd):
+        for box in (self._distance, self._wind, self._gsd, self._sharp):
             box.set_units(system)
 
     def _request(self) -> PlanRequest:
@@ -248,6 +268,7 @@ class PlanForm(QWidget):
                 section_step_deg=float(self._step.currentData()),
                 whole_panel=self._whole_panel.isChecked(),
                 max_distance_m=self._furthest_m(),
+                wanted_gsd_mm=self._wanted_gsd_mm(),
             ),
             rules=replace(
                 before.rules,
@@ -269,6 +290,11 @@ class PlanForm(QWidget):
             return asked_m  # as it was: there and back it would be rounded
         return profile(self.aircraft.value()).camera.distance_for_gsd_m(self._gsd.value())
 
+    def _wanted_gsd_mm(self) -> float | None:
+        if self._sharp.value() == self._shown_sharp_m:
+            return self._value.constraints.wanted_gsd_mm
+        return round(1000.0 * self._sharp.value(), 6)
+
     def _edited(self) -> None:
         self._show_goal()
         self._say_wrong(self.problem())
@@ -277,6 +303,7 @@ class PlanForm(QWidget):
         request = self._request()
         if request != self._value:
             self._value = request
+            self._show_sharp(request.constraints)
             self.valueChanged.emit(request)
 
     def _say_wrong(self, text: str) -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from planning.coverage.sections import in_picture
 from planning.errors import InputError
+from planning.evaluate import coverage
 from planning.findings import Severity
 from planning.plan import FlightRules, Plan, Sortie, Viewpoint, viewpoint_arrays
 from planning.plan_file import plan_to_json
@@ -315,7 +316,8 @@ def imported() -> Plan:
     )
     path = ((0.0, -28.0, 4.0), a, b, (15.0, -20.0, 20.0), c)
     sortie = Sortie(("left", "right", "east", "outside"), path, 1.0, 2.0)
-    covered = replace(plan.coverage, covered=36)
+    problem = planned("kiosk").prepared.problem
+    covered = replace(coverage(problem.model, viewpoints, problem.reachability), covered=36)
     return replace(plan, viewpoints=viewpoints, sorties=(sortie,), method="imported", coverage=covered)
 
 
