@@ -204,6 +204,14 @@
         <translation>Temperatur</translation>
     </message>
     <message>
+        <source>Pixel on the panel</source>
+        <translation>Pixel auf der Scheibe</translation>
+    </message>
+    <message>
+        <source>{0} of what is covered with up to {1}, the coarsest with {2}</source>
+        <translation>{0} des Abgedeckten mit bis zu {1}, das gröbste mit {2}</translation>
+    </message>
+    <message>
         <source>{0} to {1}, at least {2} to be kept but at take-off</source>
         <translation>{0} bis {1}, einzuhalten sind außer beim Start mindestens {2}</translation>
     </message>
@@ -3902,6 +3910,14 @@ Blickrichtung: {3}</translation>
         <translation>Pixelgröße begrenzen</translation>
     </message>
     <message>
+        <source>any</source>
+        <translation>beliebig</translation>
+    </message>
+    <message>
+        <source>Each direction of view is wanted with pixels up to this size on the panel; those seen only more coarsely are counted and named</source>
+        <translation>Jede Blickrichtung ist mit Pixeln bis zu dieser Größe auf der Scheibe gewünscht; die nur gröber gesehenen werden gezählt und genannt</translation>
+    </message>
+    <message>
         <source>Count whole panels only</source>
         <translation>Nur ganze Scheiben zählen</translation>
     </message>
@@ -3968,6 +3984,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Coarsest pixel</source>
         <translation>Gröbstes Pixel</translation>
+    </message>
+    <message>
+        <source>Wanted pixel</source>
+        <translation>Gewünschtes Pixel</translation>
     </message>
     <message>
         <source>Section step</source>
@@ -7033,6 +7053,18 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     <message>
         <source>it covers nothing; take it closer or drop it</source>
         <translation>es deckt nichts ab; näher heran oder weglassen</translation>
+    </message>
+    <message>
+        <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
+        <translation>Sektoren, nur mit Pixeln über {0} mm gesehen: {1} von {2} abgedeckten</translation>
+    </message>
+    <message>
+        <source>{0}, the coarsest with {1} mm</source>
+        <translation>{0}, das gröbste mit {1} mm</translation>
+    </message>
+    <message>
+        <source>{0}; allow more views, or a larger pixel</source>
+        <translation>{0}; mehr Aufnahmen oder ein größeres Pixel zulassen</translation>
     </message>
     <message>
         <source>no panel is seen from any viewpoint</source>
