@@ -2,7 +2,8 @@
 
 `value()` gives back exactly what `setValue()` was given until the user edits it, however it is rounded for display, and
 though the user could not have typed it: a form must not change what it only shows. The mouse wheel scrolls what is
-around, and changes a box only after a click into it.
+around and changes no box: the one typed into last may slide under the pointer. What was typed counts before a shortcut
+does.
 """
 
 from __future__ import annotations
@@ -10,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QLocale, QObject, QSignalBlocker, QSize, Qt, Signal
-from PySide6.QtGui import QValidator
-from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QHBoxLayout, QWidget
+from PySide6.QtGui import QKeyEvent, QKeySequence, QValidator
+from PySide6.QtWidgets import QAbstractSlider, QAbstractSpinBox, QComboBox, QDoubleSpinBox, QHBoxLayout, QWidget
 
 from groundstation.services.units import Unit, UnitSystem, length_unit, speed_unit
 
@@ -27,21 +28,50 @@ N_DIGITS_SHOWN = 9
 """Width of a box for whole numbers; longer ones scroll in it."""
 
 
-class _CalmWheel(QObject):
-    """Keeps the wheel from widgets without the focus."""
+EDITING = (
+    QKeySequence.StandardKey.Copy,
+    QKeySequence.StandardKey.Cut,
+    QKeySequence.StandardKey.Paste,
+    QKeySequence.StandardKey.SelectAll,
+    QKeySequence.StandardKey.Undo,
+    QKeySequence.StandardKey.Redo,
+)
+"""Keys of the text itself; any other with Ctrl or Alt asks for something that is done with the number."""
+
+ALONE = frozenset({Qt.Key.Key_Control, Qt.Key.Key_Alt, Qt.Key.Key_Meta, Qt.Key.Key_Shift, Qt.Key.Key_AltGr})
+"""Keys that begin others."""
+
+
+class _Calm(QObject):
+    """Keeps the wheel from boxes, and has what was typed taken before a shortcut is followed."""
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Leave the wheel to what is around."""
-        if event.type() == QEvent.Type.Wheel and isinstance(watched, QWidget) and not watched.hasFocus():
-            event.ignore()
-            return True
+        """Leave the wheel to what is around; sliders, which stand in no form, have it after a click."""
+        kind = event.type()
+        if kind == QEvent.Type.Wheel:
+            is_own = isinstance(watched, QAbstractSlider) and watched.hasFocus()
+            if not is_own:
+                event.ignore()
+            return not is_own
+        if kind == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and _is_order(event):
+            if isinstance(watched, QAbstractSpinBox):
+                watched.interpretText()
         return False
 
 
+def _is_order(event: QKeyEvent) -> bool:
+    """Whether a key may be a shortcut that something is done by."""
+    modifiers = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+    if event.key() in ALONE or any(event.matches(key) for key in EDITING):
+        return False
+    is_function = Qt.Key.Key_F1 <= event.key() <= Qt.Key.Key_F35
+    return is_function or bool(event.modifiers() & modifiers)
+
+
 def calm(widget: QWidget) -> None:
-    """Let the wheel change a widget only after a click into it; over others it scrolls the form."""
+    """Let the wheel scroll the form over a widget, and take what was typed into it before a shortcut is followed."""
     widget.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-    widget.installEventFilter(_CalmWheel(widget))
+    widget.installEventFilter(_Calm(widget))
 
 
 class ChoiceBox(QComboBox):
@@ -191,6 +221,10 @@ class WholeBox(QAbstractSpinBox):
         flag = QAbstractSpinBox.StepEnabledFlag
         up = flag.StepUpEnabled if self._value < self.maximum() else flag.StepNone
         return up | (flag.StepDownEnabled if self._value > self.minimum() else flag.StepNone)
+
+    def interpretText(self) -> None:  # noqa: N802
+        """Take what was typed."""
+        self._finish()
 
     def _finish(self) -> None:
         state, _, _ = self.validate(self.text(), 0)
