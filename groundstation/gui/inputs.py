@@ -53,16 +53,15 @@ class _Calm(QObject):
             if not is_own:
                 event.ignore()
             return not is_own
-        if kind == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and _is_order(event):
-            if isinstance(watched, QAbstractSpinBox):
-                watched.interpretText()
+        if kind == QEvent.Type.ShortcutOverride and isinstance(watched, QAbstractSpinBox) and _is_order(event):
+            watched.interpretText()
         return False
 
 
-def _is_order(event: QKeyEvent) -> bool:
+def _is_order(event: QEvent) -> bool:
     """Whether a key may be a shortcut that something is done by."""
     modifiers = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
-    if event.key() in ALONE or any(event.matches(key) for key in EDITING):
+    if not isinstance(event, QKeyEvent) or event.key() in ALONE or any(event.matches(key) for key in EDITING):
         return False
     is_function = Qt.Key.Key_F1 <= event.key() <= Qt.Key.Key_F35
     return is_function or bool(event.modifiers() & modifiers)

@@ -272,9 +272,12 @@ class LiveFlight:
                 self._end_run(run)
         now_s = self._clock()
         if now_s >= self._shown_s + VIEW_EVERY_S:
-            self._shown_s = now_s
-            self._view = self._now()
-            self._publish(FlightChanged(self._view))
+            self._show(now_s)
+
+    def _show(self, now_s: float) -> None:
+        self._shown_s = now_s
+        self._view = self._now()
+        self._publish(FlightChanged(self._view))
 
     def _notice_link(self) -> None:
         link = link_state(self._machine.state, self._clock(), is_open=self._wire.opened is not None)
@@ -297,6 +300,8 @@ class LiveFlight:
         if awaited is not None:
             self._answer(awaited, False, str(error))
         self._put_in_hand(self._sortie, run.state)
+        # The report takes a while: meanwhile nobody should take the aircraft for one in the air.
+        self._show(self._clock())
         if awaited is not Request.UPLOAD:
             self._end_flight(run, record, error)
 

@@ -288,7 +288,8 @@ def _battery(state: VehicleState, orders: SortieOrders, now_s: float) -> Preflig
         advice = "put in a full one" if needed <= 1.0 else "none holds that much: plan it again, in shorter sorties"
         text = f"the battery holds {level:.0%}; the sortie and the reserve take {needed:.0%}: {advice}"
         return PreflightCheck("battery", Verdict.BAD, text, level, needed)
-    return PreflightCheck("battery", Verdict.OK, f"{level:.0%}; {needed:.0%} are needed", level, needed)
+    text = f"{level:.0%}; the sortie and the reserve take {needed:.0%}"
+    return PreflightCheck("battery", Verdict.OK, text, level, needed)
 
 
 def _sensors(state: VehicleState) -> Iterator[PreflightCheck]:

@@ -130,6 +130,7 @@ def test_pause_resume_and_return_are_acknowledged(flight):
     assert answer.is_accepted
     ended = follower.until_ended()
     assert any(view.reason is not Reason.TAKEN for view in ended.report.views)
+    assert not follower.view.state.is_armed, "with the report, it is known to have landed"
     # The vehicle stays connected, and may be given a mission again.
     follower.until_may(Request.UPLOAD)
 

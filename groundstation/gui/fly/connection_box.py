@@ -53,11 +53,10 @@ class ConnectionBox(QWidget):
             self.kind.addItem(text, kind)
         self.autopilot.addItem("ArduPilot", Autopilot.ARDUPILOT)
         self.autopilot.addItem("PX4", Autopilot.PX4)
-        fields = QWidget()
-        # As high as they like: squeezed by what stands below, they would move the button.
+        self._fields = QWidget()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Minimum)
-        fields.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self._form = QFormLayout(fields)
+        self._fields.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self._form = QFormLayout(self._fields)
         self._form.setContentsMargins(0, 0, 0, 0)
         self._form.addRow(self.tr("Vehicle"), self.kind)
         self._form.addRow(self.tr("Autopilot"), self.autopilot)
@@ -66,9 +65,10 @@ class ConnectionBox(QWidget):
         self._form.addRow(self.tr("Link"), self.signing)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(fields)
+        # The button stands above what it is for: the fields below fold away, and it must not move under the pointer.
         layout.addWidget(self.button)
         layout.addWidget(self._says)
+        layout.addWidget(self._fields)
         self.kind.currentIndexChanged.connect(self._kind_chosen)
         self.autopilot.currentIndexChanged.connect(self._edited)
         self.speed_up.valueChanged.connect(self._edited)
@@ -121,9 +121,10 @@ class ConnectionBox(QWidget):
             (self.address, not is_simulation),
             (self.signing, not is_simulation),
         ):
-            # Connected, they stay where they are: the button below must not move.
             self._form.setRowVisible(box, is_shown)
             set_enabled(box, not self._is_connected)
+        # Connected, nothing can be chosen, and the list before take-off needs the room.
+        self._fields.setVisible(not self._is_connected)
         self._says.setVisible(bool(self._says.text()))
         self.button.setText(self.tr("Disconnect") if self._is_connected else self.tr("Connect"))
         self.button.setProperty("primary", not self._is_connected)

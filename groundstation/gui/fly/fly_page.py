@@ -97,7 +97,7 @@ class FlyPage(QObject):
         rest = QWidget()
         below = QVBoxLayout(rest)
         below.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.sortie, self.connection, self._phase, self.checks):
+        for widget in (self.connection, self.sortie, self._phase, self.checks):
             below.addWidget(widget)
         below.addStretch(1)
         # At the top and never scrolled: texts below grow and shrink with the phase, and must not move a button.

@@ -152,7 +152,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "the battery holds {0}; the sortie and the reserve take {1}: {2}"),
     QT_TRANSLATE_NOOP("Sentences", "put in a full one"),
     QT_TRANSLATE_NOOP("Sentences", "none holds that much: plan it again, in shorter sorties"),
-    QT_TRANSLATE_NOOP("Sentences", "{0}; {1} are needed"),
+    QT_TRANSLATE_NOOP("Sentences", "{0}; the sortie and the reserve take {1}"),
     QT_TRANSLATE_NOOP("Sentences", "it does not say why"),
     QT_TRANSLATE_NOOP("Sentences", "the autopilot cannot be armed yet ({0})"),
     QT_TRANSLATE_NOOP("Sentences", "it can be armed, but has trouble with: "),

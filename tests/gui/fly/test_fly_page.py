@@ -653,3 +653,22 @@ def test_a_long_sortie_and_a_lost_link_fit_a_small_screen(application, desk):
 
 def _is_seen(strip, number):
     return strip.visibleRegion().boundingRect().contains(strip.cell(number).center().toPoint())
+
+
+def test_connected_the_form_of_the_vehicle_makes_room_for_the_list_before_take_off(application, page):
+    from PySide6.QtWidgets import QScrollArea
+
+    place = page.connection.button.mapTo(page.left, QPoint(0, 0))
+    assert page.connection.kind.isVisible()
+    connect(application, page)
+    area = page.checks.parentWidget()
+    while not isinstance(area, QScrollArea):
+        area = area.parentWidget()
+    view = area.viewport()
+    shown = [row for row in page.checks._rows if view.rect().contains(row.side.mapTo(view, row.side.rect().center()))]
+    assert len(shown) >= 6
+    assert not page.connection.kind.isVisible()
+    assert page.connection.button.mapTo(page.left, QPoint(0, 0)) == place
+    click_on(page.connection.button.window(), page.connection.button)
+    turn_until(application, lambda: not page.desk.is_connected)
+    assert page.connection.kind.isVisible()
