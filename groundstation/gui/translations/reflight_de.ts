@@ -9491,6 +9491,10 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>so viel hat keiner: in kürzeren Einsätzen neu planen</translation>
     </message>
     <message>
+        <source>{0}; the sortie and the reserve take {1}</source>
+        <translation>{0}; Flug und Reserve brauchen {1}</translation>
+    </message>
+    <message>
         <source>the wind blows with {0} m/s, more than the {1} m/s of {2}; wait for less</source>
         <translation>der Wind weht mit {0} m/s, mehr als die {1} m/s von {2}; auf weniger warten</translation>
     </message>
@@ -9945,10 +9949,6 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     <message>
         <source>the vehicle had {0} rally points of another flight; they are cleared</source>
         <translation>das Fluggerät hatte {0} Rally-Punkte eines anderen Flugs; sie sind gelöscht</translation>
-    </message>
-    <message>
-        <source>{0}; {1} are needed</source>
-        <translation>{0}; {1} sind nötig</translation>
     </message>
     <message>
         <source>it does not say why</source>
