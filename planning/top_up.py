@@ -54,6 +54,10 @@ class WhyMissing(StrEnum):
     """It can be seen only from places closer together than aircraft accept, and others show more."""
 
 
+NEGLIGIBLE_SHARE = 0.005
+"""Part of the sections aimed at that is not worth a flight unasked: photos taken a little off their places lose as many
+sections on the borders of hemispheres, and plans leave twice as many open by default."""
+
 REACHABILITY_SHARE, DRAWING_S = 0.4, 0.3
 """Part of the time budget that finding out what can be reached may take, and what is kept for drawing the flight."""
 
@@ -111,13 +115,15 @@ class TopUp:
     Parameters
     ----------
     plan
-        None where nothing is missing.
+        None where nothing is missing, or nothing of a negligible rest can be shown.
     promised, delivered
         Sections that the plan covers, and those of them that the photos show.
     on_board
         Whether the first sortie is for the battery on board; the others, and else all, need full ones.
     seen, together
         Sections that the photos show, and that they show together with the top-up.
+    aimed
+        Sections aimed at, whether the photos show them or not.
     wanted, closed
         Sections that the top-up was to show, and does show.
     bound
@@ -139,6 +145,7 @@ class TopUp:
     delivered: int
     seen: int
     together: int
+    aimed: int
     wanted: int
     closed: int
     bound: int
@@ -147,6 +154,16 @@ class TopUp:
     durations: tuple[QualityPoint, ...]
     seconds: float
     prepared: Prepared = field(repr=False, compare=False)
+
+    @property
+    def is_negligible(self) -> bool:
+        """Whether something is missing, and so little that a flight for it wants a decision."""
+        return self.wanted > 0 and is_negligible(self.wanted, self.aimed)
+
+
+def is_negligible(n_missing: int, n_aimed: int) -> bool:
+    """Whether so few sections are missing of those aimed at that they are not worth a flight unasked."""
+    return n_missing <= NEGLIGIBLE_SHARE * n_aimed
 
 
 def top_up(
@@ -180,7 +197,8 @@ def top_up(
     ValueError
         The site was prepared for another camera or other constraints.
     InfeasibleError
-        Nothing of what is missing can be shown; the message says whether the site or the battery is the reason.
+        Nothing of what is missing can be shown, and it is more than a negligible rest; the message says whether the
+        site or the battery is the reason.
     """
     started_s = time.perf_counter()
     trace = Trace() if trace is None else trace
@@ -195,7 +213,8 @@ def top_up(
     durations, found, topped_up = Trace(trace.clock), None, None
     if len(elements):
         trace.record_bound(int(np.count_nonzero(verdicts[elements] != UNREACHABLE)))
-        batteries = _batteries(plan, request)
+        is_few = is_negligible(len(elements), int(target.sum()))
+        batteries = _batteries(plan, request, is_few)
         wanted = Wanted(problem, plan.aircraft, plan.rules, elements, batteries.longest_s)
         found = closing_flights(
             wanted,
@@ -208,9 +227,10 @@ def top_up(
             durations=durations,
             monitor=monitor,
         )
-        if not found.flights:
+        if found.flights:
+            topped_up = _plan(site_model, plan, prepared, found, request.seed, trace)
+        elif not is_few:
             raise _nothing_closed(found, len(elements), request, batteries)
-        topped_up = _plan(site_model, plan, prepared, found, request.seed, trace)
     views = NONE_LOCKED if topped_up is None else viewpoint_arrays(topped_up.viewpoints)
     together = seen | _shown(prepared, views)
     missing = () if found is None else _missing(prepared, elements[~together[elements]], found)
@@ -222,6 +242,7 @@ def top_up(
         delivered=int((promised & seen).sum()),
         seen=int(seen.sum()),
         together=int(together.sum()),
+        aimed=int(target.sum()),
         wanted=len(elements),
         closed=len(elements) - len(missing),
         bound=0 if found is None else found.bound,
@@ -257,12 +278,15 @@ def _shown(prepared: Prepared, views: ViewpointArrays) -> NDArray[np.bool_]:
     return np.asarray(exact_coverage(prepared.problem.model, views).reshape(-1) > 0)
 
 
-def _batteries(plan: Plan, request: TopUpRequest) -> Batteries:
+def _batteries(plan: Plan, request: TopUpRequest, is_few: bool) -> Batteries:
+    """What may be flown on; a negligible rest is planned on full ones where the one on board leaves nothing."""
     full_s = usable_battery_s(plan.aircraft, plan.rules)
     if request.battery is None:
         return Batteries(None, request.n_batteries, full_s)
     rules, n_full = plan.rules, request.n_batteries or 0
     left_s = plan.aircraft.endurance_s * (request.battery - rules.battery_reserve) - rules.takeoff_landing_s
+    if left_s <= 0.0 and n_full == 0 and is_few:
+        return Batteries(None, None, full_s)
     if left_s <= 0.0 and n_full == 0:
         raise InfeasibleError(
             f"the battery is at {request.battery:.0%}; a reserve of {rules.battery_reserve:.0%} and "

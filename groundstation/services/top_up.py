@@ -149,10 +149,24 @@ def top_up_flight(
 
 
 def _missing_findings(found: TopUp) -> Iterator[Finding]:
+    if found.is_negligible:
+        text = f"{found.wanted} of {found.aimed} sections are missing, too few for a flight unasked; {_cost(found)}"
+        yield Finding(Severity.NOTE, "negligible-rest", text, "", float(found.wanted), float(found.aimed), "sections")
     panels = {why: {s.panel_id for s in found.missing if s.why is why} for why in WhyMissing}
     for why, n in sorted(Counter(section.why for section in found.missing).items()):
         text = f"{n} of the {found.wanted} missing sections (on {len(panels[why])} panels) {WHY_TEXTS[why]}"
         yield Finding(Severity.WARNING, f"left-open-{why}", text, "", float(n), 0.0, "sections")
+
+
+def _cost(found: TopUp) -> str:
+    """What closing the rest would take."""
+    plan = found.plan
+    if plan is None:
+        return "none of them can be shown"
+    return (
+        f"showing {found.closed} of them takes {plan.duration_s / 60.0:.1f} min in the air (views: "
+        f"{len(plan.viewpoints)}, batteries: {len(plan.sorties)})"
+    )
 
 
 def resume_flight(
@@ -210,11 +224,14 @@ def top_up_files(
     out: Path,
     request: TopUpRequest,
     *,
+    everything: bool = False,
     stop: Stop = never,
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
 ) -> tuple[TopUp, tuple[Finding, ...]]:
     """`top_up_flight` on files; the plan is written where `out` says, nothing where nothing is missing.
+
+    A plan for a negligible rest is written only where `everything` is wanted.
 
     Raises
     ------
@@ -223,7 +240,7 @@ def top_up_files(
     """
     flown = _flown_files(flight_path, plan_path, site_path, out)
     found, findings = top_up_flight(flown, request, stop=stop, trace=trace, monitor=monitor)
-    if found.plan is not None:
+    if found.plan is not None and (everything or not found.is_negligible):
         write_plan(out, found.plan)
     return found, findings
 
@@ -279,6 +296,7 @@ def top_up_summary(found: TopUp, findings: tuple[Finding, ...]) -> dict[str, Any
         "wanted": found.wanted,
         "closed": found.closed,
         "bound": found.bound,
+        "negligible": found.is_negligible,
         "left_open": {reason.value: why[reason] for reason in WhyMissing},
         "panels_left_open": sorted({section.panel_id for section in found.missing}),
         "covered_before": found.seen,

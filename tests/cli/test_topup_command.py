@@ -8,10 +8,13 @@ import pytest
 
 from missions.flight.flight_file import flight_of, write_flight
 from missions.flight.record import FlightRecord, TakenPhoto, Track
-from planning.plan_file import read_plan
-from planning.site_file import read_site
+from planning.mesh import write_mesh
+from planning.plan_file import read_plan, write_plan
+from planning.site_file import read_site, write_site
 from tests.missions.flight.flights import flown_as_planned, never_taken, with_photos
 from tests.missions.flight.log_writers import dataflash
+from tests.planning.plan_cases import kiosk
+from tests.planning.test_top_up import alone
 
 
 @pytest.fixture
@@ -67,6 +70,39 @@ def test_a_complete_flight_needs_no_top_up_and_writes_none(reflight, pane, flown
     assert (done.status, done.err) == (0, "")
     assert done.out.splitlines()[-1] == "nothing is missing; no top-up is needed, and none was written"
     assert not out.exists()
+
+
+def test_hardly_anything_missing_writes_a_top_up_only_where_it_is_asked_for(reflight, tmp_path):
+    plan, view = alone(1)
+    site_path, plan_path, flight_path = (tmp_path / name for name in ("site.json", "plan.json", "flight.json"))
+    write_site(site_path, kiosk().site)
+    write_mesh(tmp_path / "kiosk.ply", kiosk().building)
+    plan = replace(plan, site_sha256=read_site(site_path).sha256)
+    write_plan(plan_path, plan)
+    (sortie,) = plan.sorties
+    taken = [v for v in plan.viewpoints if v.id != plan.viewpoints[view].id]
+    order = {identifier: i for i, identifier in enumerate(sortie.viewpoint_ids)}
+    taken.sort(key=lambda v: order[v.id])
+    photos = tuple(
+        TakenPhoto(i, 4.0 * i, v.position_enu_m, v.heading_deg, v.gimbal_pitch_deg) for i, v in enumerate(taken)
+    )
+    nothing, nowhere = np.zeros(0), np.zeros((0, 3))
+    record = FlightRecord(1, "test", Track(nothing, nowhere, nowhere, nothing, nothing, nothing, nothing), photos)
+    write_flight(flight_path, flight_of(plan, read_site(site_path), (record,)))
+    out = tmp_path / "topup.plan.json"
+    arguments = ("topup", flight_path, plan_path, site_path, "-o", out, "--time-budget", 1)
+    left = reflight(*arguments)
+    assert left.status == 0
+    assert not out.exists()
+    assert "no top-up was written; --all writes it all the same" in left.out
+    told = left.out + left.err
+    assert f"1 of {plan.coverage.covered} sections are missing, too few for a flight unasked" in told
+    assert "min in the air (views: 1, batteries: 1)" in told
+    summary = reflight(*arguments, "--json").json
+    assert (summary["negligible"], summary["written"], summary["wanted"], summary["views"]) == (True, False, 1, 1)
+    everything = reflight(*arguments, "--all")
+    assert everything.status == 0
+    assert read_plan(out).method == "top-up"
 
 
 def test_the_autopilots_log_serves_as_well_as_a_flight_file(reflight, pane, tmp_path):

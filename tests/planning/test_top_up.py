@@ -334,6 +334,43 @@ def test_one_section_that_only_one_place_sees_is_closed_from_there() -> None:
     assert (found.closed, found.missing) == (found.wanted, ())
 
 
+def alone(n_sections: int) -> tuple[Plan, int]:
+    """A plan of 60 views, and one of them that alone shows so many sections."""
+    plan = flown_plan(60)
+    counts = coverage_counts(prepared_kiosk().problem.model, plan.viewpoints)
+    for view, viewpoint in enumerate(plan.viewpoints):
+        shows = coverage_counts(prepared_kiosk().problem.model, (viewpoint,))
+        if int(np.count_nonzero((shows > 0) & (counts == 1))) == n_sections:
+            return plan, view
+    raise AssertionError(f"no view shows {n_sections} sections alone")
+
+
+@pytest.mark.parametrize(("n_missing", "is_few"), [(1, True), (2, False)])
+def test_a_rest_is_negligible_up_to_a_two_hundredth_of_the_sections_and_its_cost_is_known(
+    n_missing: int, is_few: bool
+) -> None:
+    plan, view = alone(n_missing)
+    assert 200 <= plan.coverage.covered < 400
+    found = topped_up(plan, photos(plan, [view]))
+    assert (found.wanted, found.closed, found.aimed) == (n_missing, n_missing, plan.coverage.covered)
+    assert found.is_negligible is is_few
+    assert found.plan is not None
+    assert found.plan.duration_s > 0.0
+    assert not topped_up(plan, photos(plan)).is_negligible
+
+
+def test_a_negligible_rest_that_cannot_be_shown_or_flown_for_is_no_error() -> None:
+    plan, view = alone(1)
+    flat = topped_up(plan, photos(plan, [view]), replace(SOON, battery=0.2))
+    assert flat.plan is not None, "it says what a full battery would do"
+    assert not flat.on_board
+    walls = NoFlyZone("all round", ((-18.0, -18.0), (19.0, -18.0), (19.0, 19.0), (-18.0, 19.0)), 0.0, 100.0)
+    near = replace(plan, constraints=replace(plan.constraints, max_distance_m=60.0))
+    hidden = top_up(with_zone(walls), near, photos(plan, [view]), SOON)
+    assert hidden.is_negligible
+    assert len(hidden.missing) == 1 - hidden.closed
+
+
 def rarest_view(problem: ViewProblem) -> Viewpoint:
     """A view at the witness of the section with the fewest witnesses around."""
     reachability = problem.reachability

@@ -46,6 +46,7 @@ def add_parser(subparsers: Any) -> None:
         default="promised",
         help="what the plan had promised (default), or everything that can be seen",
     )
+    add("--all", action="store_true", help="write a top-up for a negligible rest, too (at most 0.5 %% of the sections)")
     add("--time-budget", type=number, default=5.0, metavar="S", help="longest wall time (default 5 s)")
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
     add("--resume", action="store_true", help="the rest of the sortie that was interrupted, as it was planned")
@@ -79,19 +80,23 @@ def _top_up(options: argparse.Namespace) -> int:
         )
     files = options.flight, options.plan, options.site, options.out
     found, findings = run_job(
-        "topup", lambda context: top_up_files(*files, request, stop=context.stop, trace=context.trace, monitor=context)
+        "topup",
+        lambda context: top_up_files(
+            *files, request, everything=options.all, stop=context.stop, trace=context.trace, monitor=context
+        ),
     )
+    is_left = found.is_negligible and not options.all
     if options.json:
-        print_json(top_up_summary(found, findings))
+        print_json({**top_up_summary(found, findings), "written": found.plan is not None and not is_left})
         return 0
-    _print_top_up(found, options.out)
+    _print_top_up(found, options.out, is_left)
     print_findings(findings)
-    if found.plan is not None:
+    if found.plan is not None and not is_left:
         print_next("check", options.out, options.site)
     return 0
 
 
-def _print_top_up(found: TopUp, out: Path) -> None:
+def _print_top_up(found: TopUp, out: Path, is_left: bool) -> None:
     from groundstation.cli.console import counted
     from groundstation.services.units import per_cent
 
@@ -99,7 +104,11 @@ def _print_top_up(found: TopUp, out: Path) -> None:
     print(f"the photos show {found.delivered} of the {found.promised} sections that the plan promised ({share:.2f} %)")
     plan = found.plan
     if plan is None:
-        print("nothing is missing; no top-up is needed, and none was written")
+        missing = "nothing is missing" if found.wanted == 0 else "what is missing cannot be shown"
+        print(f"{missing}; no top-up is needed, and none was written")
+        return
+    if is_left:
+        print("no top-up was written; --all writes it all the same")
         return
     print(
         f"{out}: {counted(len(plan.viewpoints), 'view')} in {counted(len(plan.sorties), 'sortie')}, "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, PlanEntry
@@ -22,7 +22,15 @@ MOST_BATTERIES = 20
 
 
 class AfterFlight(QObject):
-    """Keeps what was flown of each plan, and plans what is left, as jobs."""
+    """Keeps what was flown of each plan, and plans what is left, as jobs.
+
+    Signals
+    -------
+    restFound(TopUp)
+        So little is missing that a flight for it wants a decision; `take` makes it a plan.
+    """
+
+    restFound = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(self, workspace: Workspace, parent: QObject) -> None:
         super().__init__(parent)
@@ -71,24 +79,33 @@ class AfterFlight(QObject):
             found, findings = result
             for finding in findings:
                 self._workspace.say(finding.severity, self._workspace.words(finding.message))
-            if found.plan is None:
+            if found.wanted == 0:
                 self._workspace.say(Severity.OK, self.tr("Nothing is missing: the photos show all that was planned."))
-                return
-            text = self.tr("Top-up planned, photos: {0}; it closes {1} of {2} missing sections").format(
-                len(found.plan.viewpoints), found.closed, found.wanted
-            )
-            on_board = found.on_board and battery is not None
-            needed = (
-                self.tr("Fly it before the battery is changed.")
-                if on_board and len(found.plan.sorties) == 1
-                else self.tr("Fly the first sortie before the battery is changed, the others with full ones.")
-                if on_board
-                else self.tr("It needs a full battery: change it first.")
-            )
-            self._add_plan(self.tr("Top-up"), found.plan, self.tr("{0}. {1}").format(text, needed))
-            self._on_board = (found.plan, battery) if on_board and battery is not None else None
+            elif found.is_negligible and found.plan is not None:
+                self.restFound.emit(found)
+            else:
+                self.take(found)
 
         self._workspace.start(self.tr("Top-up flight"), work, done)
+
+    def take(self, found: TopUp) -> None:
+        """Make a top-up a plan of the project."""
+        if found.plan is None:
+            return
+        battery = self._battery
+        text = self.tr("Top-up planned, photos: {0}; it closes {1} of {2} missing sections").format(
+            len(found.plan.viewpoints), found.closed, found.wanted
+        )
+        on_board = found.on_board and battery is not None
+        needed = (
+            self.tr("Fly it before the battery is changed.")
+            if on_board and len(found.plan.sorties) == 1
+            else self.tr("Fly the first sortie before the battery is changed, the others with full ones.")
+            if on_board
+            else self.tr("It needs a full battery: change it first.")
+        )
+        self._add_plan(self.tr("Top-up"), found.plan, self.tr("{0}. {1}").format(text, needed))
+        self._on_board = (found.plan, battery) if on_board and battery is not None else None
 
     def resume_sortie(self) -> None:
         """Plan the rest of the sortie that was interrupted, for a full battery, as a new plan."""

@@ -35,6 +35,7 @@ from groundstation.services.places import item_of_place
 from groundstation.services.units import UnitSystem, minutes_text
 from groundstation.vehicle.preflight import Mend, PreflightCheck
 from planning.findings import Severity
+from planning.top_up import TopUp
 
 
 class FlyPage(QObject):
@@ -149,6 +150,7 @@ class FlyPage(QObject):
         self.strip.picked.connect(self._go_to)
         self.report.picked.connect(self._go_to)
         self.report.topUpRequested.connect(desk.after.top_up)
+        desk.after.restFound.connect(self._rest_found)
         self.report.resumeRequested.connect(desk.after.resume_sortie)
         desk.stateChanged.connect(self._show_all)
         desk.viewChanged.connect(self._show_view)
@@ -165,6 +167,10 @@ class FlyPage(QObject):
             window.closing.connect(self._window_closing)
 
     # What the user does
+
+    def _rest_found(self, found: TopUp) -> None:
+        if self.questions.close_rest(self._stage.window(), found):
+            self.desk.after.take(found)
 
     def _request(self, request: Request) -> None:
         if request is not Request.START or self._may_start():

@@ -12,6 +12,7 @@ from groundstation.services.live_limit import TooLong
 from groundstation.services.live_sortie import TakeOff
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text
 from groundstation.vehicle.setup import ParameterChange
+from planning.top_up import TopUp
 
 
 class FlightQuestions(QObject):
@@ -93,6 +94,24 @@ class FlightQuestions(QObject):
         text = self.tr("{0}\n\nTo fly all the same, type {1}:").format(check, word)
         typed = ask_text(parent, self.tr("Overrule"), text, "")
         return typed is not None and typed.strip().casefold() == word.casefold()
+
+    def close_rest(self, parent: QWidget, found: TopUp) -> bool:
+        """Whether to plan a flight for the little that is missing."""
+        plan = found.plan
+        if plan is None:
+            return False
+        text = self.tr(
+            "{0} of {1} sections are missing. Showing {2} of them takes {3} in the air (photos: {4}, batteries: {5}). "
+            "Plan this flight?"
+        ).format(
+            found.wanted,
+            found.aimed,
+            found.closed,
+            minutes_text(plan.duration_s),
+            len(plan.viewpoints),
+            len(plan.sorties),
+        )
+        return agrees(parent, self.tr("Hardly anything is missing"), text)
 
     def leave_in_flight(self, parent: QWidget) -> bool:
         """Whether to stop watching an aircraft that is in the air."""

@@ -263,6 +263,9 @@ SENTENCES = (
         "{0} photos belong to no view, and nothing says where they look; what they show counts as missing",
     ),
     QT_TRANSLATE_NOOP("Sentences", "{0} of the {1} missing sections (on {2} panels) {3}"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} of {1} sections are missing, too few for a flight unasked; {2}"),
+    QT_TRANSLATE_NOOP("Sentences", "none of them can be shown"),
+    QT_TRANSLATE_NOOP("Sentences", "showing {0} of them takes {1} min in the air (views: {2}, batteries: {3})"),
     QT_TRANSLATE_NOOP(
         "Sentences",
         "no sortie of this plan was interrupted: those that were flown are complete; the next one is flown "

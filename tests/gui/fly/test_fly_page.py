@@ -3,11 +3,12 @@
 import gc
 import itertools
 import time
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import QMargins, QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QLineEdit
+from PySide6.QtWidgets import QLineEdit, QMessageBox
 
 from groundstation.gui.fly.flight_buttons import APART_PX, ICON_PX, PLACES
 from groundstation.services.document import Document, ItemKind, PlanEntry
@@ -19,6 +20,8 @@ from groundstation.vehicle.preflight import Mend
 from groundstation.vehicle.run_records import Phase
 from missions.mavlink.autopilots import Autopilot
 from planning.findings import Severity
+from planning.plan import viewpoint_arrays
+from planning.top_up import TopUpRequest, top_up
 from tests.gui.driving import (
     click_on,
     clicked,
@@ -189,6 +192,19 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     connect(application, page)
     turn_until(application, lambda: page.desk.in_hand.battery is not None)
     assert page.desk.in_hand.battery > 0.99
+
+
+@pytest.mark.parametrize(("answer", "titles"), [("Yes", ["First", "Top-up"]), ("Cancel", ["First"])])
+def test_hardly_anything_missing_is_asked_about_with_what_it_would_cost(application, desk, page, answer, titles):
+    document = desk.workspace.document
+    plan = document.plans[0].plan
+    found = top_up(document.site, plan, viewpoint_arrays(plan.viewpoints[:1]), TopUpRequest(time_budget_s=0.5))
+    button = getattr(QMessageBox.StandardButton, answer)
+    with clicked(press(button)) as said:
+        page.desk.after.restFound.emit(replace(found, aimed=100_000))
+    assert f"{found.wanted} of 100000 sections are missing" in said[0]
+    assert f"in the air (photos: {len(found.plan.viewpoints)}, batteries: {len(found.plan.sorties)})" in said[0]
+    assert [entry.title for entry in desk.workspace.document.plans] == titles
 
 
 def test_losing_the_link_shows_a_band_and_is_survived(application, radio, desk, page, monkeypatch):
