@@ -1671,6 +1671,14 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <translation>Übergehen</translation>
     </message>
     <message>
+        <source>{0} of {1} sections are missing. Showing {2} of them takes {3} in the air (photos: {4}, batteries: {5}). Plan this flight?</source>
+        <translation>Es fehlen {0} von {1} Sektoren. {2} davon zu zeigen dauert {3} in der Luft (Fotos: {4}, Akkus: {5}). Diesen Flug planen?</translation>
+    </message>
+    <message>
+        <source>Hardly anything is missing</source>
+        <translation>Es fehlt kaum etwas</translation>
+    </message>
+    <message>
         <source>The aircraft is in the air</source>
         <translation>Das Fluggerät ist in der Luft</translation>
     </message>
@@ -9501,6 +9509,18 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     <message>
         <source>flight (&apos;{0}&apos;), plan (&apos;{1}&apos;) and site (&apos;{2}&apos;) do not have the same name and origin; name the plan and the site file that this flight was flown with</source>
         <translation>Flug (&apos;{0}&apos;), Plan (&apos;{1}&apos;) und Standort (&apos;{2}&apos;) haben nicht denselben Namen und Ursprung; den Plan und die Standortdatei nennen, mit denen geflogen wurde</translation>
+    </message>
+    <message>
+        <source>{0} of {1} sections are missing, too few for a flight unasked; {2}</source>
+        <translation>es fehlen {0} von {1} Sektoren, zu wenige für einen Flug ohne Rückfrage; {2}</translation>
+    </message>
+    <message>
+        <source>none of them can be shown</source>
+        <translation>keiner davon lässt sich zeigen</translation>
+    </message>
+    <message>
+        <source>showing {0} of them takes {1} min in the air (views: {2}, batteries: {3})</source>
+        <translation>{0} davon zu zeigen dauert {1} min in der Luft (Aufnahmen: {2}, Akkus: {3})</translation>
     </message>
     <message>
         <source>the vehicle signs what it sends, and may not obey a link that is not signed; disconnect, and connect signed with its key</source>
