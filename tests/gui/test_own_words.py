@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QTranslator
@@ -31,6 +32,8 @@ from tests.gui.source_sentences import collect, files_of_the_window
 from tests.planning.plan_cases import kiosk
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
+
+COMMAND_FOLDER = Path(__file__).resolve().parents[2] / "groundstation" / "cli" / "commands"
 
 OTHER_TABLES = {"parts", "window"}
 """Words and what Python says, and what the window says instead; all others are of whole sentences."""
@@ -250,6 +253,30 @@ def as_in_the_window(template, text, values):
     if template in IN_WINDOW:
         return filled(IN_WINDOW[template], values)
     return in_window_words(text, {option: label for option, (_, label) in OPTION_FIELDS.items()})
+
+
+COMMANDS = {path.stem.rstrip("_") for path in COMMAND_FOLDER.glob("[a-z]*.py")} | {"reflight", "app.py"}
+
+
+@pytest.mark.parametrize("name", sentence_tables())
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_the_window_speaks_no_command_line(application, name, language):
+    """No option without its field, no command: whoever reads it has buttons."""
+    translator = QTranslator()
+    if language == "de":
+        assert translator.load("reflight_de", str(FOLDER))
+        application.installTranslator(translator)
+    try:
+        found = []
+        for template in sentence_tables()[name]:
+            text = filled(template, ["12.5" if mark else "Xy" for mark in Template.of(template).kinds])
+            told = own_words(text, METRIC)
+            quoted = {words.split()[0] for words in re.findall(r"['`]([a-z][\w. -]*)['`]", told)}
+            if re.search(r"(?<![\w-])--[a-z]", told) or quoted & COMMANDS:
+                found.append(told)
+        assert found == []
+    finally:
+        application.removeTranslator(translator)
 
 
 def filled(template, values):
