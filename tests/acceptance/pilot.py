@@ -84,9 +84,15 @@ class Pilot:
         """What a text may be called in the language of the window."""
         if self.language is Language.ENGLISH:
             return (text,)
-        if text not in german():
-            raise LookupError(f"“{text}” is no text of the window, or has no translation")
-        return german()[text]
+        if text in german():
+            return german()[text]
+        # Some are put together: “Data set: Choose ...”, “Defect ...”.
+        for mark in (": ", " ..."):
+            first, found, rest = text.partition(mark)
+            if found:
+                endings = self.words(rest) if rest else ("",)
+                return tuple(first_words + mark + ending for first_words in self.words(first) for ending in endings)
+        raise LookupError(f"“{text}” is no text of the window, or has no translation")
 
     def says(self) -> str:
         """All that can be read."""
