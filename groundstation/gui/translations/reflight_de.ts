@@ -7219,6 +7219,18 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>erwartet werden 0 m oder mehr, nicht {0}</translation>
     </message>
     <message>
+        <source>expected 0 mm or more, got {0}</source>
+        <translation>erwartet wurden 0 mm oder mehr, gefunden wurde {0}</translation>
+    </message>
+    <message>
+        <source>expected sharp from 0 to {0}, got {1}</source>
+        <translation>erwartet wurde scharf von 0 bis {0}, gefunden wurde {1}</translation>
+    </message>
+    <message>
+        <source>pixel of sharp views (mm)</source>
+        <translation>Pixel scharfer Aufnahmen (mm)</translation>
+    </message>
+    <message>
         <source>it lies {0} m below the lowest flight allowed or on its border</source>
         <translation>er liegt {0} m unter der niedrigsten erlaubten Flughöhe oder auf deren Rand</translation>
     </message>
