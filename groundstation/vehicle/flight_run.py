@@ -96,6 +96,7 @@ class FlightRun:
         self.was_ordered_away = False
         self.asked_s = -math.inf
         self.is_simulation = self.has_told_unknown = False
+        self.unknown_names: frozenset[str] = frozenset()
         self.agreed: tuple[ParameterChange, ...] = ()
         self._frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
         self._steps: Steps | None = None

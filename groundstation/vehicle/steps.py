@@ -128,8 +128,11 @@ def _read_parameters(run: FlightRun) -> Steps:
     """What the vehicle is, what it does by itself, and in what it differs from what the plan needs."""
     autopilot, address = vehicle_of(run)
     wanted = wanted_parameters(autopilot, run.orders.mission, run.orders.return_height_m)
-    names = dict.fromkeys((*simulation_names(autopilot), *wanted, *NAMES[autopilot]))
+    telling = (name for name in simulation_names(autopilot) if name not in run.unknown_names)
+    names = dict.fromkeys((*telling, *wanted, *NAMES[autopilot]))
     values: dict[str, float] = yield ParameterReads(tuple(names), autopilot, address)
+    # Real vehicles know none of them, and to learn that takes as long as all answers that radios lose: once is enough.
+    run.unknown_names |= {name for name in simulation_names(autopilot) if name not in values}
     run.is_simulation = is_simulation(autopilot, values)
     checks = failsafe_checks(autopilot, values, run.orders)
     known = {check.text for check in run.on_board.failsafes}
@@ -232,7 +235,7 @@ def _keep_up(run: FlightRun) -> Steps:
     if reason == UNREAD:
         yield from _pause(run, READ_PAUSE_S)
     if reason == RESTARTED:
-        run.state = after_restart(run.state)
+        run.state, run.unknown_names = after_restart(run.state), frozenset()
         yield from _ask_for_telemetry(run, must_answer=False)
         yield from _read_parameters(run)
     yield from read_again(run)

@@ -124,6 +124,10 @@ def test_the_flight_may_not_replace_the_plan(reflight, pane):
     assert (pane / "plan.json").read_bytes() == before
 
 
+REAL_PX4 = ("SIM_GZ_EN", "SYS_HITL")
+"""Parameters that a PX4 on a board which simulates nothing does not know."""
+
+
 @contextmanager
 def vehicle_at_a_port(pane, autopilot, forgets=(), home_up_m=0.0):
     """A vehicle of the pane's plan that serves a port of this machine; it may not know some parameters."""
@@ -147,7 +151,7 @@ def vehicle_at_a_port(pane, autopilot, forgets=(), home_up_m=0.0):
 @pytest.mark.parametrize("autopilot", list(Autopilot))
 def test_an_address_of_this_machine_is_no_simulation(fly, pane, tmp_path, autopilot):
     """Routers listen there: only what the vehicle says of itself counts, and nothing is set on any other."""
-    forgets = ("SIM_SPEEDUP",) if autopilot is Autopilot.ARDUPILOT else ("SYS_HITL",)
+    forgets = ("SIM_SPEEDUP",) if autopilot is Autopilot.ARDUPILOT else REAL_PX4
     with vehicle_at_a_port(pane, autopilot, forgets) as (vehicle, url):
         before = vehicle.parameters.values()
         error = fly("--link", url).error
@@ -161,7 +165,7 @@ def test_an_address_of_this_machine_is_no_simulation(fly, pane, tmp_path, autopi
 
 @pytest.mark.parametrize("agrees", [False, True])
 def test_parameters_of_a_vehicle_that_may_be_real_are_set_where_the_pilot_agrees(fly, pane, agrees):
-    with vehicle_at_a_port(pane, Autopilot.PX4, ("SYS_HITL",)) as (vehicle, url):
+    with vehicle_at_a_port(pane, Autopilot.PX4, REAL_PX4) as (vehicle, url):
         before = vehicle.parameters.values()
         if not agrees:
             # As it was set, it would return 10 m above the airspace.

@@ -611,7 +611,7 @@ def answer(text):
 
 
 def test_a_return_through_the_building_needs_a_typed_word(application, radio, desk, page, monkeypatch):
-    radio.changes = {"autopilot": Autopilot.PX4, "parameters": {"SYS_HITL": 0, "RTL_RETURN_ALT": 500.0}}
+    radio.changes = {"autopilot": Autopilot.PX4, "parameters": {"SIM_GZ_EN": None, "SYS_HITL": 0, "RTL_RETURN_ALT": 500.0}}
     connect_radio(application, radio, page, monkeypatch)
     turn_until(application, lambda: "it returns above the airspace" in page.checks.text())
     for typed in (answer("go on"), escape):
