@@ -9,14 +9,18 @@ endif
 # Processes that share the tests, one more than two cores have: tests wait for windows, disks and processes of their own.
 # Those with windows each have a virtual screen.
 WORKERS ?= 3
+# What took longest is said at the end.
+SLOWEST := --durations=30 --durations-min=0.5
 WARM := $(patsubst %,$(VENV)/.warm-%,planning missions.simulator reconstruction)
 UNUSED := tests|sympy|plotly|pymavlink.dialects|torch._inductor|torch.testing|ifcopenshell.express|open3d._ml3d
 UNUSED := $(UNUSED)|dask.array|dask.dataframe|fontTools|mypyc|pip|pygments.lexers|setuptools
+UNUSED := $(UNUSED)|mypy|torch.distributed|torch.onnx|wcwidth|tornado.test|numba.cuda|numpy.distutils|ifcopenshell.api
+UNUSED := $(UNUSED)|IPython|jedi|prompt_toolkit|rich|rich_rst|cyclopts|fsspec|torchgen|examples
 TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test test-all check check-style check-types check-imports ready-to-test alone benchmark tables format
+.PHONY: setup demo test test-all check check-style check-types check-imports ready-to-test compiled-tests alone benchmark tables format
 .PHONY: translations pictures foreign clean
 
 setup: $(VENV)/.ready $(WARM)
@@ -59,11 +63,14 @@ check-imports: $(VENV)/.ready
 	$(VENV)/bin/lint-imports
 
 # Compiling the kernels of planning takes one core as long as all the rest takes another: it has to start first.
-ready-to-test: $(WARM) check
+ready-to-test: $(WARM) check compiled-tests
+
+compiled-tests: $(VENV)/.ready
+	$(PY) -m tests.rewritten
 
 test:
 	$(MAKE) --jobs $(WORKERS) ready-to-test
-	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not slow and not benchmark and not alone'
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal $(SLOWEST) -m 'not slow and not benchmark and not alone'
 	$(MAKE) alone FAST='not slow and'
 
 # Programs of others that read what we write, for tests that are skipped without them: Python's, those of npm,
@@ -82,12 +89,12 @@ $(VENV)/.foreign: $(VENV)/.ready tests/foreign/package-lock.json
 
 test-all: foreign
 	$(MAKE) --jobs $(WORKERS) ready-to-test
-	$(PY) -m pytest -n $(WORKERS) --dist worksteal --hypothesis-profile thorough -m 'not benchmark and not alone'
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal --hypothesis-profile thorough $(SLOWEST) -m 'not benchmark and not alone'
 	$(MAKE) alone
 
 # Only the files with such tests are read.
 alone:
-	$(PY) -m pytest -m '$(FAST) alone and not benchmark' $$(grep -rl --include='test_*.py' 'mark\.alone' tests)
+	$(PY) -m pytest $(SLOWEST) -m '$(FAST) alone and not benchmark' $$(grep -rl --include='test_*.py' 'mark\.alone' tests)
 
 benchmark: setup
 	$(PY) -m tests.benchmarks

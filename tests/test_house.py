@@ -1,7 +1,9 @@
 """The house rules: import directions, nothing heavy before it is needed, the agreed layout."""
 
 import ast
+import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -203,3 +205,17 @@ def test_no_test_answers_in_place_of_a_dialog():
         for match in words.finditer(path.read_text())
     ]
     assert found == []
+
+
+def test_tests_that_were_compiled_before_are_found_so_by_pytest(tmp_path):
+    """In a fresh clone each of several test processes would compile all of them."""
+    shutil.copy(ROOT / "tests" / "rewritten.py", tmp_path)
+    (tmp_path / "test_one.py").write_text("def test_one():\n    assert len('ab') == 3\n")
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    run = {"cwd": tmp_path, "env": environment, "capture_output": True, "text": True, "check": False}
+    subprocess.run([sys.executable, "-m", "rewritten"], **run)
+    (kept,) = tmp_path.rglob("test_one*pytest*.pyc")
+    before = kept.stat().st_mtime_ns, kept.stat().st_ino
+    said = subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_one.py"], **run).stdout
+    assert "where 2 = len('ab')" in said
+    assert (kept.stat().st_mtime_ns, kept.stat().st_ino) == before

@@ -51,7 +51,7 @@ def rows_of(path):
 
 def test_plan_writes_table_and_picture_and_names_the_winner(site, tmp_path, capsys):
     out = tmp_path / "new" / "folder"
-    methods = ["--methods", "greedy,orbit,noto", "--precisions", "f64", "--steps", "15"]
+    methods = ["--methods", "greedy,orbit", "--precisions", "f64", "--steps", "15"]
     assert command("plan", site, "-o", out, *methods, *QUICK, "--json") == 0
     printed = json.loads(capsys.readouterr().out)
     assert sorted(path.name for path in out.iterdir()) == ["tradeoff-plan.csv", "tradeoff-plan.png"]
@@ -59,7 +59,7 @@ def test_plan_writes_table_and_picture_and_names_the_winner(site, tmp_path, caps
     (found,) = printed["sites"]
     assert printed["failed"] == []
     names = [run["run"] for run in found["runs"]]
-    assert names == ["greedy", "orbit", "noto", "greedy f64", "greedy 15°", "greedy 300 candidates"]
+    assert names == ["greedy", "orbit", "greedy f64", "greedy 15°", "greedy 300 candidates"]
     assert found["winner"] in names
     best = max(run["share"] for run in found["runs"])
     assert next(run["share"] for run in found["runs"] if run["run"] == found["winner"]) >= best - 0.05

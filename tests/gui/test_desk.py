@@ -225,14 +225,14 @@ def crashed(application, make_desk, tmp_path):
     return tmp_path / "crashed", make_desk()
 
 
-@pytest.mark.parametrize("later", ["Decide later", escape, shut])
-def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, make_desk, tmp_path, later):
+def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, make_desk, tmp_path):
     folder, desk = crashed(application, make_desk, tmp_path)
-    with clicked(later):
-        desk.open_folder(folder)
-    turn_until_idle(application, desk)
-    assert desk.workspace.document.request.n_views is None
-    assert (folder / ".autosave").exists()
+    for later in ("Decide later", escape, shut):
+        with clicked(later):
+            desk.open_folder(folder)
+        turn_until_idle(application, desk)
+        assert desk.workspace.document.request.n_views is None
+        assert (folder / ".autosave").exists()
     with clicked("Delete the copy"):
         desk.open_folder(folder)
     turn_until_idle(application, desk)

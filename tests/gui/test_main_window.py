@@ -134,7 +134,7 @@ def test_editing_by_hand_shows_at_once_and_can_be_undone(application, desk):
 def test_plans_are_compared_side_by_side(application, desk):
     opened(application, desk, "roof")
     planned(application, desk, QUICK)
-    page = planned(application, desk, PlanRequest(method="noto", share=0.9, time_budget_s=4.0))
+    page = planned(application, desk, PlanRequest(method="noto", share=0.9, time_budget_s=1.0))
     page.lists.compare(tuple(entry.id for entry in desk.workspace.document.plans))
     turn_until_idle(application, desk)
     window = page.lists.compare_window

@@ -19,6 +19,7 @@ from planning.catalogue import profiles
 from planning.scenes import canyon, court, library, office
 from planning.site import panel_triangles
 from tests.benchmarks.view3d import large_plan, large_site
+from tests.slow import slow
 
 SIZE = (1280, 720)
 CAMERA = profiles()["m3e"].camera
@@ -37,7 +38,7 @@ def slow_first_hit(eye, ray, corners):
     return best
 
 
-@pytest.mark.parametrize("make", [office, library, court, canyon])
+@pytest.mark.parametrize("make", [office, slow(library), court, slow(canyon)])
 def test_the_ray_through_a_pixel_meets_what_the_slow_search_meets(make):
     model = make()
     scene = site_scene(model, LIGHT)

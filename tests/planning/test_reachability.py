@@ -59,7 +59,7 @@ def sections_hit(model, space, n_seeds=6, n=3000):
 
 
 @pytest.mark.parametrize(
-    ("scene", "occlusion"), [("office", False), ("library", False), slow("court", True), ("roof", False)]
+    ("scene", "occlusion"), [("office", False), slow("library", False), slow("court", True), ("roof", False)]
 )
 def test_nothing_proven_unreachable_is_ever_seen_from_an_allowed_place(scene, occlusion):
     model, space, found = whole_scene(scene, occlusion)

@@ -19,6 +19,7 @@ from planning.mesh import box_mesh, join
 from planning.site import Origin
 from planning.site_import.importer import ImportedSite, import_site
 from planning.site_import.options import ImportOptions
+from tests.slow import slow
 
 HERE = Origin(48.0, 11.0, 400.0)
 TOLD = "left out, because they are broken"
@@ -177,7 +178,7 @@ def damaged_gml(text: str, rng: random.Random) -> str:
     return text[: ring.start()] + ring[1] + instead[kind] + added + text[ring.end(2) :]
 
 
-BUILDINGS = ["4018106", "4018115", "4018133", "4018149a", "4018204b", "4018260", "4018270", "4018302"]
+BUILDINGS = ["4018106", slow("4018115"), "4018133", "4018149a", "4018204b", "4018260", "4018270", "4018302"]
 
 
 @pytest.mark.parametrize("name", BUILDINGS)

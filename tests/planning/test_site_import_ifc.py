@@ -813,6 +813,7 @@ def test_the_real_office_has_69_windows_on_four_facades(shared_data: Path) -> No
     assert any("hides 0 % of the directions" in note for note in site.notes)
 
 
+@pytest.mark.slow
 def test_the_real_curtain_wall_has_twelve_panes_and_nine_windows(shared_data: Path) -> None:
     site = import_site(shared_data / "bim" / "curtain_wall_small.ifc", ImportOptions())
     facades = site.model.site.facades

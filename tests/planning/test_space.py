@@ -16,6 +16,7 @@ from planning.routing.roadmap import COLUMN_SPACING_M
 from planning.scenes import SCENES
 from planning.site import Airspace, NoFlyZone
 from planning.space import LEG_MARGIN_M, SAFETY_MARGIN_M, free_space
+from tests.slow import slow
 
 
 def office_with(**changes):
@@ -72,7 +73,9 @@ def test_impossible_homes_are_refused_with_what_was_measured(home, message):
 LOW_CORNER, HIGH_CORNER = (-60.0, -70.0, 3.0), (60.0, 50.0, 75.0)
 
 
-@pytest.mark.parametrize("home", [(-60.0, -45.0, 0.0), (0.0, -70.0, 0.0), (60.0, 50.0, 0.0), (-60.0, -70.0, 72.9)])
+@pytest.mark.parametrize(
+    "home", [slow((-60.0, -45.0, 0.0)), slow((0.0, -70.0, 0.0)), (60.0, 50.0, 0.0), (-60.0, -70.0, 72.9)]
+)
 def test_home_on_the_border_of_the_airspace_is_inside_it(home):
     model = office_with(home_enu_m=home)
     assert model.site.airspace.min_enu_m == LOW_CORNER

@@ -255,6 +255,7 @@ def test_more_views_never_show_less_on_many_facades(site_model: SiteModel) -> No
     assert_more_views_never_show_less(site_model, (5, 12, 30, 70, 110, 150))
 
 
+@pytest.mark.slow
 def test_more_views_never_show_less_on_a_strip_of_small_panels_turned_by_33_degrees() -> None:
     """Views moved onto each other after the choice covered 1224, 1222 and 1219 sections with 60, 110 and 160 views."""
     site_model = turned_site(33.0, n_rows=4, n_columns=10, panel_m=(1.2, 1.2), foot_m=6.0)

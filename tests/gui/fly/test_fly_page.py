@@ -35,6 +35,7 @@ from tests.gui.driving import (
     type_into,
 )
 from tests.services.live_cases import Reopening, planned
+from tests.slow import slow
 
 ONE_IN = 100
 """One turn of so many may be longer."""
@@ -243,19 +244,19 @@ def test_an_address_that_leads_nowhere_is_told_and_another_can_be_tried(applicat
     assert page.desk.is_connected
 
 
-@pytest.mark.parametrize("no", ["Cancel", escape, shut])
-def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page, no):
+def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page):
     connect(application, page)
     ask_for(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
-    with clicked(no) as asked:
-        ask_for(page, Request.START)
-    assert "Is everybody clear of the aircraft?" in asked[0]
-    end = time.monotonic() + 0.5
-    while time.monotonic() < end:
-        application.processEvents()
-        time.sleep(0.005)
-    assert not page.desk.is_in_flight
+    for no in ("Cancel", escape, shut):
+        with clicked(no) as asked:
+            ask_for(page, Request.START)
+        assert "Is everybody clear of the aircraft?" in asked[0]
+        end = time.monotonic() + 0.5
+        while time.monotonic() < end:
+            application.processEvents()
+            time.sleep(0.005)
+        assert not page.desk.is_in_flight
 
 
 def test_closing_the_window_in_flight_asks_and_keeps_what_was_flown(application, desk, page, tmp_path):
@@ -395,8 +396,10 @@ def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio
     assert places.covered == []
 
 
-@pytest.mark.parametrize("scale", [1.0, 1.6])
-@pytest.mark.parametrize("language", [Language.ENGLISH, Language.GERMAN])
+@pytest.mark.parametrize(
+    ("language", "scale"),
+    [(Language.ENGLISH, 1.0), slow(Language.ENGLISH, 1.6), slow(Language.GERMAN, 1.0), (Language.GERMAN, 1.6)],
+)
 def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application, desk, scale, language):
     from groundstation.gui.theme import TOUCH_PX
 
@@ -611,7 +614,10 @@ def answer(text):
 
 
 def test_a_return_through_the_building_needs_a_typed_word(application, radio, desk, page, monkeypatch):
-    radio.changes = {"autopilot": Autopilot.PX4, "parameters": {"SIM_GZ_EN": None, "SYS_HITL": 0, "RTL_RETURN_ALT": 500.0}}
+    radio.changes = {
+        "autopilot": Autopilot.PX4,
+        "parameters": {"SIM_GZ_EN": None, "SYS_HITL": 0, "RTL_RETURN_ALT": 500.0},
+    }
     connect_radio(application, radio, page, monkeypatch)
     turn_until(application, lambda: "it returns above the airspace" in page.checks.text())
     for typed in (answer("go on"), escape):

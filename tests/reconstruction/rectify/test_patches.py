@@ -10,6 +10,7 @@ from reconstruction.rectify.patches import facades_in_photo
 from reconstruction.rectify.surface import FacadeSurface
 from tests.reconstruction.rectify.scenes import looking_at, surface_mesh
 from tests.reconstruction.rectify.test_surface import surface
+from tests.slow import slow
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -25,7 +26,7 @@ def ground() -> TriangleMesh:
     return box_mesh(np.array([-200.0, -200.0, -1.0]), np.array([200.0, 200.0, 0.0]))
 
 
-@pytest.mark.parametrize("curvature", [0.0, 0.02, 0.06, -0.03])
+@pytest.mark.parametrize("curvature", [0.0, slow(0.02), 0.06, slow(-0.03)])
 def test_one_dented_facade_above_the_ground_is_found(curvature: float) -> None:
     truth = wall(180.0, (0.0, 0.0, 12.0), curvature)
     model = join([surface_mesh(truth, (-14.0, -12.0), (14.0, 10.0), noise_m=0.08), ground()])

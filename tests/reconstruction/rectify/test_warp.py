@@ -10,6 +10,7 @@ from reconstruction.rectify.view import TangentView, surface_view
 from reconstruction.rectify.warp import photo_places, warp
 from tests.reconstruction.rectify.scenes import BENT, SMALL, looking_at
 from tests.reconstruction.rectify.test_surface import surface
+from tests.slow import slow
 
 
 def drawn(photo, face) -> np.ndarray:  # type: ignore[no-untyped-def]
@@ -21,8 +22,10 @@ def drawn(photo, face) -> np.ndarray:  # type: ignore[no-untyped-def]
     return np.nan_to_num(value, nan=0.0).round().astype(np.uint8).reshape(h, w)
 
 
-@pytest.mark.parametrize("curvature", [0.0, 0.04, -0.03])
-@pytest.mark.parametrize("intrinsics", [SMALL, BENT])
+@pytest.mark.parametrize(
+    ("intrinsics", "curvature"),
+    [(SMALL, 0.0), (SMALL, 0.04), (SMALL, -0.03), (BENT, 0.04), slow(BENT, 0.0), slow(BENT, -0.03)],
+)
 def test_a_wave_on_the_facade_is_found_where_it_is(curvature, intrinsics) -> None:  # type: ignore[no-untyped-def]
     face = surface(curvature)
     photo = looking_at(face, aside_m=5.0, above_m=3.0, intrinsics=intrinsics)
@@ -36,7 +39,7 @@ def test_a_wave_on_the_facade_is_found_where_it_is(curvature, intrinsics) -> Non
     assert np.percentile(off, 99.0) < 3.0
 
 
-@pytest.mark.parametrize("tolerance_px", [0.01, 0.2])
+@pytest.mark.parametrize("tolerance_px", [slow(0.01), 0.2])
 def test_interpolated_maps_keep_their_tolerance(tolerance_px: float) -> None:
     face = surface(0.05)
     for view in (

@@ -18,18 +18,18 @@ from reconstruction.segmentation.similarity import Rows
 
 
 def test_every_setting_is_scored_on_the_same_photos_and_drawn_a_line_a_knob() -> None:
-    photo = scored(make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(640, 480))))
+    photo = scored(make_facade(simple_case(Layout(4, 6), intrinsics=wide_camera(480, 360))))
     photos = PhotoSet("one", (photo.name,), lambda: iter([photo]))
-    base = SegmentationParameters(long_side_px=640)
-    runs = run_variants(photos, base, SegmentVariants((320, 640), (16,), ("lsd",)))
+    base = SegmentationParameters(long_side_px=480)
+    runs = run_variants(photos, base, SegmentVariants((240, 480), (16,), ("lsd",)))
     assert [run.name for run in runs] == [
         "as asked",
-        "image size 320",
-        "image size 640",
+        "image size 240",
+        "image size 480",
         "samples of a row 16",
         "detector lsd",
     ]
-    assert runs[3].parameters == SegmentationParameters(long_side_px=640, n_samples=16, use_posterior=True)
+    assert runs[3].parameters == SegmentationParameters(long_side_px=480, n_samples=16, use_posterior=True)
     # The same settings give the same score.
     assert runs[2].gap == runs[0].gap
     rows = variant_rows(runs)

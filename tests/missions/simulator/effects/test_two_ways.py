@@ -21,6 +21,7 @@ from planning.errors import InfeasibleError, InputError
 from planning.plan import Plan
 from planning.site import SiteModel
 from tests.missions.simulator.flying import Shot, bundled, fly, rms
+from tests.slow import slow
 
 NAMES = tuple(effect.name for effect in EFFECTS)
 SEEDS = range(4)
@@ -92,7 +93,7 @@ Measure = Callable[[str, Plan, SiteModel, Conditions], float]
         ("GNSS noise", "canyon", SINGLE, 2.0, position_error_m, True),
         ("multipath", "canyon", CALM, 2.0, position_error_m, False),
         ("multipath", "canyon", SINGLE, 2.0, position_error_m, True),
-        ("multipath", "tower", SINGLE, 2.0, position_error_m, True),
+        slow("multipath", "tower", SINGLE, 2.0, position_error_m, True),
         ("barometer drift", "office", CALM, 2.0, position_error_m, False),
         ("barometer drift", "single-panel", WEATHER, 2.0, position_error_m, False),
         ("barometer drift", "tower", WEATHER, 20.0, position_error_m, True),
