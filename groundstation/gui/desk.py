@@ -122,7 +122,8 @@ class Desk(QObject):
         self.window = self._make_window()
         self.window.messages.take_over(old.messages)
         self.window.setGeometry(geometry)
-        self.window.show_tab(shown)
+        if shown:
+            self.window.show_tab(shown)
         self.window.set_layout_text(layout)
         self.window.show()
         if self._settings.map_tiles:

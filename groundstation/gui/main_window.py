@@ -224,6 +224,7 @@ class MainWindow(QMainWindow):
 
     def retire(self) -> None:
         """Make room for another window on the same workspace: jobs go on, nobody is asked."""
+        self._show_no_more()
         self.stage.close_views()
         self.hide()
 
@@ -234,8 +235,13 @@ class MainWindow(QMainWindow):
         if not event.isAccepted():
             return
         self._workspace.close()
+        self._show_no_more()
         self.stage.close_views()
         super().closeEvent(event)
+
+    def _show_no_more(self) -> None:
+        """Bring no tab to the front any more: its menu may have gone before the row of tabs does."""
+        self._bar.blockSignals(True)
 
 
 def _splitter(
