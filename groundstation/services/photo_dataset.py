@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.services.given_files import read_given_site
+from groundstation.services.photo_intake import PhotoIntake
 from groundstation.services.photo_poses import RefinedOutcome, RefineWish, better_poses, refined_summary, still_true
 from planning.findings import Finding
 from planning.photo_files.folder import read_photos
 from planning.photo_files.places import PhotoHeights
 from planning.progress import QUIET, Monitor
+from planning.site import SiteModel
 from reconstruction.dataset.prepare import PreparedData, PrepareParameters, prepare
 from reconstruction.photos.poses import pose_photos
 
@@ -58,6 +60,17 @@ def prepare_files(
     prepared = prepare(better.photos, model, out, parameters, monitor)
     findings = (*read.findings, *still_true(posed.findings, better), *better.findings, *prepared.findings)
     return PreparedFiles(prepared, findings, better.refined)
+
+
+def prepare_read(intake: PhotoIntake, model: SiteModel, out: Path, monitor: Monitor = QUIET) -> PreparedData:
+    """Write the data set of photos that were read already, with the poses that they have by now.
+
+    Raises
+    ------
+    InputError
+        The site has no panels, there are no photos with a pose, none can be read, or the data set cannot be written.
+    """
+    return prepare(intake.photos, model, out, monitor=monitor)
 
 
 def prepared_summary(prepared: PreparedFiles) -> dict[str, Any]:

@@ -1,11 +1,7 @@
-"""The evening at the desk: from the photos of a flight to a report of the panes, by clicks alone.
-
-The data set between the photos and the model is made by its command: the window has none for it.
-"""
+"""The evening at the desk: from the photos of a flight to a report of the panes, by clicks alone."""
 
 import shutil
 import subprocess
-import sys
 
 import pytest
 
@@ -29,20 +25,9 @@ def test_from_the_photos_of_a_flight_to_a_report_of_the_panes(pilot, flight):
     project = pilot.folder / "house"
     _find_the_panels(pilot, site, photos)
     _save(pilot, project)
-    data_set = pilot.folder / "house.photos"
-    command = [
-        sys.executable,
-        "app.py",
-        "prepare",
-        str(photos),
-        str(project / "site" / "site.json"),
-        "-o",
-        str(data_set),
-    ]
-    made = subprocess.run(command, capture_output=True, text=True)
-    assert made.returncode == 0, made.stderr
+    _make_the_data_set(pilot, project / "dataset")
     model = pilot.folder / "model"
-    _train(pilot, data_set, model)
+    _train(pilot, model)
     _write_a_record(pilot, model)
     _report(pilot, pilot.folder / "report.pdf")
 
@@ -71,12 +56,21 @@ def _save(pilot, project):
     assert pilot.desk.workspace.session.is_saved
 
 
-def _train(pilot, data_set, model):
-    pilot.tab("Reconstruct")
-    pilot.see("reconstruct")
-    with clicked(choose(data_set)):
-        pilot.press("Data set: Choose ...")
+def _make_the_data_set(pilot, folder):
+    pilot.tab("Photos")
+    with clicked(choose(folder)):
+        pilot.press("Make data set ...")
     pilot.idle()
+    pilot.see("data set")
+    assert (folder / "dataset.json").is_file()
+    assert pilot.reads("The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}")
+
+
+def _train(pilot, model):
+    pilot.tab("Reconstruct")
+    pilot.idle()
+    pilot.see("reconstruct")
+    assert pilot.reads("{0}: {1} photos, {2} panels"), "the project's data set is there at once"
     with clicked(choose(model)):
         pilot.press("Model goes to: Choose ...")
     pilot.idle()

@@ -39,10 +39,8 @@ OTHER_TABLES = {"parts", "window"}
 """Words and what Python says, and what the window says instead; all others are of whole sentences."""
 
 NOT_SHOWN = {
-    **{
-        f"reconstruction/dataset/{name}.py": "data sets are prepared on the command line"
-        for name in ("effects", "prepare", "records", "refined_mesh")
-    },
+    "reconstruction/dataset/effects.py": "the decision about each effect, for the command line",
+    "reconstruction/dataset/records.py": "file content",
     "reconstruction/modelling/methods.py": "but for what each method is: sources and changes stand on the command line",
     "reconstruction/modelling/layer_names.py": "the window has names of its own for layers",
     "planning/effects.py": "the decision as one line, for the command line; the window has a card",

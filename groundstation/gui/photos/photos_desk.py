@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
@@ -24,6 +25,9 @@ from planning.findings import Severity
 from planning.plan import Plan
 from planning.site import Facade, SiteModel
 from reconstruction.panels.facades_file import found_facades
+
+if TYPE_CHECKING:
+    from reconstruction.dataset.prepare import PreparedData
 
 PHOTOS_FOLDER = "photos"
 """Of a project."""
@@ -135,6 +139,25 @@ class PhotosDesk(QObject):
                 self._taken_in(intake, basis)
 
         self._start(self.tr("Read photos"), work, done)
+
+    def make_data_set(self, folder: Path) -> None:
+        """Write what a model is trained on: these photos, their poses, and the panels of the site."""
+        model, intake = self._workspace.document.site, self.intake
+        if model is None or intake is None:
+            return
+
+        def work(context: JobContext) -> PreparedData:
+            from groundstation.services.photo_dataset import prepare_read
+
+            return prepare_read(intake, model, folder, context)
+
+        def done(prepared: PreparedData) -> None:
+            for found in prepared.findings:
+                self._workspace.say(found.severity, f"{found.place}: {self._workspace.words(found.message)}")
+            text = self.tr("The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}")
+            self._workspace.say(Severity.OK, text.format(len(prepared.photos), folder))
+
+        self._start(self.tr("Make the data set"), work, done)
 
     def count(self) -> None:
         """Count the coverage again where the panels or the plan are others now; once for each, should it fail."""

@@ -52,6 +52,7 @@ class PhotosPage(QObject):
         self.trials, self.sightings, self.poses = TrialChart(), PanelSightings(), PoseBox(self.desk)
         self.read, self.choose = QPushButton(self.tr("Read photos")), QPushButton(self.tr("Choose folder ..."))
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
+        self.data_set = QPushButton(self.tr("Make data set ..."))
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
         self.coverage_shown = CoverageShown(workspace, self.desk, self.pane.scene, self.sightings, self)
         self.left = self._make_page()
@@ -128,10 +129,11 @@ class PhotosPage(QObject):
         self.state.setWordWrap(True)
         self.state.setProperty("role", "muted")
         self.table.setMinimumHeight(80)
-        for widget in (self.table, self.tools, self.state, self.use):
+        self.data_set.setToolTip(self.tr("Photos, poses and the site's panels together: what a model is trained on"))
+        for widget in (self.table, self.tools, self.state, self.use, self.data_set):
             layout.addWidget(widget, int(widget is self.table))
         self.details = QTabWidget()
-        self.details.addTab(detail, self.tr("Panels"))
+        self.details.addTab(scrolled(detail), self.tr("Panels"))
         self.details.addTab(self.sightings, self.tr("Coverage"))
         self.details.addTab(scrolled(self.trials), self.tr("Accuracy"))
         self.details.setTabToolTip(2, self.tr("What accuracy costs in time"))
@@ -143,6 +145,7 @@ class PhotosPage(QObject):
         self.read.clicked.connect(self._read)
         self.find.clicked.connect(desk.find)
         self.use.clicked.connect(self._use)
+        self.data_set.clicked.connect(self._make_data_set)
         self.strip.chosen.connect(self._show_photo)
         self.map.chosen.connect(self.strip.choose)
         self.findings.placePicked.connect(self._go_to_place)
@@ -190,6 +193,16 @@ class PhotosPage(QObject):
             window.show_tab("site")
             first = next(facade.id for facade in draft.found.facades if facade.panels)
             self._workspace.jump_to(Item(ItemKind.FACADE, first))
+
+    def _make_data_set(self) -> None:
+        photos, project = self.desk.usual_folder(), self._workspace.session.folder
+        if photos is None:
+            return
+        proposed = photos.with_name(f"{photos.name}-dataset") if project is None else project / "dataset"
+        title = self.tr("Folder for the data set")
+        folder = self.questions.new_folder(self._stage.window(), title, proposed)
+        if folder is not None:
+            self.desk.make_data_set(folder)
 
     def _measure(self) -> None:
         place = self.pane.place()
@@ -283,6 +296,9 @@ class PhotosPage(QObject):
         )
         self.trials.measure.setEnabled(self.pane.place() is not None and not desk.is_busy)
         draft = desk.draft
+        model = self._workspace.document.site
+        has_panels = model is not None and model.site.n_panels > 0
+        self.data_set.setEnabled(self.find.isEnabled() and has_panels)
         self.use.setEnabled(draft is not None and not draft.unsolved)
         self.state.setText(self._where_it_stands())
         self.coverage.setText(self.coverage_shown.words())

@@ -249,7 +249,7 @@ class ViewPane(QWidget):
 
     def _note(self, left: Subject | None) -> str:
         if self._desk.card is None:
-            return self.tr("Choose a data set: a folder of photos with their poses (dataset.json).")
+            return self.tr("Choose a data set, or make one of the flight's photos on the Photos tab.")
         if left is None:
             return self.tr("A photo of the data set. The model is shown here once it learns.")
         if self._problem:

@@ -6,6 +6,16 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP
 
 SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "reading the data set"),
+    QT_TRANSLATE_NOOP("Sentences", "there are no photos with a pose to prepare"),
+    QT_TRANSLATE_NOOP("Sentences", "preparing photos"),
+    QT_TRANSLATE_NOOP("Sentences", "none of the {0} photos can be read; the first: {1}"),
+    QT_TRANSLATE_NOOP("Sentences", "writing cameras and points"),
+    QT_TRANSLATE_NOOP("Sentences", "the picture cannot be decoded; it was left out"),
+    QT_TRANSLATE_NOOP("Sentences", "the picture has {0} pixels, its camera {1} x {2}; it was left out"),
+    QT_TRANSLATE_NOOP("Sentences", "cannot be coded as {0}"),
+    QT_TRANSLATE_NOOP("Sentences", "is not empty; name a new folder for the data set"),
+    QT_TRANSLATE_NOOP("Sentences", "cannot be made ({0})"),
+    QT_TRANSLATE_NOOP("Sentences", "refining the mesh"),
     QT_TRANSLATE_NOOP("Sentences", "placing splats"),
     QT_TRANSLATE_NOOP("Sentences", "colouring splats"),
     QT_TRANSLATE_NOOP("Sentences", "counting glass"),

@@ -12,7 +12,7 @@ from groundstation.services.document import Document
 from groundstation.services.photo_cards import PhotoMark
 from groundstation.services.site_edits import HeightReference, set_origin
 from planning.findings import Severity
-from tests.gui.driving import choose, clicked, escape, turn_until
+from tests.gui.driving import choose, click_on, clicked, escape, turn_until
 from tests.services.photo_cases import site_model
 
 
@@ -169,3 +169,14 @@ def test_a_new_window_shows_the_same_photos(application, found):
     assert found.tab.strip.model().rowCount() == 3
     found.desk.choose(language=Language.ENGLISH)
     turn_until(application, lambda: found.desk.window.stage.scene() is not None)
+
+
+def test_a_data_set_is_made_of_the_photos_and_what_was_left_out_is_said(application, page, desk, tmp_path):
+    assert page.tab.data_set.isEnabled()
+    with clicked(choose(tmp_path / "new")):
+        click_on(desk.window, page.tab.data_set)
+    page.idle()
+    assert (tmp_path / "new" / "dataset.json").is_file()
+    said = [message.text for message in page.messages]
+    assert any("The data set is written" in text for text in said), said
+    assert any("cannot be decoded; it was left out" in text for text in said), said
