@@ -3671,6 +3671,14 @@ Blickrichtung: {3}</translation>
         <translation>Fotos lesen</translation>
     </message>
     <message>
+        <source>The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}</source>
+        <translation>Der Datensatz ist geschrieben, Fotos: {0}. Im Reiter Rekonstruktion ein Modell daraus trainieren: {1}</translation>
+    </message>
+    <message>
+        <source>Make the data set</source>
+        <translation>Datensatz anlegen</translation>
+    </message>
+    <message>
         <source>Count coverage</source>
         <translation>Abdeckung zählen</translation>
     </message>
@@ -3710,6 +3718,10 @@ Blickrichtung: {3}</translation>
         <translation>Diese Scheiben verwenden</translation>
     </message>
     <message>
+        <source>Make data set ...</source>
+        <translation>Datensatz anlegen ...</translation>
+    </message>
+    <message>
         <source>Poses, sharpness, exposure and the coverage that was achieved</source>
         <translation>Lagen, Schärfe, Belichtung und die erreichte Abdeckung</translation>
     </message>
@@ -3726,6 +3738,10 @@ Blickrichtung: {3}</translation>
         <translation>Diese Scheiben anstelle der bisherigen in den Standort setzen; Rückgängig nimmt es zurück</translation>
     </message>
     <message>
+        <source>Photos, poses and the site&apos;s panels together: what a model is trained on</source>
+        <translation>Fotos, Posen und Scheiben des Standorts zusammen: woraus ein Modell lernt</translation>
+    </message>
+    <message>
         <source>Panels</source>
         <translation>Scheiben</translation>
     </message>
@@ -3740,6 +3756,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>What accuracy costs in time</source>
         <translation>Was Genauigkeit an Zeit kostet</translation>
+    </message>
+    <message>
+        <source>Folder for the data set</source>
+        <translation>Ordner für den Datensatz</translation>
     </message>
     <message>
         <source>Press a panel, or choose it with arrows; the space bar takes it out or puts it back.</source>
@@ -8148,7 +8168,7 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     </message>
     <message>
         <source>cannot be written ({0})</source>
-        <translation>nicht zu schreiben ({0})</translation>
+        <translation>kann nicht geschrieben werden ({0})</translation>
     </message>
     <message>
         <source>expected a mesh file ({0}), got &apos;{1}&apos;</source>
@@ -11207,6 +11227,46 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>Datensatz wird gelesen</translation>
     </message>
     <message>
+        <source>there are no photos with a pose to prepare</source>
+        <translation>kein Foto hat eine Pose, aus der ein Datensatz werden könnte</translation>
+    </message>
+    <message>
+        <source>preparing photos</source>
+        <translation>Fotos werden aufbereitet</translation>
+    </message>
+    <message>
+        <source>none of the {0} photos can be read; the first: {1}</source>
+        <translation>keines der {0} Fotos ist lesbar; das erste: {1}</translation>
+    </message>
+    <message>
+        <source>writing cameras and points</source>
+        <translation>Kameras und Punkte werden geschrieben</translation>
+    </message>
+    <message>
+        <source>the picture cannot be decoded; it was left out</source>
+        <translation>das Bild ist nicht lesbar; es wurde ausgelassen</translation>
+    </message>
+    <message>
+        <source>the picture has {0} pixels, its camera {1} x {2}; it was left out</source>
+        <translation>das Bild hat {0} Pixel, seine Kamera {1} x {2}; es wurde ausgelassen</translation>
+    </message>
+    <message>
+        <source>cannot be coded as {0}</source>
+        <translation>kann nicht als {0} geschrieben werden</translation>
+    </message>
+    <message>
+        <source>is not empty; name a new folder for the data set</source>
+        <translation>ist nicht leer; für den Datensatz einen neuen Ordner nennen</translation>
+    </message>
+    <message>
+        <source>cannot be made ({0})</source>
+        <translation>kann nicht angelegt werden ({0})</translation>
+    </message>
+    <message>
+        <source>refining the mesh</source>
+        <translation>das Gebäudenetz wird verfeinert</translation>
+    </message>
+    <message>
         <source>placing splats</source>
         <translation>Splats werden verteilt</translation>
     </message>
@@ -13465,8 +13525,8 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>{0}: violett {1}, gelb {2}</translation>
     </message>
     <message>
-        <source>Choose a data set: a folder of photos with their poses (dataset.json).</source>
-        <translation>Einen Datensatz wählen: einen Ordner mit Fotos und ihren Posen (dataset.json).</translation>
+        <source>Choose a data set, or make one of the flight&apos;s photos on the Photos tab.</source>
+        <translation>Einen Datensatz wählen oder im Reiter Fotos aus den Fotos des Flugs anlegen.</translation>
     </message>
     <message>
         <source>A photo of the data set. The model is shown here once it learns.</source>
