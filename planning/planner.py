@@ -19,7 +19,7 @@ from planning.evaluate import DepthCount, coverage, depth
 from planning.findings import Finding
 from planning.methods import method_named
 from planning.optimise.budget import best_flights, views_within_budget, with_fewer_views
-from planning.optimise.greedy import greedy
+from planning.optimise.greedy import greedy, most_telling
 from planning.optimise.locked import locked_views
 from planning.optimise.problem import Goal, Optimiser, ViewProblem, nothing_to_see
 from planning.optimise.shortfall import OpenSection, open_sections
@@ -35,16 +35,22 @@ from planning.prepare import Prepared, prepare
 from planning.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
 from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, PlanRequest
 from planning.routing.flights import Flight, flight_times, plan_flights
+from planning.routing.legs import n_stops_within
 from planning.routing.roadmap import build_roadmap
 from planning.site import SiteModel
 from planning.space import free_space
+from planning.timing import motion_limits, round_trip_metric
 
-REACHABILITY_SHARE, ROUTING_SHARE = 0.5, 0.3
+REACHABILITY_SHARE, ROUTING_SHARE = 0.3, 0.3
 """Parts of the time budget: what proofs of what can be reached may take at most, and what is kept for routing."""
 
 SHORTEST_ROUTING_S = 1.0
 LONGEST_ROUTING_S = 4.0
-"""Routing gets at least and at most this long; 560 views gain nothing more after 1 s (docs/benchmarks.md)."""
+DRAWING_S = 0.3
+FEWEST_ROUTED = 100
+"""Routing gets at least and at most this long; 560 views gain nothing more after 1 s (docs/benchmarks.md). `DRAWING_S`
+of the budget is kept for what comes after the search, and is the least that it gets. So many views are
+routed however late it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +70,8 @@ class Planned:
         Sections covered once, twice and so on.
     open_sections
         Why sections that may be seen are not, where a share was wanted and is not reached.
+    n_left_out
+        Views chosen but left out, since the time budget did not last for ways to them.
     seconds
         Wall time by stage, in order.
     prepared
@@ -78,6 +86,7 @@ class Planned:
     seconds: dict[str, float] = field(hash=False)
     prepared: Prepared = field(repr=False, compare=False)
     open_sections: tuple[OpenSection, ...] = ()
+    n_left_out: int = 0
 
 
 def plan_flight(
@@ -85,6 +94,7 @@ def plan_flight(
     request: PlanRequest,
     *,
     prepared: Prepared | None = None,
+    started_s: float | None = None,
     stop: Stop = never,
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
@@ -95,6 +105,9 @@ def plan_flight(
     ----------
     prepared
         The site as an earlier plan left it, where it fits the request (`Prepared.unfit_for`).
+    started_s
+        When the time budget began, by `time.perf_counter`, where that was before this call: a program that is started
+        for one plan spends some of it on itself.
 
     Raises
     ------
@@ -108,10 +121,12 @@ def plan_flight(
     trace = Trace() if trace is None else trace
     chosen_profile = profile(request.profile_id)
     _check_method(request)
-    limit = TimeLimit(request.time_budget_s)
+    spent_s = 0.0 if started_s is None else time.perf_counter() - started_s
+    limit = TimeLimit(request.time_budget_s - spent_s)
     watch = _StopWatch()
     if prepared is None:
-        prepared = _prepared(site_model, request, chosen_profile, stop, monitor)
+        proving = any_of(stop, TimeLimit(REACHABILITY_SHARE * limit.remaining_s()))
+        prepared = _prepared(site_model, request, chosen_profile, proving, monitor)
     else:
         prepared = _fitting(prepared, site_model, request, chosen_profile)
     watch.lap("reachability")
@@ -129,13 +144,16 @@ def plan_flight(
         views = merge_close_views(problem, views, spacing_m)
     if len(views.heading_rad) == 0:
         raise nothing_to_see()
+    n_chosen = len(views.heading_rad)
+    if limit.remaining_s() < routing_s + ROUTING_SHARE * request.time_budget_s:
+        views = _that_can_be_routed(problem, views, request, chosen_profile, limit.remaining_s() - DRAWING_S)
     watch.lap("views")
-    flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
+    flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     while request.n_batteries is not None and len(flights) > request.n_batteries:
         flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked)
         if len(flights) > request.n_batteries:  # all of them have locked views
             views = with_fewer_views(problem.model, views, n_locked)
-            flights = _route(problem, views, request, chosen_profile, routing_s, stop, monitor)
+            flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     watch.lap("routing")
     plan = _plan(site_model, request, chosen_profile, prepared, views, flights, trace)
     watch.lap("certificate")
@@ -149,7 +167,18 @@ def plan_flight(
         watch.seconds,
         prepared,
         _open_sections(problem, plan, request),
+        n_chosen - len(views.heading_rad) if request.n_batteries is None else 0,
     )
+
+
+def _that_can_be_routed(
+    problem: ViewProblem, views: ViewpointArrays, request: PlanRequest, chosen_profile: Profile, seconds: float
+) -> ViewpointArrays:
+    """The most telling of the views, as many as ways can be found for in time."""
+    metric = round_trip_metric(motion_limits(chosen_profile.aircraft, request.rules))
+    n_locked = len(request.locked)
+    n_views = max(FEWEST_ROUTED, n_locked, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
+    return most_telling(problem.model, views, n_views, n_locked)
 
 
 def _open_sections(problem: ViewProblem, plan: Plan, request: PlanRequest) -> tuple[OpenSection, ...]:
@@ -170,7 +199,7 @@ def _prepared(
         request.constraints,
         precision=request.precision,
         seed=request.seed,
-        stop=any_of(stop, TimeLimit(REACHABILITY_SHARE * request.time_budget_s)),
+        stop=stop,
         monitor=monitor,
     )
 
@@ -236,19 +265,23 @@ def _route(
     views: ViewpointArrays,
     request: PlanRequest,
     chosen_profile: Profile,
+    limit: TimeLimit,
     routing_s: float,
     stop: Stop,
     monitor: Monitor,
 ) -> tuple[Flight, ...]:
     aircraft, rules = chosen_profile.aircraft, request.rules
-    times = flight_times(problem.roadmap, views, aircraft, rules, monitor)
+    searching_s = min(routing_s, SHORTEST_ROUTING_S)
+    looking = any_of(stop, TimeLimit(limit.remaining_s() - searching_s))
+    times = flight_times(problem.roadmap, views, aircraft, rules, monitor, stop=looking)
+    searching_s = float(np.clip(limit.remaining_s() - DRAWING_S, DRAWING_S, routing_s))
     return plan_flights(
         times,
         views,
         aircraft,
         rules,
         seed=request.seed,
-        stop=any_of(stop, TimeLimit(routing_s)),
+        stop=any_of(stop, TimeLimit(searching_s)),
         monitor=monitor,
     )
 

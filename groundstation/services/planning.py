@@ -35,13 +35,14 @@ def plan_site(
     request: PlanRequest,
     out: Path | None,
     *,
+    started_s: float | None = None,
     stop: Stop = never,
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
 ) -> Planned:
     """Plan a flight over the site in a file, and write the plan where `out` says.
 
-    A finding says so where the plan has less than was asked for.
+    A finding says so where the plan has less than was asked for. `started_s` is as in `planning.planner.plan_flight`.
 
     Raises
     ------
@@ -51,7 +52,9 @@ def plan_site(
     if out is not None:
         check_not_index(out)
         check_output(out, [site_path])
-    planned = plan_document_site(read_given_site(site_path), request, stop=stop, trace=trace, monitor=monitor)
+    planned = plan_document_site(
+        read_given_site(site_path), request, started_s=started_s, stop=stop, trace=trace, monitor=monitor
+    )
     if out is not None:
         write_plan(out, planned.plan)
     return planned
@@ -62,6 +65,7 @@ def plan_document_site(
     request: PlanRequest,
     prepared: Prepared | None = None,
     *,
+    started_s: float | None = None,
     stop: Stop = never,
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
@@ -82,7 +86,9 @@ def plan_document_site(
     wanted = (site_model, camera, request.constraints, request.precision, request.seed)
     if prepared is not None and (prepared.is_cut_short or prepared.unfit_for(*wanted)):
         prepared = None
-    planned = plan_flight(site_model, request, prepared=prepared, stop=stop, trace=trace, monitor=monitor)
+    planned = plan_flight(
+        site_model, request, prepared=prepared, started_s=started_s, stop=stop, trace=trace, monitor=monitor
+    )
     return replace(planned, findings=(*planned.findings, *_shortfalls(request, planned)))
 
 
@@ -119,8 +125,12 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
     if lowest_m is not None and lowest_m < MIN_HEIGHT_ABOVE_GROUND_M:
         yield low_flight_allowed(lowest_m)
     yield from _too_coarse(plan)
+    if planned.n_left_out:
+        n_left_out = planned.n_left_out
+        text = f"{n_left_out} views were left out, since the time did not last for ways to them; allow it more time"
+        yield Finding(Severity.WARNING, "time-budget", text, "", float(n_left_out), 0.0, "views")
     n_views = len(plan.viewpoints)
-    if request.n_views is not None and n_views < request.n_views:
+    if request.n_views is not None and n_views < request.n_views and not planned.n_left_out:
         text = (
             f"{n_views} views instead of the {request.n_views} asked for: more would show nothing new or could not be "
             "flown"

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from planning.coverage.model import Elements
 from planning.coverage.sections import PanelFrames
+from planning.jit import chunks
 from planning.optimise.problem import ViewProblem, concatenate, nothing_to_see, take
 from planning.plan import ViewpointArrays
 from planning.positions import aimed_views, rounded, spread_positions
+from planning.progress import Stop, never
 from planning.reach_kernel import REACHABLE
 from planning.reachability import keeps_margins
 from planning.request import N_CANDIDATES
@@ -24,6 +26,9 @@ MAX_ENTRIES = 60_000_000
 
 WITNESS_COVERS_WANTED = 3
 """Sections that fewer spread candidates cover get a candidate of their own."""
+
+VIEWS_PER_BLOCK = 4000
+"""Spread candidates looked at between two looks at the clock."""
 
 FEWEST_AROUND, MOST_AROUND, MAX_AROUND = 1, 24, 4000
 """Places tried around each of these candidates, and for all together, at a time. Where sections are seen from a narrow
@@ -43,10 +48,10 @@ class Pool(NamedTuple):
     elements: Elements
 
 
-def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDIDATES) -> Pool:
+def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDIDATES, stop: Stop = never) -> Pool:
     """Views to choose from, rounded as plan files hold them, so that what is chosen is what is flown.
 
-    All can be flown to from home.
+    All can be flown to from home. When `stop` asks for an end, spread views not yet looked at are left out.
 
     Raises
     ------
@@ -55,7 +60,7 @@ def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDID
     """
     rng = np.random.default_rng(seed)
     spread = spread_candidates(problem, n_candidates, rng)
-    spread_elements = problem.model.elements(spread)
+    spread, spread_elements = _elements_until(problem, spread, stop)
     if len(spread_elements.items) > MAX_ENTRIES:
         kept = np.arange(len(spread.heading_rad)) < len(spread.heading_rad) * MAX_ENTRIES / len(spread_elements.items)
         spread = take(spread, kept)
@@ -67,6 +72,23 @@ def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDID
     if not useful.any():
         raise nothing_to_see()
     return keep(pool, useful)
+
+
+def _elements_until(problem: ViewProblem, views: ViewpointArrays, stop: Stop) -> tuple[ViewpointArrays, Elements]:
+    """The first of the views, in blocks, until `stop`, and what they cover."""
+    n_views = len(views.heading_rad)
+    parts: list[Pool] = []
+    for start, end in chunks(n_views, VIEWS_PER_BLOCK):
+        if parts and stop():
+            break
+        part = take(views, np.arange(start, end))
+        parts.append(Pool(part, problem.model.elements(part)))
+    if len(parts) <= 1:
+        return parts[0] if parts else Pool(views, problem.model.elements(views))
+    counts = np.concatenate([np.diff(part.elements.starts) for part in parts])
+    starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    items = np.concatenate([part.elements.items for part in parts])
+    return Pool(concatenate([part.views for part in parts]), Elements(starts, items))
 
 
 def spread_candidates(problem: ViewProblem, n: int, rng: np.random.Generator) -> ViewpointArrays:

@@ -25,7 +25,7 @@ from planning.optimise.locked import NONE_LOCKED, covered_by
 from planning.optimise.problem import Goal, ViewProblem, ViewSet, concatenate, take
 from planning.optimise.spacing import ANYWHERE, Apart, apart_of, rounding_spacing_m, views_apart
 from planning.plan import ViewpointArrays
-from planning.progress import Monitor, Stop, Trace
+from planning.progress import QUIET, Monitor, Stop, Trace
 from planning.request import GreedyParameters
 
 Array = NDArray[np.float64]
@@ -66,7 +66,7 @@ def greedy(
         There is no allowed viewpoint that sees anything.
     """
     monitor.report("trying viewpoints", 0, 1)
-    pool = candidate_pool(problem, seed, parameters.n_candidates)
+    pool = candidate_pool(problem, seed, parameters.n_candidates, stop)
     weights = element_weights(problem.model, parameters.solid_angle_weights)
     covered = covered_by(problem.model, locked)
     coverable = (np.bincount(pool.elements.items, minlength=len(weights)) > 0) | (covered > 0)
@@ -205,6 +205,18 @@ def _shown_by(pool: Pool, n_elements: int) -> NDArray[np.int64]:
     return shown_by
 
 
+def most_telling(model: CoverageModel, views: ViewpointArrays, n_views: int, n_locked: int) -> ViewpointArrays:
+    """So many of the views, the locked ones in front, that cover most, chosen greedily; all where they are no more."""
+    if len(views.heading_rad) <= n_views:
+        return views
+    locked = take(views, np.arange(n_locked))
+    pool = Pool(views, model.elements(views))
+    weights, covered = np.ones(model.n_elements), covered_by(model, locked)
+    chosen, _ = choose_greedily(pool, weights, max(0, n_views - n_locked), np.inf, Trace(), QUIET, covered)
+    free = chosen[chosen >= n_locked]
+    return concatenate([locked, take(views, np.sort(free))])
+
+
 def _bound(
     elements: Elements, weights: Array, covered: NDArray[np.int32], n_views: int, known: float, stop: Stop
 ) -> float:
@@ -265,9 +277,12 @@ def choose_greedily(
 
 
 def _fewest_sharp_views(choice: Choice, pool: Pool, share: float, parameters: GreedyParameters) -> ViewpointArrays:
-    """Fewest views found that cover sharply the share of what candidates cover sharply; none where all views are."""
+    """Fewest views found that cover sharply the share of what candidates cover sharply.
+
+    None where all views are sharp, and where the time is up: then one choice has to do.
+    """
     sharp = choice.of_sharp_views()
-    if sharp is choice:
+    if sharp is choice or choice.stop():
         return NONE_LOCKED
     near = Pool(pool.views, sharp.problem.model.elements(pool.views))
     near = keep(near, np.diff(near.elements.starts) > 0)

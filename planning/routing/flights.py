@@ -71,9 +71,15 @@ class FlightTimes:
 
 
 def flight_times(
-    roadmap: Roadmap, views: ViewpointArrays, aircraft: Aircraft, rules: FlightRules, monitor: Monitor = QUIET
+    roadmap: Roadmap,
+    views: ViewpointArrays,
+    aircraft: Aircraft,
+    rules: FlightRules,
+    monitor: Monitor = QUIET,
+    *,
+    stop: Stop = never,
 ) -> FlightTimes:
-    """Travel times (with turns), time at each view, and what one battery allows.
+    """Travel times (with turns), time at each view, and what one battery allows; `stop` as in `build_leg_table`.
 
     Raises
     ------
@@ -81,7 +87,7 @@ def flight_times(
         The wind is too strong, or nothing of the battery is left.
     """
     limits = motion_limits(aircraft, rules)
-    table = build_leg_table(roadmap, views.positions_enu_m, round_trip_metric(limits), monitor)
+    table = build_leg_table(roadmap, views.positions_enu_m, round_trip_metric(limits), monitor, stop=stop)
     travel_s = with_turns_s(table.cost, views.heading_rad, views.pitch_rad, limits, turn_in_flight=rules.turn_in_flight)
     service_s = np.full(len(views.heading_rad), photo_stop_s(aircraft, rules))
     return FlightTimes(table, travel_s, service_s, usable_battery_s(aircraft, rules))

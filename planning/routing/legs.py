@@ -6,6 +6,7 @@ is then pulled tight. Every leg is certified on its whole length, not sampled.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -17,7 +18,7 @@ from scipy.spatial.distance import cdist
 
 from planning.errors import InfeasibleError
 from planning.jit import chunks
-from planning.progress import QUIET, Monitor
+from planning.progress import QUIET, Monitor, Stop, never
 from planning.routing.roadmap import MOST_NEIGHBOURS, LegMetric, Roadmap, unique_pairs
 
 Array = NDArray[np.float64]
@@ -31,10 +32,13 @@ home. With the nearest nodes alone, ways are made of many short legs: on office,
 MIN_SPACING_M = 0.5
 """Smallest distance between waypoints that DJI's firmware accepts (Payload SDK, waypoint errors)."""
 
-PAIRS_PER_STEP = 200_000
+PAIRS_PER_STEP = 20_000
 ROWS_PER_STEP = 8
 """Shortest ways are searched from so many stops at a time: SciPy holds the interpreter's lock for 1 to 2 ms each."""
 TIGHTEN_ROUNDS = 12
+
+N_TRIED_LEGS = 400
+"""Legs on which it is measured how long one takes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,16 +124,24 @@ def _skip_vertices(points: Array, clear: Callable[[Array, Array], NDArray[np.boo
     return points[kept].copy()
 
 
-def build_leg_table(roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, monitor: Monitor = QUIET) -> LegTable:
-    """Costs between home and stops, shape (n, 3), all of which must be allowed positions."""
+def build_leg_table(
+    roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, monitor: Monitor = QUIET, *, stop: Stop = never
+) -> LegTable:
+    """Costs between home and stops, shape (n, 3), all of which must be allowed positions.
+
+    When `stop` asks for an end, straight legs not yet looked at, the longest, are replaced by ways over shorter ones.
+    """
     space = roadmap.space
     n = len(stops_enu_m) + 1
     points = np.concatenate([space.home_enu_m[None], stops_enu_m])
     i, j = np.triu_indices(n, 1)
+    nearest_first = np.argsort(np.linalg.norm(points[j] - points[i], axis=1), kind="stable")
     straight = np.zeros((n, n), np.bool_)
     for start, end in chunks(len(i), PAIRS_PER_STEP):
         monitor.report("checking legs", start, len(i))
-        a, b = i[start:end], j[start:end]
+        if start > 0 and stop():
+            break
+        a, b = i[nearest_first[start:end]], j[nearest_first[start:end]]
         from_stop = a > 0
         straight[a[from_stop], b[from_stop]] = space.legs_clear(points[a[from_stop]], points[b[from_stop]])
     straight |= straight.T
@@ -146,6 +158,25 @@ def build_leg_table(roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, mon
         around = dijkstra(graph, directed=False, indices=rows)[:, :n]
         cost[rows] = np.where(np.isfinite(cost[rows]), cost[rows], around)
     return LegTable(roadmap, metric, points, np.minimum(cost, cost.T), straight, graph)
+
+
+def n_stops_within(roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, seconds: float) -> int:
+    """Number of the stops, shape (n, 3), n > 0, for which a leg table can be made in so many seconds, at least one.
+
+    The time that a leg and a search for ways take here and now is measured on a few of them.
+    """
+    nodes, n_nodes = roadmap.nodes_enu_m, len(roadmap.nodes_enu_m)
+    number = np.arange(N_TRIED_LEGS)
+    started_s = time.perf_counter()
+    roadmap.space.legs_clear(stops_enu_m[number % len(stops_enu_m)], nodes[number * 31 % n_nodes])
+    leg_s = (time.perf_counter() - started_s) / N_TRIED_LEGS
+    a, b = roadmap.edges.T
+    graph = csr_array((metric(nodes[b] - nodes[a]), (a, b)), shape=(n_nodes, n_nodes))
+    started_s = time.perf_counter()
+    dijkstra(graph, directed=False, indices=[0])
+    search_s = time.perf_counter() - started_s
+    per_stop_s = (N_HUBS + roadmap.n_column + 2 * ROADMAP_NEIGHBOURS) * leg_s + search_s
+    return max(1, int((seconds - PAIRS_PER_STEP * leg_s) / per_stop_s))
 
 
 def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], metric: LegMetric) -> csr_array:

@@ -23,7 +23,7 @@ from planning.plan import Constraints, HistoryPoint
 from planning.planner import Planned, plan_flight
 from planning.prepare import coverage_model
 from planning.progress import QUIET, Monitor, QualityPoint, Trace
-from planning.request import GreedyParameters, PlanRequest, Precision
+from planning.request import LARGEST_SEED, GreedyParameters, PlanRequest, Precision
 from planning.scenes import SCENES
 from planning.site import SiteModel
 from planning.space import free_space
@@ -126,7 +126,8 @@ def settings(base: PlanRequest, variants: Variants, n_seeds: int = 1) -> tuple[P
     if base.method == "greedy":
         requests += [replace(base, greedy=replace(base.greedy, n_candidates=n)) for n in variants.n_candidates]
     different = tuple(dict.fromkeys(requests))
-    return tuple(replace(request, seed=base.seed + i) for request in different for i in range(n_seeds))
+    seeds = [(base.seed + i) % (LARGEST_SEED + 1) for i in range(n_seeds)]
+    return tuple(replace(request, seed=seed) for request in different for seed in seeds)
 
 
 def common_steps(requests: Sequence[PlanRequest]) -> tuple[float, ...]:

@@ -12,9 +12,14 @@ import pytest
 
 from groundstation.cli.main import WindowWish, build_parser, main
 from groundstation.cli.options import new_folder
+from missions.flight.flight_file import flight_of, write_flight
 from planning.errors import InputError, OperationCancelled
+from planning.plan_file import read_plan
+from planning.request import LARGEST_SEED
 from planning.scenes import write_scene
+from planning.site_file import read_site
 from tests.cli.conftest import ROOT
+from tests.reconstruction.modelling.made_data_set import write_data_set
 
 
 def test_version_is_told(reflight):
@@ -228,3 +233,73 @@ def test_ctrl_c_in_the_middle_of_a_plan_leaves_no_file_and_no_traceback(tmp_path
     assert (out, err) == ("", "cancelled\n")
     assert set(tmp_path.iterdir()) == before
     assert seconds < 20.0
+
+
+SEEDED = {
+    "plan": ("plan", "{pane}/site.json", "-o", "{out}/p.json", "--views", 4, "--candidates", 300, "--time-budget", 3),
+    "route": ("route", "{out}/square.tsp", "--time-budget", 0.3),
+    "route pyvrp": ("route", "{out}/square.tsp", "--method", "pyvrp", "--time-budget", 0.3),
+    "simulate": ("simulate", "{pane}/plan.json", "{pane}/site.json", "-o", "{out}/f.json"),
+    "topup": ("topup", "{pane}/none.json", "{pane}/plan.json", "{pane}/site.json", "-o", "{out}/t.json"),
+    "tradeoff plan": (
+        *("tradeoff", "plan", "{pane}/site.json", "-o", "{out}/a", "--views", 3, "--candidates", 200, "--jobs", 1),
+        *("--time-budget", 2, "--seeds", 2, "--methods", "greedy", "--precisions", "f32", "--steps", "30"),
+    ),
+    "tradeoff route": ("tradeoff", "route", "{out}/square.tsp", "-o", "{out}/b", "--seconds", 0.3),
+    "train": (
+        *("train", "{data}", "-o", "{out}/m", "--preset", "smoke", "--iterations", 4, "--method", "2dgs"),
+        *("--settings", "{data}/../few.toml"),
+    ),
+    "tradeoff train": (
+        *("tradeoff", "train", "{data}", "-o", "{out}/c", "--preset", "smoke", "--iterations", 4),
+        *("--method", "2dgs", "--vary", "raster.tile_px=16"),
+    ),
+    "scene": ("scene", "render", "planar", "-o", "{out}/s", "--views", 1, "--width", 48),
+    "tradeoff scene": (
+        *("tradeoff", "scene", "planar-far", "-o", "{out}/d", "--width", 48, "--views", 1, "--truth-rays", 0),
+        *("--samples", "1", "--widths", "24", "--turn", "none"),
+    ),
+}
+"""Commands with a seed, on the smallest input they take."""
+
+RENDERS = {"scene", "tradeoff scene", "train", "tradeoff train"}
+"""These take some seconds."""
+
+
+def seeded_commands(parser, words=()):
+    """Words of all commands below a parser that take a seed."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name, below in action.choices.items():
+                yield from seeded_commands(below, (*words, name))
+        elif "--seed" in action.option_strings:
+            yield " ".join(words)
+
+
+def test_every_command_with_a_seed_is_tried_with_the_smallest_and_the_largest():
+    tried = {" ".join(str(word) for word in words[:2]) for words in SEEDED.values()}
+    for command in seeded_commands(build_parser()):
+        assert command in tried or command in {words.split()[0] for words in tried}, command
+
+
+@pytest.fixture(scope="module")
+def seed_data(tmp_path_factory):
+    """A data set to train on, and settings that are quick."""
+    folder = tmp_path_factory.mktemp("seeds")
+    write_data_set(folder / "data", n=8)
+    (folder / "few.toml").write_text("n_splats = 150\nmax_splats = 200\n")
+    return folder / "data"
+
+
+@pytest.mark.parametrize("seed", [0, LARGEST_SEED])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in RENDERS else name for name in SEEDED]
+)
+def test_every_seed_of_63_bits_is_taken(reflight, pane, seed_data, tmp_path, name, seed):
+    plan = read_plan(pane / "plan.json")
+    write_flight(pane / "none.json", flight_of(plan, read_site(pane / "site.json"), ()))
+    square = "NAME: s\nTYPE: TSP\nDIMENSION: 4\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION\n"
+    (tmp_path / "square.tsp").write_text(square + "1 0 0\n2 10 10\n3 10 0\n4 0 10\nEOF\n")
+    words = [str(word).format(pane=pane, out=tmp_path, data=seed_data) for word in SEEDED[name]]
+    done = reflight(*words, "--seed", seed)
+    assert done.status == 0, done.err

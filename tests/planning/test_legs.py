@@ -15,6 +15,7 @@ from planning.catalogue import profile
 from planning.errors import InfeasibleError, OperationCancelled
 from planning.mesh import box_mesh, empty_mesh
 from planning.plan import FlightRules
+from planning.routing import legs
 from planning.routing.legs import MIN_SPACING_M, LegTable, build_leg_table
 from planning.routing.roadmap import build_roadmap, leg_length
 from planning.scenes import ORIGIN, SCENES, panel_grid
@@ -87,6 +88,19 @@ def test_every_point_of_every_leg_keeps_every_distance_and_ways_around_are_tight
                 nearest.append(clearance)
     assert len(nearest) > 5
     assert min(nearest) < DISTANCE_M + 0.3, "something is in the way, so the shortest way passes close to it"
+
+
+@pytest.mark.parametrize("scene", ["block", "court"])
+def test_legs_not_looked_at_in_time_become_ways_over_shorter_ones(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = table_of(scene)
+    monkeypatch.setattr(legs, "PAIRS_PER_STEP", 30)
+    cut = build_leg_table(whole.roadmap, whole.points_enu_m[1:], leg_length, stop=lambda: True)
+    assert np.isfinite(cut.cost).all()
+    assert (cut.cost >= whole.cost - 1e-9).all()
+    assert np.median(cut.cost[1:, 1:] / np.maximum(whole.cost[1:, 1:], 1e-9)) < 1.3
+    triangles = solid_triangles(block() if scene == "block" else SCENES[scene]())
+    for start, end in [(1, 3), (2, 9), (4, 11)]:
+        assert float(distances(dense_points(cut.polyline(start, end), 0.3), triangles).min()) >= DISTANCE_M
 
 
 @pytest.mark.parametrize("scene", ["kiosk", "block", "court"])

@@ -161,10 +161,10 @@ def _max_distance_m(options: argparse.Namespace) -> float | None:
 
 def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
+    started = time.perf_counter()  # Loading what planning needs is part of the time budget.
     from groundstation.cli.console import print_findings, print_json, print_next, run_job
     from groundstation.services.planning import locked_viewpoints, plan_site, planned_summary
 
-    started = time.perf_counter()
     request = request_of(options)
     if options.keep is not None:
         with in_words_of_options():
@@ -172,7 +172,13 @@ def run(options: argparse.Namespace) -> int:
     planned = run_job(
         "plan",
         lambda context: plan_site(
-            options.site, request, options.out, stop=context.stop, trace=context.trace, monitor=context
+            options.site,
+            request,
+            options.out,
+            started_s=started,
+            stop=context.stop,
+            trace=context.trace,
+            monitor=context,
         ),
     )
     seconds = time.perf_counter() - started

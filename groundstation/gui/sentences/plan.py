@@ -51,6 +51,9 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "sections seen only with pixels larger than {0} mm: {1} of {2} covered"),
     QT_TRANSLATE_NOOP("Sentences", "{0}, the coarsest with {1} mm"),
     QT_TRANSLATE_NOOP("Sentences", "{0}; allow more views, or a larger pixel"),
+    QT_TRANSLATE_NOOP(
+        "Sentences", "{0} views were left out, since the time did not last for ways to them; allow it more time"
+    ),
     QT_TRANSLATE_NOOP("Sentences", "no panel is seen from any viewpoint"),
     QT_TRANSLATE_NOOP("Sentences", "{0} of {1} sections are covered, as the plan states"),
     QT_TRANSLATE_NOOP("Sentences", "{0} of {1} sections are covered, but the plan states {2} of {3}"),
