@@ -7095,6 +7095,10 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>{0}; mehr Aufnahmen oder ein größeres Pixel zulassen</translation>
     </message>
     <message>
+        <source>{0} views were left out, since the time did not last for ways to them; allow it more time</source>
+        <translation>ausgelassene Aufnahmen: {0}, da die Zeit nicht für Wege zu ihnen gereicht hat; mehr Zeit geben</translation>
+    </message>
+    <message>
         <source>no panel is seen from any viewpoint</source>
         <translation>von keinem Aufnahmepunkt ist eine Scheibe zu sehen</translation>
     </message>
