@@ -8,19 +8,31 @@ kept on disk; `python -m planning.warm_up` compiles everything once, at set-up.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.types import Type
+from numba.core.types.misc import unliteral
 
 F = TypeVar("F", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
 
 def kernel(function: F) -> F:
-    """Compile a numeric function; NaN and signed zeros behave as IEEE 754 says."""
-    return cast("F", numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+    """Compile a numeric function; NaN and signed zeros behave as IEEE 754 says.
+
+    A kernel that others call with constants is compiled once; Numba by itself would compile it once for each constant.
+    """
+    compiled = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    template_of = compiled.get_call_template
+
+    def get_call_template(arguments: Sequence[Type], named: Mapping[str, Type]) -> Any:
+        return template_of(tuple(map(unliteral, arguments)), {name: unliteral(each) for name, each in named.items()})
+
+    compiled.get_call_template = get_call_template
+    return cast("F", compiled)
 
 
 def inline(function: F) -> F:

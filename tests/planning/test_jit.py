@@ -84,3 +84,18 @@ def test_kernels_run_from_several_threads_at_once() -> None:
 def test_kernels_agree_with_their_python_source() -> None:
     values = np.random.default_rng(0).normal(size=100)
     assert _halves_summed(values) == pytest.approx(_halves_summed.py_func(values))  # type: ignore[attr-defined]
+
+
+@kernel
+def _power(x: float, n: int) -> float:
+    return x**n
+
+
+@kernel
+def _powers_summed(x: float) -> float:
+    return _power(x, 2) + _power(x, n=3) + _power(x, 2 + int(x))
+
+
+def test_a_kernel_is_compiled_once_whatever_constants_others_call_it_with() -> None:
+    assert _powers_summed(2.0) == 28.0
+    assert len(_power.signatures) == 1  # type: ignore[attr-defined]
