@@ -12,9 +12,6 @@ from planning.space import SAFETY_MARGIN_M, FreeSpace
 
 Array = NDArray[np.float64]
 
-SOBOL_BITS = 30
-"""Of a coordinate of a Sobol point."""
-
 BORDER_SHARE = 0.3
 """Chance that a coordinate of a border position lies at the end of the airspace: rare sections are seen from there."""
 
@@ -68,36 +65,12 @@ def rounded(views: ViewpointArrays, camera: Camera) -> ViewpointArrays:
 
 
 def sobol(n: int, rng: np.random.Generator) -> Array:
-    """Scrambled Sobol points in the unit cube, shape (n, 3), as `scipy.stats.qmc.Sobol(3, rng=rng)` gives them.
+    """Scrambled Sobol points in the unit cube, shape (n, 3)."""
+    from scipy.stats import qmc
 
-    Importing that takes a second, of which a plan in five seconds has none to spare.
-
-    Joe and Kuo, "Constructing Sobol sequences with better two-dimensional projections", 2008, in Gray code order;
-    scrambled by random lower triangular matrices and a shift (Matousek 1998).
-    """
-    rng = rng.spawn(1)[0]
-    bit, one = np.arange(SOBOL_BITS, dtype=np.uint64), np.uint64(1)
-    shift = (rng.integers(2, size=(3, SOBOL_BITS), dtype=np.uint32) * (one << bit)).sum(axis=1, dtype=np.uint64)
-    matrices = np.tril(rng.integers(2, size=(3, SOBOL_BITS, SOBOL_BITS), dtype=np.uint32)).astype(np.uint64)
-    matrices[:, np.arange(SOBOL_BITS), np.arange(SOBOL_BITS)] = 1
-    # Rows and columns of the matrices count from the most significant bit.
-    bits = (_direction_numbers()[:, :, None] >> bit[::-1]) & one
-    directions = ((np.einsum("dpk,djk->djp", matrices, bits) % 2) << bit[::-1]).sum(axis=2, dtype=np.uint64)
-    number = np.arange(1, max(n, 1))
-    changes = np.log2(number & -number).astype(np.int64)
-    points = np.bitwise_xor.accumulate(np.concatenate([shift[None], directions.T[changes]]), axis=0)
-    return np.asarray(points * 2.0**-SOBOL_BITS)[:n]
-
-
-def _direction_numbers() -> NDArray[np.uint64]:
-    """Of the first three dimensions, shape (3, SOBOL_BITS): primitive polynomials 1, x + 1 and x^2 + x + 1."""
-    second, third = [1], [1, 3]
-    for k in range(1, SOBOL_BITS):
-        second.append((2 * second[k - 1]) ^ second[k - 1])
-    for k in range(2, SOBOL_BITS):
-        third.append((2 * third[k - 1]) ^ (4 * third[k - 2]) ^ third[k - 2])
-    numbers = np.array([SOBOL_BITS * [1], second, third], np.uint64)
-    return np.asarray(numbers << np.arange(SOBOL_BITS - 1, -1, -1, dtype=np.uint64))
+    if n == 0:
+        return np.zeros((0, 3))
+    return qmc.Sobol(3, rng=rng).random_base2(int(np.ceil(np.log2(n))))[:n]
 
 
 def picture_corners(views: ViewpointArrays, camera: Camera, depth_m: float) -> Array:

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from scipy.stats import qmc
 
 from planning.catalogue import profile
 from planning.coverage.model import CoverageModel, exact_coverage
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.effects import decide
 from planning.occlusion import Occlusion, OcclusionScene, line_of_sight, rises_above_a_panel
-from planning.positions import aimed_views, sobol, spread_positions
+from planning.positions import aimed_views, spread_positions
 from planning.scenes import SCENES
 from planning.site import panel_corners
 from planning.space import free_space
@@ -83,14 +82,3 @@ def test_mullions_closer_than_the_offset_do_not_count_as_rising_above_the_panel(
     assert not rises_above_a_panel(scene.frames, np.concatenate([scene.corners_enu_m, fin]))
     fin[0, 1, 1] = -0.16
     assert rises_above_a_panel(scene.frames, np.concatenate([scene.corners_enu_m, fin]))
-
-
-@pytest.mark.parametrize("n", [1, 2, 5, 64, 1000])
-def test_spread_points_are_scrambled_sobol_points(n: int) -> None:
-    exponent = int(np.ceil(np.log2(n)))
-    for seed in (0, 7, 2**63 - 1):
-        ours, theirs = np.random.default_rng(seed), np.random.default_rng(seed)
-        for _ in range(2):
-            expected = qmc.Sobol(3, rng=theirs).random_base2(exponent)[:n]
-            np.testing.assert_array_equal(sobol(n, ours), expected)
-    assert sobol(0, ours).shape == (0, 3)
