@@ -18,6 +18,7 @@ from PySide6.QtWidgets import QApplication
 
 from groundstation.gui.garbage import GarbageCollector
 from groundstation.gui.languages import Translations
+from groundstation.gui.loading import leave_modules_alone
 from groundstation.gui.main_window import MainWindow
 from groundstation.gui.menus import Menus
 from groundstation.gui.questions import Answer, Questions, file_name
@@ -55,6 +56,7 @@ class Desk(QObject):
         self, application: QApplication, questions: Questions | None = None, worker: Worker | None = None
     ) -> None:
         super().__init__()
+        leave_modules_alone()
         self._application = application
         self._questions = Questions() if questions is None else questions
         self._settings_problems: list[str] = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import sys
 import threading
 from collections.abc import Sequence
 
@@ -53,3 +54,16 @@ class BackgroundImport(QObject):
             self.imported.emit(self._done[self._told - 1])
         if self._told == len(self._modules):
             self._timer.stop()
+
+
+def leave_modules_alone() -> None:
+    """Keep Qt's Python from reading the source of every module that is imported after it.
+
+    It looks for modules that ask for its own other spellings, which none of ours does. Looking, it asks modules for
+    attributes while they are half imported: pydantic, which comes with Open3D, then fails, and with it the first
+    coverage or flight that wants rays. Only what it finds the spellings by is replaced; where that is called otherwise,
+    nothing is done.
+    """
+    feature = sys.modules.get("shibokensupport.feature")
+    if feature is not None and hasattr(feature, "_mod_uses_pyside"):
+        vars(feature)["_mod_uses_pyside"] = lambda _module: False

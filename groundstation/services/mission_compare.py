@@ -112,6 +112,15 @@ class MissionComparison:
         return bool(self.photos) and all(photo.difference is Difference.SAME for photo in self.photos)
 
     @property
+    def missing_sorties(self) -> tuple[int, ...]:
+        """Sorties of the plan of which the file has nothing, where all else is as planned; empty otherwise."""
+        kinds = (Difference.SAME, Difference.MISSING)
+        there = {photo.sortie for photo in self.photos if photo.difference is Difference.SAME}
+        missing = {photo.sortie for photo in self.photos if photo.difference is Difference.MISSING}
+        is_rest_planned = self.n_out_of_order == 0 and all(photo.difference in kinds for photo in self.photos)
+        return tuple(sorted(missing)) if there and is_rest_planned and not there & missing else ()
+
+    @property
     def is_the_plan(self) -> bool:
         """Whether the file flies the plan: all photos, none else, in order, along the same path."""
         deviates = self.path_deviation_m is not None and self.path_deviation_m > SAME_M

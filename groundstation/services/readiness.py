@@ -123,7 +123,7 @@ def _items(case: Case) -> Iterator[Finding]:
     found = too_long(plan, known) if known else None
     if found is not None:
         text = (
-            f"a sortie has {found.longest} photos, and {found.autopilot.value} keeps items for {found.limit}: it is "
+            f"a sortie has {found.longest} photos, and {found.autopilot.product} keeps items for {found.limit}: it is "
             "shared out among more sorties before it is uploaded"
         )
         yield Finding(Severity.WARNING, "autopilot-items", text, "", float(found.longest), float(found.limit), "photos")

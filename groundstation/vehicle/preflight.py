@@ -181,9 +181,9 @@ def _link(state: VehicleState, now_s: float) -> PreflightCheck:
         return PreflightCheck("link", Verdict.BAD, text)
     if state.others:
         others = ", ".join(map(str, sorted(state.others)))
-        text = f"{state.autopilot.value} answers, vehicle {number}; others are on the link, too: {others}"
+        text = f"{state.autopilot.product} answers, vehicle {number}; others are on the link, too: {others}"
         return PreflightCheck("link", Verdict.WARN, text)
-    return PreflightCheck("link", Verdict.OK, f"{state.autopilot.value} answers")
+    return PreflightCheck("link", Verdict.OK, f"{state.autopilot.product} answers")
 
 
 def _position(state: VehicleState, now_s: float) -> PreflightCheck:

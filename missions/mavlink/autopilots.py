@@ -18,6 +18,11 @@ class Autopilot(StrEnum):
     ARDUPILOT = "ardupilot"
     PX4 = "px4"
 
+    @property
+    def product(self) -> str:
+        """As its makers write it."""
+        return {Autopilot.ARDUPILOT: "ArduPilot", Autopilot.PX4: "PX4"}[self]
+
 
 @dataclass(frozen=True, slots=True)
 class AutopilotFacts:

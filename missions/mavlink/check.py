@@ -56,7 +56,7 @@ def check_items(file: MavlinkFile, autopilot: Autopilot | None) -> tuple[Finding
         n, limit = len(file.items) + (autopilot is Autopilot.ARDUPILOT), facts(autopilot).max_items
         if n > limit:
             severity = ERROR if autopilot is Autopilot.ARDUPILOT else WARNING
-            text = f"the mission has {n} items, {autopilot.value} keeps {limit}; plan it with shorter sorties"
+            text = f"the mission has {n} items, {autopilot.product} keeps {limit}; plan it with shorter sorties"
             findings.append(Finding(severity, "item-count", text, "", n, limit))
         for number, item in enumerate(file.items, 1):
             findings += _support(item, f"item {number} (command {item.command})", autopilot)
@@ -107,7 +107,7 @@ def _ardupilot_parameters(item: MissionItem, place: str) -> Iterator[Finding]:
 
 def _support(item: MissionItem, place: str, autopilot: Autopilot) -> Iterator[Finding]:
     known = facts(autopilot)
-    name = autopilot.value
+    name = autopilot.product
     if item.command in known.rejected or (autopilot is Autopilot.PX4 and item.command not in known.commands):
         yield Finding(ERROR, "unsupported-command", f"{name} refuses this command in missions", place, item.command)
     elif item.command not in known.commands:

@@ -1,6 +1,8 @@
 """The window does the main job: open, look, plan, stop, cancel, undo, save; and answers while it works."""
 
 import re
+import subprocess
+import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -339,3 +341,13 @@ def test_a_window_that_was_replaced_fills_no_menu_any_more(application, desk, mo
         old.retire()
         old._bar.setCurrentIndex(3)
     assert filled == []
+
+
+@pytest.mark.parametrize("is_left_alone", [True, False])
+def test_modules_that_are_half_imported_are_asked_for_nothing(tmp_path, is_left_alone):
+    """As pydantic's, which come with Open3D: asked while they are imported, they fail."""
+    (tmp_path / "half_imported.py").write_text("def __getattr__(name):\n    raise ImportError(f'asked for {name}')\n")
+    lines = ("import sys", f"sys.path.insert(0, {str(tmp_path)!r})", "from groundstation.gui import loading")
+    code = "\n".join((*lines, "loading.leave_modules_alone()" * is_left_alone, "import half_imported"))
+    made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (made.returncode == 0) is is_left_alone, made.stderr

@@ -201,7 +201,7 @@ class TestRefusals:
         from tests.missions.plans import make_plan, ring
 
         plan = make_plan([(ring(130), {})])
-        with pytest.raises(MissionError, match="the mission has 656 items, ardupilot keeps 650"):
+        with pytest.raises(MissionError, match="the mission has 656 items, ArduPilot keeps 650"):
             export(plan, None, None, FileFormat.MAVLINK_PLAN, tmp_path / "m.plan", FIXED)
         px4 = replace(FIXED, autopilot=Autopilot.PX4)
         assert len(export(plan, None, None, FileFormat.MAVLINK_PLAN, tmp_path / "m.plan", px4)) == 1

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.mission_compare import Difference, compare_with_plan
+from groundstation.services.mission_compare import Difference, MissionComparison, PhotoComparison, compare_with_plan
 from groundstation.services.mission_files import read_mission_files
 from missions.formats import export
 from missions.model import FileFormat
@@ -165,3 +165,18 @@ def test_real_mission_of_dji_pilot_is_compared_on_its_own_site(shared_data):
     found = compare_with_plan(missions, example_plan(), Origin(first.lat_deg, first.lon_deg, 0.0), HOME)
     assert found.count(Difference.MISSING) == 10
     assert not found.is_the_plan
+
+
+@pytest.mark.parametrize(
+    ("photos", "missing"),
+    [
+        (((Difference.SAME, 1), (Difference.MISSING, 2), (Difference.MISSING, 3)), (2, 3)),
+        (((Difference.SAME, 1), (Difference.MISSING, 1), (Difference.MISSING, 2)), ()),
+        (((Difference.SAME, 1), (Difference.CHANGED, 1), (Difference.MISSING, 2)), ()),
+        (((Difference.MISSING, 1), (Difference.MISSING, 2)), ()),
+        (((Difference.SAME, 1), (Difference.SAME, 2)), ()),
+    ],
+)
+def test_one_file_of_a_plan_with_more_sorties_is_told_from_another_mission(photos, missing):
+    compared = tuple(PhotoComparison(difference, "v", sortie, 0, 0) for difference, sortie in photos)
+    assert MissionComparison(compared, None, ()).missing_sorties == missing

@@ -48,7 +48,7 @@ class FlightQuestions(QObject):
             self.tr(
                 "{0} keeps the items of about {1} photos, and a sortie of this plan has {2}: the vehicle would refuse "
                 "it. Share the same views out among more sorties, as a plan of its own, and connect for that?"
-            ).format(found.autopilot.value, found.limit, found.longest),
+            ).format(found.autopilot.product, found.limit, found.longest),
             is_usual=True,
         )
 

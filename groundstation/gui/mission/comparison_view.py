@@ -144,6 +144,12 @@ class ComparisonView(QWidget):
                 text = self.tr("{0} has all {1} photos of the plan, in order. It holds no path to compare.").format(
                     self._names, len(found.photos)
                 )
+        elif found.missing_sorties:
+            role = "warning"
+            text = self.tr(
+                "{0} is only a part of the plan, as planned. Sorties without a file: {1}. Choose the files of all "
+                "sorties together."
+            ).format(self._names, ", ".join(map(str, found.missing_sorties)))
         else:
             role, text = self._objection(found)
             if found.path_deviation_m is not None:
