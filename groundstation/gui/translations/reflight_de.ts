@@ -873,6 +873,10 @@ Bild in dieser Entfernung: {4} x {5}</translation>
         <translation>{0} hat alle {1} Fotos des Plans in richtiger Reihenfolge. Ein Flugweg zum Vergleichen fehlt.</translation>
     </message>
     <message>
+        <source>{0} is only a part of the plan, as planned. Sorties without a file: {1}. Choose the files of all sorties together.</source>
+        <translation>{0} ist nur ein Teil des Plans, wie geplant. Einsätze ohne Datei: {1}. Die Dateien aller Einsätze zusammen wählen.</translation>
+    </message>
+    <message>
         <source>{0} takes all {1} photos of the plan, but flies otherwise: {2} out of order</source>
         <translation>{0} macht alle {1} Fotos der Planung, fliegt aber anders: {2} in anderer Reihenfolge</translation>
     </message>
