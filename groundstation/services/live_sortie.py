@@ -16,6 +16,7 @@ from planning.checks.case import Case
 from planning.effects import Wish
 from planning.errors import MissionError
 from planning.findings import Severity
+from planning.insight.flight_profile import LowFlight
 from planning.plan import Plan
 from planning.progress import QUIET, Monitor
 from planning.site import Site, SiteModel
@@ -88,6 +89,8 @@ class TakeOff:
         That the plan keeps to panels, building and obstacles.
     battery
         Part of a full battery that it uses.
+    low
+        How low it flies outside of the column above home; None where it does not leave it.
     """
 
     n_photos: int
@@ -96,6 +99,7 @@ class TakeOff:
     duration_s: float
     least_distance_m: float
     battery: float
+    low: LowFlight | None
 
 
 def take_off_of(sortie: LiveSortie) -> TakeOff:
@@ -110,6 +114,7 @@ def take_off_of(sortie: LiveSortie) -> TakeOff:
         duration_s=flown.duration_s,
         least_distance_m=plan.constraints.min_distance_m,
         battery=flown.duration_s / plan.aircraft.endurance_s,
+        low=orders.low,
     )
 
 

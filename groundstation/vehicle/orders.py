@@ -19,6 +19,7 @@ from missions.mavlink.transfer.wire_items import to_wire
 from missions.model import GeoPoint, HeightReference, Mission
 from planning.errors import MissionError
 from planning.frames import Vec3
+from planning.insight.flight_profile import LowFlight, low_flight
 from planning.plan import Plan
 from planning.rally import return_height
 from planning.site import Site, SiteModel
@@ -45,6 +46,8 @@ class SortieOrders:
         By autopilot, as photos are triggered by other items.
     battery_needed
         Part of a full battery that the sortie takes, reserve included.
+    low
+        How low it flies outside of the column above home; None where it does not leave it.
     raised_m
         How much lower than the site's home the aircraft takes off: its heights above take-off are as much larger.
     """
@@ -59,6 +62,7 @@ class SortieOrders:
     rally: tuple[GeoPoint, ...] = ()
     return_height_m: float = 0.0
     raised_m: float = 0.0
+    low: LowFlight | None = None
 
     @property
     def home(self) -> GeoPoint:
@@ -125,6 +129,7 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m:
         rally=rally_points(site),
         return_height_m=return_height(site_model, space, [path]).above_home_m + raised_m,
         raised_m=raised_m,
+        low=low_flight(plan, plan.sorties[mission.number - 1], site.home_enu_m, site.airspace.ground_z_m),
     )
 
 

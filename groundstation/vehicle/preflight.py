@@ -15,6 +15,8 @@ from missions.heights import altitude_amsl_m as home_altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.transfer.exchange import MissionType
 from planning.frames import Vec3
+from planning.insight.flight_profile import LOW_M
+from planning.site import MIN_HEIGHT_ABOVE_GROUND_M
 
 HOME_M = 3.0
 """How far from the planned home the aircraft may stand: it climbs where it is, and the plan's column has that room."""
@@ -24,6 +26,9 @@ HOME_HEIGHT_M = 1.0
 
 PRE_ARM = "pre-arm checks"
 """Name of that bit in `data/vehicle.toml`."""
+
+HEIGHT_ROUNDING_M = 1e-3
+"""Heights of plans are rounded to less than this."""
 
 FIX_NAMES = {0: "none", 1: "none", 2: "2-D", 3: "3-D", 4: "differential", 5: "RTK float", 6: "RTK fixed", 7: "static"}
 
@@ -115,6 +120,7 @@ def preflight_checks(
         _battery(state, orders, now_s),
         *_sensors(state),
         _wind(state, orders),
+        *_low_flight(orders),
         _board("mission", "mission", on_board.mission, on_board.doubt),
         *([_board("geofence", "geofence", on_board.fence, on_board.doubt)] if orders.fences else []),
         *([_board("rally", "list of rally points", on_board.rally, on_board.doubt)] if orders.rally else []),
@@ -318,6 +324,20 @@ def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
         text = f"the wind blows with {wind_m_s:.1f} m/s, more than the {limit_m_s:g} m/s of {name}; wait for less"
         return PreflightCheck("wind", Verdict.BAD, text, wind_m_s, limit_m_s, "m/s")
     return PreflightCheck("wind", Verdict.OK, f"{wind_m_s:.1f} m/s", wind_m_s, limit_m_s, "m/s")
+
+
+def _low_flight(orders: SortieOrders) -> Iterator[PreflightCheck]:
+    low, usual_m = orders.low, MIN_HEIGHT_ABOVE_GROUND_M
+    if low is None:
+        return
+    text = f"down to {low.lowest_m:.1f} m above the ground"
+    if low.below_s is not None and low.lowest_m < LOW_M:
+        text = f"{text}, {low.below_s / 60.0:.1f} min below {LOW_M:g} m"
+    if low.lowest_m >= usual_m - HEIGHT_ROUNDING_M:
+        yield PreflightCheck("low-flight", Verdict.OK, text, low.lowest_m, usual_m, "m")
+        return
+    text = f"{text}, under the usual {usual_m:g} m: look for people, cars and cables on the whole way"
+    yield PreflightCheck("low-flight", Verdict.WARN, text, low.lowest_m, usual_m, "m")
 
 
 def _parameters(changes: tuple[ParameterChange, ...] | None) -> Iterator[PreflightCheck]:

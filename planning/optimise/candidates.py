@@ -51,23 +51,26 @@ class Pool(NamedTuple):
 def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDIDATES, stop: Stop = never) -> Pool:
     """Views to choose from, rounded as plan files hold them, so that what is chosen is what is flown.
 
-    All can be flown to from home. When `stop` asks for an end, spread views not yet looked at are left out.
+    All can be flown to from home. When `stop` asks for an end, spread views not yet looked at are left out; where
+    it does so from the start, there are few, and none for the sections that these do not show.
 
     Raises
     ------
     InfeasibleError
         None of them covers anything.
     """
-    rng = np.random.default_rng(seed)
-    spread = spread_candidates(problem, n_candidates, rng)
+    rng, is_late = np.random.default_rng(seed), stop()
+    spread = spread_candidates(problem, min(n_candidates, VIEWS_PER_BLOCK) if is_late else n_candidates, rng)
     spread, spread_elements = _elements_until(problem, spread, stop)
     if len(spread_elements.items) > MAX_ENTRIES:
         kept = np.arange(len(spread.heading_rad)) < len(spread.heading_rad) * MAX_ENTRIES / len(spread_elements.items)
         spread = take(spread, kept)
         spread_elements = problem.model.elements(spread)
-    times_covered = np.bincount(spread_elements.items, minlength=problem.model.n_elements)
-    witnesses = witness_candidates(problem, times_covered < WITNESS_COVERS_WANTED, rng)
-    pool = join_pools(Pool(spread, spread_elements), Pool(witnesses, problem.model.elements(witnesses)))
+    pool = Pool(spread, spread_elements)
+    if not is_late or len(spread_elements.items) == 0:
+        times_covered = np.bincount(spread_elements.items, minlength=problem.model.n_elements)
+        witnesses = witness_candidates(problem, times_covered < WITNESS_COVERS_WANTED, rng)
+        pool = join_pools(pool, Pool(witnesses, problem.model.elements(witnesses)))
     useful = np.diff(pool.elements.starts) > 0
     if not useful.any():
         raise nothing_to_see()

@@ -23,6 +23,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
 from missions.mavlink.transfer.wire_items import to_wire
 from planning.errors import MissionError
+from planning.insight.flight_profile import LowFlight
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.scenes import single_panel
@@ -73,6 +74,7 @@ def test_an_aircraft_beside_a_home_on_the_border_of_the_airspace_is_ready(orders
 def test_before_the_first_heartbeat_everything_is_waited_for(orders):
     found = {check.code: check.verdict for check in checks(VehicleState(), orders, OnBoard())}
     assert found.pop("wind") is Verdict.OK
+    assert found.pop("low-flight") is Verdict.OK, "the plan alone says it"
     assert set(found.values()) == {Verdict.WAIT}
 
 
@@ -102,6 +104,32 @@ def far(metres):
 def test_each_thing_that_is_missing_is_found_and_only_that(orders, code, verdict, change):
     found = checks(change(ready_state(orders), orders), orders)
     assert [(check.code, check.verdict) for check in found if check.verdict is not Verdict.OK] == [(code, verdict)]
+
+
+@pytest.mark.parametrize(
+    ("low", "verdict", "words"),
+    [
+        (
+            LowFlight(4.2, 90.0, 300.0),
+            Verdict.WARN,
+            "down to 4.2 m above the ground, 1.5 min below 10 m, under the usual",
+        ),
+        (LowFlight(5.0, 30.0, 300.0), Verdict.OK, "down to 5.0 m above the ground, 0.5 min below 10 m"),
+        (LowFlight(12.0, 0.0, 300.0), Verdict.OK, "down to 12.0 m above the ground"),
+        (LowFlight(3.0, None, None), Verdict.WARN, "down to 3.0 m above the ground, under the usual 5 m"),
+    ],
+)
+def test_how_low_and_how_long_it_flies_low_is_told_before_take_off(orders, low, verdict, words):
+    found = checks(ready_state(orders), replace(orders, low=low))
+    (check,) = [check for check in found if check.code == "low-flight"]
+    assert check.verdict is verdict
+    assert check.text.startswith(words)
+    assert is_ready(found)
+
+
+def test_the_orders_of_a_sortie_know_how_low_it_flies(orders):
+    assert 5.0 - 1e-3 <= orders.low.lowest_m < 60.0
+    assert orders.low.below_s >= 0.0
 
 
 def test_rtk_is_asked_for_only_where_it_is_needed(orders):

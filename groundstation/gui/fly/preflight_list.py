@@ -139,6 +139,7 @@ class PreflightList(QWidget):
             "battery": self.tr("Battery"),
             "sensors": self.tr("Sensors"),
             "wind": self.tr("Wind"),
+            "low-flight": self.tr("Lowest flight"),
             "mission": self.tr("Mission on board"),
             "geofence": self.tr("Geofence on board"),
             "rally": self.tr("Rally points on board"),

@@ -8,10 +8,12 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
 from groundstation.gui.questions import agrees, ask_text
+from groundstation.services.finding_texts import duration_text
 from groundstation.services.live_limit import TooLong
 from groundstation.services.live_sortie import TakeOff
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text
 from groundstation.vehicle.setup import ParameterChange
+from planning.insight.flight_profile import LOW_M, LowFlight
 from planning.top_up import TopUp
 
 
@@ -35,10 +37,20 @@ class FlightQuestions(QObject):
             + self.tr("takes {0} photos, comes no closer than {1} to anything, returns and lands.").format(
                 take_off.n_photos, length_unit(units).text(take_off.least_distance_m)
             ),
+            *([] if take_off.low is None else [self._low_text(take_off.low, units)]),
             self.tr("It uses about {0:.0%} of a full battery.").format(take_off.battery),
             self.tr("Is everybody clear of the aircraft?"),
         ]
         return "\n\n".join(lines)
+
+    def _low_text(self, low: LowFlight, units: UnitSystem) -> str:
+        length = length_unit(units)
+        if low.below_s is None or low.lowest_m >= LOW_M:
+            text = self.tr("Away from home it flies {0} above the ground or higher.")
+            return text.format(length.text(low.lowest_m))
+        return self.tr(
+            "Away from home it flies down to {0} above the ground, {1} of it below {2}: nobody may be there."
+        ).format(length.text(low.lowest_m), duration_text(low.below_s), length.text(LOW_M))
 
     def share_out(self, parent: QWidget, found: TooLong) -> bool:
         """Whether to share the views of a plan out among more sorties."""

@@ -117,6 +117,8 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     with clicked("Yes") as asked:
         ask_for(page, Request.START)
     assert "takes 6 photos" in asked[0]
+    assert "Away from home it flies" in asked[0]
+    assert "above the ground" in page.checks.text()
     turn_until(application, lambda: n_photos(page) >= 1)
     gc.collect()
     turns = []
