@@ -1607,6 +1607,14 @@ Blickrichtung: {2}</translation>
         <translation>Halten alle Abstand vom Fluggerät?</translation>
     </message>
     <message>
+        <source>Away from home it flies {0} above the ground or higher.</source>
+        <translation>Abseits des Startplatzes fliegt es {0} oder höher über dem Boden.</translation>
+    </message>
+    <message>
+        <source>Away from home it flies down to {0} above the ground, {1} of it below {2}: nobody may be there.</source>
+        <translation>Abseits des Startplatzes fliegt es bis zu {0} über dem Boden herunter, davon {1} unter {2}: dort darf niemand sein.</translation>
+    </message>
+    <message>
         <source>Too many photos for one sortie</source>
         <translation>Zu viele Fotos für einen Einsatz</translation>
     </message>
@@ -4417,6 +4425,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Wind</source>
         <translation>Wind</translation>
+    </message>
+    <message>
+        <source>Lowest flight</source>
+        <translation>Tiefster Flug</translation>
     </message>
     <message>
         <source>Mission on board</source>
@@ -9521,6 +9533,18 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     <message>
         <source>{0} m from the planned home</source>
         <translation>{0} m vom geplanten Startplatz</translation>
+    </message>
+    <message>
+        <source>down to {0} m above the ground</source>
+        <translation>bis {0} m über dem Boden</translation>
+    </message>
+    <message>
+        <source>{0}, {1} min below {2} m</source>
+        <translation>{0}, {1} min unter {2} m</translation>
+    </message>
+    <message>
+        <source>{0}, under the usual {1} m: look for people, cars and cables on the whole way</source>
+        <translation>{0}, unter den üblichen {1} m: auf dem ganzen Weg auf Menschen, Autos und Leitungen achten</translation>
     </message>
     <message>
         <source>the battery&apos;s charge is not known</source>
