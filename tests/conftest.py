@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import os
+import random
 import shutil
 import sys
 import tempfile
@@ -38,6 +40,25 @@ def pytest_configure() -> None:
     has_room = os.access(MEMORY, os.W_OK) and shutil.disk_usage(MEMORY).free >= NEEDED_BYTES
     if has_room and "TMPDIR" not in os.environ:
         os.environ["TMPDIR"] = tempfile.tempdir = str(MEMORY)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Options of our own."""
+    parser.addoption("--shuffle", type=int, metavar="SEED", help="files, and tests in each, in random order")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Another order, the same in all processes: what a test leaves behind must be of no consequence for the next."""
+    seed = config.getoption("--shuffle")
+    if seed is None:
+        return
+    chance = random.Random(seed)
+    files = [list(group) for _, group in itertools.groupby(items, lambda item: item.path)]
+    for file in files:
+        chance.shuffle(file)
+    chance.shuffle(files)
+    items[:] = itertools.chain.from_iterable(files)
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
