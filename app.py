@@ -18,5 +18,10 @@ def open_window(wish: WindowWish) -> int:
     return run_window(wish.open)
 
 
+def run() -> int:
+    """The installed command `reflight`."""
+    return main(sys.argv[1:], open_window)
+
+
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:], open_window))
+    sys.exit(run())

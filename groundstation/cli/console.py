@@ -23,6 +23,12 @@ MAX_SHOWN = 5
 """Different findings of one kind that are printed before the rest is only counted."""
 
 
+def program_name() -> str:
+    """What to type: the installed command where that was typed."""
+    typed = Path(sys.argv[0]).stem
+    return typed if typed == "reflight" else "app.py"
+
+
 def run_job(name: str, work: Callable[[JobContext], Result]) -> Result:
     """Result of `work`, run as a job; progress goes to stderr when that is a terminal, Ctrl-C cancels."""
     runner = JobRunner()
@@ -115,7 +121,7 @@ def flight_status(report: FlightReport) -> int:
 
 def print_next(*arguments: object) -> None:
     """The command to type next, on stderr."""
-    print(f"next: {shlex.join(['app.py', *map(str, arguments)])}", file=sys.stderr)
+    print(f"next: {shlex.join([program_name(), *map(str, arguments)])}", file=sys.stderr)
 
 
 def named_like(path: Path, ending: str) -> Path:

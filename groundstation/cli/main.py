@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from groundstation.cli import commands
+from groundstation.cli.console import program_name
 from groundstation.cli.options import new_folder
 from planning.errors import GroundStationError, OperationCancelled, shortened
 
@@ -69,7 +70,7 @@ def build_parser() -> argparse.ArgumentParser:
     The same one each time: making it takes longer than most of what tests ask of it.
     """
     parser = _Parser(
-        prog="app.py",
+        prog=program_name(),
         description="Reflight plans, checks and exports the second flight over a reflective glass facade. "
         "Without a command the window opens.",
     )
