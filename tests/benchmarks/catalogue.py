@@ -60,6 +60,7 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     reachable.BENCHMARK,
     certificates.BENCHMARK,
     fresh_process.BENCHMARK,
+    fresh_process.BUDGETS_BENCHMARK,
     tsplib_tours.BENCHMARK,
     plan_routing.BENCHMARK,
     top_ups.BENCHMARK,

@@ -11,9 +11,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from planning.scenes import write_scene
-from tests.benchmarks.harness import Benchmark, Context, Row
+from tests.benchmarks.harness import SHARED_DATA, Benchmark, Context, Row
 
 ROOT = Path(__file__).resolve().parents[2]
+REAL_SITE = SHARED_DATA / "bim" / "office_a.ifc"
+"""A real building, where it is at hand."""
+
+BUDGETS_S, QUICK_BUDGETS_S = (5.0, 10.0, 20.0, 60.0), (5.0,)
 
 
 class Measured(NamedTuple):
@@ -100,4 +104,36 @@ BENCHMARK = Benchmark(
     "Planned and routed from a fresh process",
     "`app.py plan` with a budget of 60 s, starting Python, reading the site and writing the plan included.",
     measure,
+)
+
+
+def measure_budgets(context: Context) -> Iterator[Row]:
+    """Wall time against the budget, and what the plan is worth then: small, real and large sites."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        sites = {"office": write_scene("office", folder)}
+        if not context.is_quick:
+            (folder / "tower").mkdir()
+            sites["tower"] = write_scene("tower", folder / "tower")
+        if REAL_SITE.exists() and not context.is_quick:
+            sites["office_a.ifc"] = folder / "office_a.json"
+            run_measured(["app.py", "site", "import", REAL_SITE, "-o", sites["office_a.ifc"]])
+        for name, site in sites.items():
+            for budget_s in QUICK_BUDGETS_S if context.is_quick else BUDGETS_S:
+                plan = folder / f"{name}.plan.json"
+                done = run_command(["plan", site, "-o", plan, "--time-budget", str(budget_s)])
+                run_measured(["app.py", "check", plan, site])  # ready, or only warnings
+                found, most_s = done.content, 1.1 * budget_s + 1.0
+                share = 100.0 * found["covered"] / found["reachable_upper_bound"]
+                worth = f"{found['covered']} sections, {share:.1f} % of the bound, {found['undecided']} not proven"
+                flown = f"{found['views']} views, {found['duration_s'] / 60.0:.1f} min in {found['sorties']} sorties"
+                target, is_met = f"at most {most_s:g} s", done.seconds <= most_s
+                yield Row(name, f"{budget_s:g} s asked", done.seconds, "s", None, f"{worth}; {flown}", target, is_met)
+
+
+BUDGETS_BENCHMARK = Benchmark(
+    "time-budgets",
+    "Time budgets are kept, and what more time brings",
+    "`app.py plan --time-budget S` from a fresh process; 10 % and 1 s more are allowed. Every plan passes `check`.",
+    measure_budgets,
 )
