@@ -16,10 +16,13 @@ def application():
         pytest.skip("the virtual screen Xvfb exists on Linux only")
     if shutil.which("Xvfb") is None:
         pytest.skip("Xvfb is not installed (make setup installs it as root)")
-    start_virtual_screen()
     from PySide6.QtCore import Qt
     from PySide6.QtWidgets import QApplication
 
+    # Tests of other folders have this fixture, too, and a process has one application.
+    if QApplication.instance() is not None:
+        return QApplication.instance()
+    start_virtual_screen()
     # Files are chosen in Qt's own dialogs, which can be clicked: those of a desktop are other programs.
     QApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
     return QApplication(["reflight-tests"])
