@@ -114,7 +114,8 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
     sorties = tuple(replace(full.sorties[0], takeoff_check=check) for check in (low, high))
     pictures = brief_pictures(MODEL, plan, UNITS, say)
     near = replace(full, low=LowFlight(6.0, 12.0, 100.0))
-    for brief in (full, empty, bare, warned, near, replace(full, sorties=sorties)):
+    sharp = replace(full, sharp_share=0.8, wanted_gsd_mm=5.0, coarsest_gsd_mm=9.0)
+    for brief in (full, empty, bare, warned, near, sharp, replace(full, sorties=sorties)):
         brief_html(brief, UNITS, dict.fromkeys(pictures, "x"), say)
     assert said <= set(WORDS)
     assert set(WORDS) - said == {"Page {0} of {1}"}
