@@ -1,6 +1,7 @@
 """Use cases around plans: planning writes what it returns, checks look at files."""
 
 import json
+import time
 from dataclasses import replace
 
 import pytest
@@ -13,12 +14,14 @@ from groundstation.services.planning import (
     plan_site,
     planned_summary,
 )
+from planning.checks import check_plan
 from planning.errors import InfeasibleError, InputError, OperationCancelled
 from planning.findings import Finding, Severity, is_flyable
 from planning.plan import Constraints
 from planning.plan_file import read_plan, write_plan
+from planning.planner import FEWEST_ROUTED
 from planning.request import PlanRequest
-from planning.scenes import write_scene
+from planning.scenes import SCENES, write_scene
 from planning.site_file import read_site, write_site
 from tests.planning.revision.cases import QUICK
 
@@ -54,6 +57,21 @@ def test_impossible_wishes_and_cancelled_work_write_nothing(site, tmp_path):
     with pytest.raises(InputError, match="would replace"):
         plan_site(site, PlanRequest(), site)
     assert set(tmp_path.iterdir()) == before
+
+
+def test_where_the_time_is_up_the_most_telling_views_are_flown_and_the_rest_is_told():
+    model = SCENES["library"]()
+    request = PlanRequest(n_views=160, time_budget_s=5.0, greedy=QUICK)
+    planned = plan_document_site(model, request, started_s=time.perf_counter() - 10.0)
+    assert len(planned.plan.viewpoints) == FEWEST_ROUTED
+    assert is_flyable(check_plan(planned.plan, model))
+    told = {finding.code: finding for finding in planned.findings}
+    assert told["time-budget"].severity is Severity.WARNING
+    assert told["time-budget"].value == 160 - FEWEST_ROUTED
+    assert "fewer-views" not in told, "more time would have shown more"
+    # The first of 160 views are not the best 100: those that were left out show what others show, too.
+    few = plan_document_site(model, replace(request, n_views=FEWEST_ROUTED), started_s=time.perf_counter() - 10.0)
+    assert planned.plan.coverage.covered >= 0.98 * few.plan.coverage.covered
 
 
 @pytest.mark.parametrize(
