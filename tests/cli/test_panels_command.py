@@ -75,7 +75,7 @@ def test_wrong_input_is_refused_in_words(flight, reflight, tmp_path):
     assert "at least 1" in reflight("panels", photos, mesh, "-o", out, AT, "--photos-per-facade", 0).error
     assert "no such file" in reflight("panels", photos, tmp_path / "none.ply", "-o", out, AT).error
     assert "expected a folder of photos" in reflight("panels", mesh, mesh, "-o", out, AT).error
-    far = reflight("panels", photos, mesh, "-o", out, "--origin=48,11,500").error
+    far = reflight("panels", photos, mesh, "-o", out, "--origin=48,11,500", "--ground", 0).error
     assert "km from the site" in far
     assert not out.exists()
 

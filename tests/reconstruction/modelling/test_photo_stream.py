@@ -212,7 +212,7 @@ def eight_bit(path):
         ("masks/p03.png.png", lambda path: path.unlink(), "cannot be read"),
         ("masks/p03.png.png", other_size, "expected 40 x 30 pixels by its camera, got 41 x 30"),
         ("masks/p03.png.png", of_colours, "expected 1 channel"),
-        ("panels/p03.png.png", cut_off, "cannot be decoded"),
+        ("panels/p03.png.png", cut_off, "cut off or damaged"),
         ("panels/p03.png.png", one_more_panel, "has panel 7, and dataset.json 6"),
         ("normals/p03.png.png", eight_bit, "of 16 bit"),
     ],
