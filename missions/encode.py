@@ -7,8 +7,6 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from missions.build import missions_from_plan
 from missions.dji.write import LinkLoss
 from missions.mavlink.autopilots import Autopilot
@@ -201,11 +199,11 @@ def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOp
         text = "the return height clears the path only, because the site was not given; check that it clears everything"
         return path_m, [Finding(Severity.WARNING, "return-height", text, "", path_m, None, "m")]
     space = unchecked_space(options.site, plan.constraints.min_distance_m)
-    own = return_height(options.site, space, [np.array(sortie.path_enu_m, np.float64) for sortie in plan.sorties])
+    own = return_height(space)
     # What speaks against the height that the program chooses is said by the check of the plan.
     if options.rth_height_m is None:
         return own.above_home_m, []
-    top_m = clear_height_z_m(options.site, 0.0) - options.site.site.home_enu_m[2]
+    top_m = clear_height_z_m(space, 0.0) - options.site.site.home_enu_m[2]
     if options.rth_height_m > own.ceiling_above_home_m:
         text = (
             f"the return height is above the airspace: expected at most {own.ceiling_above_home_m:.1f} m above "

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from planning.findings import Finding, Severity
 from planning.frames import Vec3
+from planning.geometry.solids import Solids
 from planning.site import RallyPoint, SiteModel
 from planning.space import SAFETY_MARGIN_M, FreeSpace
 
@@ -140,9 +141,32 @@ def return_way(
     ValueError
         There is no destination.
     """
+    return _return_ways(space, [path_enu_m], destinations_enu_m, height_z_m, cone_slope, upper_m)[0]
+
+
+def ways_home(space: FreeSpace, paths_enu_m: Sequence[Array]) -> list[ReturnWay]:
+    """Ways of return to home from anywhere on each path, shape (k, 3), at `return_height`."""
+    if not paths_enu_m:
+        return []
+    x, y, z = space.home_enu_m.tolist()
+    upper_m = 2.0 * space.min_distance_m + CLEARANCE_M
+    return _return_ways(space, paths_enu_m, ((x, y, z),), return_height(space).z_m, 0.0, upper_m)
+
+
+def _return_ways(
+    space: FreeSpace,
+    paths_enu_m: Sequence[Array],
+    destinations_enu_m: tuple[Vec3, ...],
+    height_z_m: float,
+    cone_slope: float,
+    upper_m: float,
+) -> list[ReturnWay]:
     if not destinations_enu_m:
         raise ValueError("destinations_enu_m: expected home at least, got none")
-    start, ends = _places(path_enu_m), np.array(destinations_enu_m, np.float64)
+    places = [_places(path) for path in paths_enu_m]
+    n_places = np.array([len(each) for each in places])
+    firsts = np.concatenate([[0], np.cumsum(n_places)[:-1]])
+    start, ends = np.concatenate(places), np.array(destinations_enu_m, np.float64)
     away_m = np.linalg.norm(start[:, None, :2] - ends[None, :, :2], axis=2)
     nearest = away_m.argmin(axis=1)
     end = ends[nearest]
@@ -152,9 +176,18 @@ def return_way(
     level = np.maximum(start[:, 2], wanted)
     above, over = np.c_[start[:, :2], level], np.c_[end[:, :2], level]
     a, b = np.concatenate([start, above, over]), np.concatenate([above, over, end])
-    gap_m = float(space.solids.segment_distances_m(a, b, upper_m).min())
-    crosses = bool(len(space.no_fly.part)) and bool(space.no_fly.segment_distances_m(a, b, 1.0).min() <= 0.0)
-    return ReturnWay(gap_m, crosses, int(np.count_nonzero(nearest)), len(start))
+
+    def nearest_m(solids: Solids, furthest_m: float) -> Array:
+        of_places = solids.segment_distances_m(a, b, furthest_m).reshape(3, -1).min(axis=0)
+        return np.asarray(np.minimum.reduceat(of_places, firsts))
+
+    gaps_m = nearest_m(space.solids, upper_m)
+    crosses = np.zeros(len(places), np.bool_)
+    if len(space.no_fly.part):
+        crosses = nearest_m(space.no_fly, 1.0) <= 0.0
+    n_elsewhere = np.add.reduceat(nearest > 0, firsts, dtype=np.int64)
+    found = zip(gaps_m.tolist(), crosses.tolist(), n_elsewhere.tolist(), n_places.tolist(), strict=True)
+    return [ReturnWay(*each) for each in found]
 
 
 def _places(path_enu_m: Array) -> Array:
@@ -166,17 +199,14 @@ def _places(path_enu_m: Array) -> Array:
     return np.concatenate(pieces)
 
 
-def clear_height_z_m(model: SiteModel, distance_m: float) -> float:
-    """Height at which level flight keeps a distance from everything on a site, whatever stands in its way."""
-    meshes = (model.building, *model.obstacles)
-    tops = [float(mesh.vertices_enu_m[:, 2].max()) for mesh in meshes if len(mesh.vertices_enu_m)]
-    panels = [corner[2] for panel in model.site.panels for corner in panel.corners_enu_m]
-    return max([*tops, *panels]) + distance_m
+def clear_height_z_m(space: FreeSpace, distance_m: float) -> float:
+    """Height at which level flight keeps a distance from everything on a site and from home, whatever is there."""
+    return float(space.solids.bvh.corners[:, :, 2].max(initial=space.home_enu_m[2])) + distance_m
 
 
 @dataclass(frozen=True, slots=True)
 class ReturnHeight:
-    """How high aircraft climb before they return, and what comes of it.
+    """How high aircraft climb before they return.
 
     Parameters
     ----------
@@ -186,47 +216,23 @@ class ReturnHeight:
         What would clear everything on the site by `CLEARANCE_M`, or by the minimum distance where that is more.
     ceiling_above_home_m
         Where the airspace ends.
-    way
-        The ways home from everywhere on the paths, at this height.
     """
 
     z_m: float
     above_home_m: float
     wanted_above_home_m: float
     ceiling_above_home_m: float
-    way: ReturnWay
 
 
-def return_height(model: SiteModel, space: FreeSpace, paths_enu_m: Sequence[Array]) -> ReturnHeight:
-    """The height at which aircraft return to home from paths: above everything, but never above the airspace.
+def return_height(space: FreeSpace) -> ReturnHeight:
+    """The height at which aircraft return to home: above everything, but never above the airspace.
 
     An aircraft that is higher already returns where it is, on all autopilots; so a path may be higher than this.
-
-    Parameters
-    ----------
-    paths_enu_m
-        Each of shape (k, 3), k >= 1; at least one.
-
-    Raises
-    ------
-    ValueError
-        There is no path.
     """
-    if not paths_enu_m:
-        raise ValueError("paths_enu_m: expected at least one path, got none")
     home_z_m, ceiling_z_m = float(space.home_enu_m[2]), float(space.high_enu_m[2])
-    wanted_m = clear_height_z_m(model, max(CLEARANCE_M, space.min_distance_m)) - home_z_m
+    wanted_m = clear_height_z_m(space, max(CLEARANCE_M, space.min_distance_m)) - home_z_m
     height_m = float(math.ceil(round(wanted_m, 6)))
     ceiling_m = ceiling_z_m - home_z_m
     if height_m > ceiling_m:
         height_m = math.floor(round(10.0 * ceiling_m, 6)) / 10.0
-    home: Vec3 = (float(space.home_enu_m[0]), float(space.home_enu_m[1]), home_z_m)
-    upper_m = 2.0 * space.min_distance_m + CLEARANCE_M
-    ways = [return_way(space, path, (home,), home_z_m + height_m, upper_m=upper_m) for path in paths_enu_m]
-    way = ReturnWay(
-        min(way.gap_m for way in ways),
-        any(way.crosses_no_fly for way in ways),
-        sum(way.n_elsewhere for way in ways),
-        sum(way.n_places for way in ways),
-    )
-    return ReturnHeight(home_z_m + height_m, height_m, wanted_m, ceiling_m, way)
+    return ReturnHeight(home_z_m + height_m, height_m, wanted_m, ceiling_m)

@@ -6,8 +6,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from groundstation.vehicle.surroundings import Surroundings
 from missions.mavlink.areas import FencePolygon, fence_items, rally_items, rally_points
 from missions.mavlink.autopilots import Autopilot
@@ -117,7 +115,6 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m:
     needed = plan.rules.battery_reserve + mission.duration_s / plan.aircraft.endurance_s
     site = site_model.site
     space = unchecked_space(site_model, plan.constraints.min_distance_m)
-    path = np.array(plan.sorties[mission.number - 1].path_enu_m, np.float64)
     return SortieOrders(
         site=site,
         number=mission.number,
@@ -127,7 +124,7 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m:
         surroundings=surroundings,
         battery_needed=needed,
         rally=rally_points(site),
-        return_height_m=return_height(site_model, space, [path]).above_home_m + raised_m,
+        return_height_m=return_height(space).above_home_m + raised_m,
         raised_m=raised_m,
         low=low_flight(plan, plan.sorties[mission.number - 1], site.home_enu_m, site.airspace.ground_z_m),
     )

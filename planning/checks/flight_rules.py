@@ -296,16 +296,17 @@ def return_home(case: Case) -> Iterator[Finding]:
     Where the airspace ends too low for that, no height is right: one leads into the building, the other out of it. What
     the path itself does wrong is not said of the return again.
     """
-    paths = [path for _, _, path in case.sorties()]
-    if not paths:
-        return
-    found = return_height(case.site_model, case.space, paths)
     gaps = case.measures
-    way, limit_m = found.way, min(case.space.min_distance_m, *gaps.solid_gaps.legs_m.values())
-    crosses_by_itself = way.crosses_no_fly and min(gaps.no_fly_gaps.legs_m.values(), default=math.inf) > 0.0
+    ways = gaps.ways_home.values()
+    if not ways:
+        return
+    found, gap_m = return_height(case.space), min(way.gap_m for way in ways)
+    limit_m = min(case.space.min_distance_m, *gaps.solid_gaps.legs_m.values())
+    path_crosses = min(gaps.no_fly_gaps.legs_m.values(), default=math.inf) <= 0.0
+    crosses_by_itself = not path_crosses and any(way.crosses_no_fly for way in ways)
     is_capped = found.above_home_m < found.wanted_above_home_m
-    if way.gap_m < limit_m - RETURN_TOLERANCE_M and is_capped:
-        what = "through the building or an obstacle" if way.gap_m <= 0.0 else f"{way.gap_m:.1f} m from something"
+    if gap_m < limit_m - RETURN_TOLERANCE_M and is_capped:
+        what = "through the building or an obstacle" if gap_m <= 0.0 else f"{gap_m:.1f} m from something"
         text = (
             f"an aircraft that returns by itself would fly {what}: at {found.wanted_above_home_m:.1f} m above take-off "
             f"it clears everything, and the airspace ends at {found.ceiling_above_home_m:.1f} m; raise its ceiling, or "
@@ -320,9 +321,9 @@ def return_home(case: Case) -> Iterator[Finding]:
             found.ceiling_above_home_m,
             "m",
         )
-    elif way.gap_m < limit_m - RETURN_TOLERANCE_M:
-        text = f"an aircraft that returns by itself climbs within {way.gap_m:.1f} m of the building or an obstacle"
-        yield Finding(Severity.WARNING, "return-height", text, "", way.gap_m, limit_m, "m")
+    elif gap_m < limit_m - RETURN_TOLERANCE_M:
+        text = f"an aircraft that returns by itself climbs within {gap_m:.1f} m of the building or an obstacle"
+        yield Finding(Severity.WARNING, "return-height", text, "", gap_m, limit_m, "m")
     elif crosses_by_itself:
         text = (
             f"an aircraft that returns by itself, {found.above_home_m:g} m above take-off, crosses a no-fly zone; fly "

@@ -20,6 +20,7 @@ from planning.evaluate import Sight, section_counts, sights
 from planning.frames import Vec3
 from planning.geometry.solids import Solids
 from planning.plan import Plan, Sortie, Viewpoint
+from planning.rally import ReturnWay, ways_home
 from planning.sortie_timing import sortie_flight_path, stopping_duration_s
 from planning.space import FreeSpace
 from planning.speed_profile import corner_saving_s
@@ -84,6 +85,8 @@ class Measures:
         Views of each section, shape (m, n_sections).
     solid_gaps, no_fly_gaps
         To panels, building and obstacles; to no-fly volumes.
+    ways_home
+        Of an aircraft that returns from anywhere on a leg, at `planning.rally.return_height`.
     flights
         By path and photos; None where the path is none or misses a viewpoint. Empty in wind that allows no flight.
     """
@@ -93,12 +96,13 @@ class Measures:
     counts: NDArray[np.int64]
     solid_gaps: Gaps
     no_fly_gaps: Gaps
+    ways_home: Mapping[Leg, ReturnWay]
     flights: Mapping[FlightKey, TimedFlight | None]
 
 
 _NOT_KNOWN = object()
 _NO_GAPS = Gaps({}, {})
-NOTHING_KNOWN = Measures({}, {}, np.zeros((0, 0), np.int64), _NO_GAPS, _NO_GAPS, {})
+NOTHING_KNOWN = Measures({}, {}, np.zeros((0, 0), np.int64), _NO_GAPS, _NO_GAPS, {}, {})
 
 
 def pose_of(viewpoint: Viewpoint) -> Pose:
@@ -135,6 +139,11 @@ def measure(plan: Plan, space: FreeSpace, model: CoverageModel, known: Measures 
         counts=section_counts(model, [seen[pose_of(viewpoint)] for viewpoint in plan.viewpoints]),
         solid_gaps=_gaps(space.solids, plan, known.solid_gaps),
         no_fly_gaps=_gaps(space.no_fly, plan, known.no_fly_gaps) if len(space.no_fly.part) else _NO_GAPS,
+        ways_home=_completed(
+            itertools.chain.from_iterable(legs_of(sortie) for sortie in plan.sorties),
+            known.ways_home,
+            lambda legs: ways_home(space, [np.array(leg) for leg in legs]),
+        ),
         flights=_flights(plan, known.flights),
     )
 

@@ -11,7 +11,7 @@ from planning.checks import check_plan
 from planning.errors import InputError
 from planning.findings import Severity
 from planning.planner import plan_flight
-from planning.rally import clear_height_z_m, rally_findings, return_height, return_way
+from planning.rally import clear_height_z_m, rally_findings, return_height, return_way, ways_home
 from planning.request import PlanRequest
 from planning.site import Airspace, NoFlyZone, RallyPoint
 from planning.site_file import is_planned_on, read_site, site_sha256, site_to_json, write_site
@@ -133,7 +133,7 @@ def test_the_return_is_measured_on_the_whole_way():
     home = model.site.home_enu_m
     through = return_way(space, behind, (home,), min(5.0, top - 0.1))
     assert through.gap_m == 0.0
-    clear = return_way(space, behind, (home,), clear_height_z_m(model, DISTANCE_M))
+    clear = return_way(space, behind, (home,), clear_height_z_m(space, DISTANCE_M))
     assert clear.gap_m >= DISTANCE_M - 1e-6
     # A place to land on this side makes the way short, whatever stands on the other.
     near = (float(middle[0]), float(middle[1] + 45.0), 0.0)
@@ -175,12 +175,13 @@ BEHIND = np.array([[0.0, 30.0, 5.0], [4.0, 30.0, 5.0]])
 @given(st.floats(9.0, 60.0), st.floats(5.0, 15.0))
 def test_a_return_stays_in_the_airspace_and_is_as_high_as_wanted_where_there_is_room(ceiling_m, distance_m):
     model = walled_off(ceiling_m)
-    found = return_height(model, unchecked_space(model, distance_m), [BEHIND])
+    space = unchecked_space(model, distance_m)
+    found, (way,) = return_height(space), ways_home(space, [BEHIND])
     assert found.z_m <= ceiling_m + 1e-9
     assert found.above_home_m == pytest.approx(found.z_m - model.site.home_enu_m[2])
     if ceiling_m >= np.ceil(found.wanted_above_home_m):
         assert found.wanted_above_home_m <= found.above_home_m < found.wanted_above_home_m + 1.0
-        assert found.way.gap_m >= distance_m - 1e-6
+        assert way.gap_m >= distance_m - 1e-6
     else:
         assert ceiling_m - found.z_m < 0.1 + 1e-9
 
@@ -188,7 +189,7 @@ def test_a_return_stays_in_the_airspace_and_is_as_high_as_wanted_where_there_is_
 def test_where_the_airspace_ends_too_low_to_return_over_the_building_the_plan_is_not_ready():
     """45.0 m against 44.8 m was ready, and then a danger."""
     plan = plan_flight(walled_off(40.0), PlanRequest(n_views=4, method="orbit")).plan
-    top_m = clear_height_z_m(walled_off(40.0), 0.0)
+    top_m = clear_height_z_m(unchecked_space(walled_off(40.0), DISTANCE_M), 0.0)
 
     def said(ceiling_m):
         findings = check_plan(plan, walled_off(ceiling_m))
@@ -206,6 +207,16 @@ def test_where_the_airspace_ends_too_low_to_return_over_the_building_the_plan_is
     assert low.value > low.limit
 
 
-def test_a_return_height_needs_a_path():
-    with pytest.raises(ValueError, match="at least one path"):
-        return_height(kiosk(), unchecked_space(kiosk(), DISTANCE_M), [])
+def test_ways_home_of_legs_are_those_of_their_path_one_by_one():
+    """Measured together, each is what it is by itself, and together they are the path's."""
+    model = walled_off(30.0)
+    space = unchecked_space(model, DISTANCE_M)
+    rng = np.random.default_rng(0)
+    path = rng.uniform((-40.0, -40.0, 5.0), (40.0, 40.0, 25.0), (9, 3))
+    legs = [path[k : k + 2] for k in range(8)]
+    found = ways_home(space, legs)
+    assert found == [ways_home(space, [leg])[0] for leg in legs]
+    (whole,) = ways_home(space, [path])
+    assert whole.gap_m == min(way.gap_m for way in found)
+    assert whole.n_places == sum(way.n_places for way in found) - 7  # places where two legs meet
+    assert ways_home(space, []) == []

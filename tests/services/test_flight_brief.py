@@ -23,6 +23,7 @@ from planning.findings import Finding, Severity
 from planning.insight.flight_profile import low_flight
 from planning.rally import CLEARANCE_M, clear_height_z_m
 from planning.site import Origin
+from planning.space import unchecked_space
 from tests.missions.plans import HONG_KONG, example_plan
 from tests.planning.plan_cases import kiosk
 
@@ -109,7 +110,7 @@ def test_smallest_distances_are_those_of_the_check_by_sortie(brief, plan):
 
 
 def test_return_height_is_what_the_mission_file_says_or_the_pilot_chose(brief, plan):
-    top_m = clear_height_z_m(MODEL, CLEARANCE_M) - MODEL.site.home_enu_m[2]
+    top_m = clear_height_z_m(unchecked_space(MODEL, 10.0), CLEARANCE_M) - MODEL.site.home_enu_m[2]
     assert top_m <= brief.return_height_m < top_m + 1.0
     options = ExportOptions(site=MODEL, rth_height_m=80.0, link_loss=LinkLoss.GO_HOME)
     chosen = flight_brief(MODEL, plan, (), "today", options=options)

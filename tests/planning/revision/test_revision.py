@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,9 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planning.checks import measures
+from planning.checks.measures import legs_of
 from planning.evaluate import sights
 from planning.plan import FlightRules, Plan, viewpoint_arrays
 from planning.positions import aimed_views, spread_positions
+from planning.rally import SAMPLE_M
 from planning.revision import Revision, delete, lock, move, revise
 from planning.speed_profile import fastest_profile
 from planning.timing import flight_path, motion_limits, stopping_times_s
@@ -76,7 +79,7 @@ def test_a_turn_by_one_angle_alone_is_seen(turn: dict[str, float]) -> None:
 
 def test_only_what_changed_is_measured_again(monkeypatch: pytest.MonkeyPatch) -> None:
     start = planned("kiosk")
-    asked: dict[str, int] = {"views": 0, "legs": 0}
+    asked: dict[str, int] = {"views": 0, "legs": 0, "ways home": 0}
 
     def counting(model, viewpoints):  # type: ignore[no-untyped-def]
         asked["views"] += len(viewpoints)
@@ -85,8 +88,8 @@ def test_only_what_changed_is_measured_again(monkeypatch: pytest.MonkeyPatch) ->
     segments = type(start.case.space.solids).segment_distances_m
 
     def counting_legs(solids, a, b, *upper):  # type: ignore[no-untyped-def]
-        # Ways of return, looked at up to some distance only, depend on the whole flight: they are none of its legs.
-        asked["legs"] += len(a) if solids is start.case.space.solids and not upper else 0
+        if solids is start.case.space.solids:
+            asked["ways home" if upper else "legs"] += len(a)
         return segments(solids, a, b, *upper)
 
     monkeypatch.setattr(measures, "sights", counting)
@@ -96,13 +99,16 @@ def test_only_what_changed_is_measured_again(monkeypatch: pytest.MonkeyPatch) ->
     moved = move(start, chosen.id, (x, y, z - 0.5))
     assert asked["views"] == 1
     assert 2 <= asked["legs"] <= 8
+    legs = {leg for sortie in moved.plan.sorties for leg in legs_of(sortie)} - set(start.case.measures.ways_home)
+    n_places = sum(1 + max(1, math.ceil(math.dist(*leg) / SAMPLE_M)) for leg in legs)
+    assert asked["ways home"] == 3 * n_places
     others = [viewpoint for viewpoint in start.plan.viewpoints if viewpoint is not chosen]
     for viewpoint in others:
         assert moved.elements_of_pose(viewpoint) is start.elements_of_pose(viewpoint)
-    asked.update(views=0, legs=0)
+    asked.update(dict.fromkeys(asked, 0))
     lock(moved, [chosen.id])
     revise(start.plan, start.prepared, start)
-    assert asked == {"views": 0, "legs": 0}
+    assert not any(asked.values())
 
 
 @pytest.mark.parametrize("name", sorted(SETTINGS))
