@@ -199,7 +199,9 @@ class Desk(QObject):
 
     def open_project(self) -> None:
         """Ask for a folder, and open it."""
-        folder = self._questions.folder(self.window, self.tr("Open project"))
+        project = self.workspace.session.folder
+        beside = None if project is None else project.parent
+        folder = self._questions.folder(self.window, self.tr("Open project"), beside)
         if folder is not None:
             self.open_folder(folder)
 

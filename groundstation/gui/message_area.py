@@ -2,7 +2,8 @@
 
 A message with a topic (`about`) holds until it is settled: the job runs again, the link is found, another project is
 opened. It is shown in the line until then, the gravest first, whatever else is told meanwhile. What happened, such as a
-file that was written, is shown for some seconds. All of it is kept in the list, which opens over the window and moves
+file that was written, is shown for some seconds, and no longer than until the site or the plan is changed: its numbers
+are of what was. All of it is kept in the list, which opens over the window and moves
 nothing.
 """
 
@@ -39,6 +40,7 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.theme import colours
 from groundstation.gui.workspace import Message, Workspace
+from groundstation.services.document import Document
 from planning.findings import Severity
 
 MAX_MESSAGES = 500
@@ -96,6 +98,7 @@ class MessageArea(QWidget):
         self._timer.timeout.connect(self.look)
         workspace.messageShown.connect(self.add)
         workspace.messageSettled.connect(self.settle)
+        workspace.documentChanged.connect(self._document_changed)
         self._show()
 
     def add(self, message: Message) -> None:
@@ -183,6 +186,12 @@ class MessageArea(QWidget):
         )
         if self.sheet.isVisible():
             self._fill()
+
+    def _document_changed(self, before: Document, after: Document) -> None:
+        """What happened was told of the site and the plan as they were."""
+        if self._event is not None and (before.site is not after.site or before.plans is not after.plans):
+            self._event = None
+            self._show()
 
     def _open(self, is_wanted: bool) -> None:
         if is_wanted:

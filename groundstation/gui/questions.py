@@ -126,9 +126,10 @@ class Questions(QObject):
         )
         return {_Button.Yes: Answer.YES, _Button.Discard: Answer.NO}.get(said, Answer.CANCEL)
 
-    def folder(self, parent: QWidget, title: str) -> Path | None:
-        """A folder that exists."""
-        found = _PathDialog(parent, title, _Wanted.FOLDER).ask()
+    def folder(self, parent: QWidget, title: str, *places: Path | None) -> Path | None:
+        """A folder that exists; the dialog begins at the first of the `places` that is there."""
+        begin = next((place for place in places if place is not None and place.is_dir()), None)
+        found = _PathDialog(parent, title, _Wanted.FOLDER, begin).ask()
         return found[0] if found else None
 
     def new_folder(self, parent: QWidget, title: str, proposed: Path) -> Path | None:

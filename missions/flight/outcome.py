@@ -31,6 +31,25 @@ class Reason(StrEnum):
     NO_TRACK = "no-track"
 
 
+class Ending(StrEnum):
+    """How a flight left its mission before the end, as its record knows; `UNKNOWN` where it does not, or flew it all.
+
+    `RETURN` and `LAND`: in that mode, by the pilot or for a reason that the record does not hold. `BATTERY`, `LINK`,
+    `REMOTE`, `FENCE`: by the autopilot itself, for a low battery, for the silence of the ground station or of the
+    remote control, and at the fence. `HAND`: in a mode in which the pilot steers. `MOTORS`: they stopped in the air.
+    """
+
+    UNKNOWN = "unknown"
+    RETURN = "return"
+    LAND = "land"
+    BATTERY = "battery"
+    LINK = "link"
+    REMOTE = "remote"
+    FENCE = "fence"
+    HAND = "hand"
+    MOTORS = "motors"
+
+
 @dataclass(frozen=True, slots=True)
 class ViewOutcome:
     """A planned view and its photo; None where there is none or the source does not say.
@@ -88,6 +107,8 @@ class SortieOutcome:
         Parts of a full battery; the prediction with what the plan adds.
     least_distance_m, least_distance_time_s, least_distance_enu_m
         Smallest distance to panels, mesh and obstacles along the track, when, and where.
+    ending
+        How the record left its mission.
     """
 
     record: int
@@ -102,6 +123,7 @@ class SortieOutcome:
     least_distance_m: float | None = None
     least_distance_time_s: float | None = None
     least_distance_enu_m: Vec3 | None = None
+    ending: Ending = Ending.UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ panels, building and obstacles, exact along the whole track between its samples.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -15,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from missions.flight.matching import DEFAULT_GATES, Gates, Matching, PhotoRef, ViewMatch, match_flight
-from missions.flight.outcome import FlightReport, SortieOutcome, Summary, ViewOutcome
+from missions.flight.outcome import Ending, FlightReport, SortieOutcome, Summary, ViewOutcome
 from missions.flight.poses import taken_poses
-from missions.flight.record import FlightRecord, TakenPhoto, Track
+from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits, flight_findings, left_in_air_m
 from planning.checks.case import Case
 from planning.checks.measures import pose_of
@@ -181,7 +182,61 @@ def _sortie_outcome(case: Case, matching: Matching, index: int, record: FlightRe
         least_distance_m=None if least is None else least.distance_m,
         least_distance_time_s=None if least is None else least.time_s,
         least_distance_enu_m=None if least is None else least.position_enu_m,
+        ending=_ending(case, record),
     )
+
+
+MISSION_MODES = frozenset(("AUTO", "MISSION"))
+RETURN_MODES = frozenset(("RTL", "SMART_RTL", "AUTO_RTL"))
+LAND_MODES = frozenset(("LAND", "PRECISION_LAND", "DESCEND"))
+HAND_MODES = frozenset(
+    "STABILIZE STABILIZED ALT_HOLD ALTCTL POSHOLD POSCTL LOITER MANUAL ACRO SPORT DRIFT FLOWHOLD".split()  # noqa: SIM905
+)
+"""As autopilots' logs call them. PX4's LOITER is a pause, but does not stand at the end of a flight that landed."""
+
+CAUSES = (
+    (Ending.BATTERY, re.compile(r"(?i)batter(y|ies)\b.*(failsafe|low|critical|emergency|dangerous)|low battery")),
+    (Ending.REMOTE, re.compile(r"(?i)radio failsafe|rc failsafe|(manual control|rc).*(lost|loss)")),
+    (
+        Ending.LINK,
+        re.compile(r"(?i)gcs failsafe(?!.*(cleared|continuing))|(ground station|data ?link|gcs).*(lost|loss)"),
+    ),
+    (Ending.FENCE, re.compile(r"(?i)fence.*breach|geofence")),
+)
+"""What autopilots say when they change the mode by themselves: ArduPilot's and PX4's texts."""
+
+CAUSE_BEFORE_S, CAUSE_AFTER_S = 4.0, 2.0
+"""Around a change of mode: heartbeats tell of it once a second, and texts come before or after."""
+
+
+def _ending(case: Case, record: FlightRecord) -> Ending:
+    """How a record left its mission: by the first mode after it that returns or lands, else by one of the pilot's."""
+    if record.is_disarmed and left_in_air_m(case, record) is not None:
+        return Ending.MOTORS
+    modes = [event for event in sorted(record.events, key=lambda event: event.time_s) if event.code == "mode"]
+    last = max((n for n, event in enumerate(modes) if event.text in MISSION_MODES), default=len(modes))
+    after = modes[last + 1 :]
+    away = next((event for event in after if event.text in RETURN_MODES | LAND_MODES), None)
+    if away is not None:
+        by_itself = _cause(record, away)
+        return by_itself or (Ending.RETURN if away.text in RETURN_MODES else Ending.LAND)
+    return Ending.HAND if any(event.text in HAND_MODES for event in after) else Ending.UNKNOWN
+
+
+def _cause(record: FlightRecord, change: FlightEvent) -> Ending | None:
+    """Why an autopilot changed the mode by itself; None where the pilot ordered it or nothing was said."""
+    from_s, to_s = change.time_s - CAUSE_BEFORE_S, change.time_s + CAUSE_AFTER_S
+    near = [event for event in record.events if from_s <= event.time_s <= to_s]
+    if any(event.code == "order" for event in near):
+        return None
+    said = [event.text for event in near if event.code == "text"]
+    if any(MISSION_DONE.search(text) for text in said):
+        return Ending.UNKNOWN
+    return next((cause for cause, pattern in CAUSES if any(pattern.search(text) for text in said)), None)
+
+
+MISSION_DONE = re.compile(r"(?i)mission (finished|complete)")
+"""Said where the way home is the mission's own."""
 
 
 def _battery_used(track: Track) -> float | None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from missions.flight.lost_reports import counts_by_more, n_lost
-from missions.flight.outcome import Reason, SortieOutcome, Summary, ViewOutcome
+from missions.flight.outcome import Ending, Reason, SortieOutcome, Summary, ViewOutcome
 from missions.flight.record import FlightRecord
 from planning.checks.case import Case, judge
 from planning.findings import Finding, Severity
@@ -55,16 +55,30 @@ DEFAULT_LIMITS = Limits()
 
 
 REASONS = {
-    Reason.NOT_FLOWN: "their sortie was not flown",
+    Reason.NOT_FLOWN: "in sorties that were not flown",
     Reason.NOT_REACHED: "not reached",
     Reason.NO_PHOTO: "reached, but the camera did not answer",
     Reason.REPORT_LOST: "photographed, but the camera's report was lost",
-    Reason.TOO_FAR: "photo taken too far away",
-    Reason.WRONG_ANGLE: "photo looks elsewhere",
-    Reason.FLIGHT_ENDED: "the flight ended before",
-    Reason.NOT_RECORDED: "the record ends before, in the air",
-    Reason.NO_TRACK: "the record does not say where the aircraft was",
+    Reason.TOO_FAR: "photographed from too far away",
+    Reason.WRONG_ANGLE: "where the photo looks elsewhere",
+    Reason.FLIGHT_ENDED: "not reached before the flight ended",
+    Reason.NOT_RECORDED: "after the end of the record in the air",
+    Reason.NO_TRACK: "where the record does not tell the aircraft's place",
 }
+"""Why views have no photo, to be read after their number."""
+
+ENDINGS = {
+    Ending.UNKNOWN: REASONS[Reason.FLIGHT_ENDED],
+    Ending.RETURN: "not reached because the flight was broken off by Return",
+    Ending.LAND: "not reached because the flight was broken off by Land",
+    Ending.BATTERY: "not reached because the flight was broken off for low battery",
+    Ending.LINK: "not reached because the flight was broken off for the lost link",
+    Ending.REMOTE: "not reached because the flight was broken off for the lost remote control",
+    Ending.FENCE: "not reached because the flight was broken off at the fence",
+    Ending.HAND: "not reached because the pilot took over by hand",
+    Ending.MOTORS: "not reached because the motors stopped in the air",
+}
+"""The same for views that come after the end of the flight, by how it ended."""
 
 
 def flight_findings(
@@ -164,13 +178,15 @@ def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome])
     missing = [view for view in views if view.reason is not Reason.TAKEN]
     n_taken = len(views) - len(missing)
     if missing:
-        counts = Counter(view.reason for view in missing)
-        why = ", ".join(f"{n} {REASONS[reason]}" for reason, n in counts.most_common())
-        is_lost = set(counts) == {Reason.REPORT_LOST}
+        endings = {outcome.sortie: outcome.ending for outcome in sorties}
+        counts = Counter(_why(view, endings) for view in missing)
+        why = ", ".join(f"{n} {words}" for words, n in counts.most_common())
+        is_lost = {view.reason for view in missing} == {Reason.REPORT_LOST}
         advice = (
             "look through the photos before planning a top-up flight" if is_lost else "plan a top-up flight for them"
         )
-        text = f"{len(missing)} of {len(views)} views have no photo that is known of: {why}; {advice}"
+        have = "has" if len(missing) == 1 else "have"
+        text = f"{len(missing)} of {len(views)} views {have} no photo that is known of: {why}; {advice}"
         severity = Severity.WARNING if is_lost else Severity.ERROR
         first = missing[0].view_id
         yield Finding(severity, "views-taken", text, first, float(n_taken), float(len(views)), "views")
@@ -179,8 +195,18 @@ def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome])
         yield Finding(Severity.OK, "views-taken", text, "", float(n_taken), float(len(views)), "views")
     n_extra = sum(outcome.n_extra for outcome in sorties)
     if n_extra:
-        text = f"{n_extra} photos belong to no view, or to one that has a better photo; they count for coverage, too"
+        text = (
+            "1 photo belongs to no view, or to one that has a better photo; it counts for coverage, too"
+            if n_extra == 1
+            else f"{n_extra} photos belong to no view, or to one that has a better photo; they count for coverage, too"
+        )
         yield Finding(Severity.NOTE, "photos-extra", text, "", float(n_extra), 0.0, "photos")
+
+
+def _why(view: ViewOutcome, endings: Mapping[int, Ending]) -> str:
+    """Why a view has no photo, to be read after a number."""
+    is_after = view.reason is Reason.FLIGHT_ENDED
+    return ENDINGS[endings.get(view.sortie, Ending.UNKNOWN)] if is_after else REASONS[view.reason]
 
 
 def _reports_lost(records: Sequence[FlightRecord], views: Sequence[ViewOutcome]) -> Iterator[Finding]:
@@ -233,7 +259,9 @@ def _coverage(summary: Summary, limits: Limits) -> Iterator[Finding]:
         )  # fmt: skip
     if summary.lost_panels:
         n = len(summary.lost_panels)
-        text = f"{n} panels of the plan are on no photo, the first is '{summary.lost_panels[0]}'"
+        first = summary.lost_panels[0]
+        many = f"{n} panels of the plan are on no photo, the first is '{first}'"
+        text = f"the panel '{first}' of the plan is on no photo" if n == 1 else many
         yield Finding(Severity.WARNING, "panels-lost", text, summary.lost_panels[0], float(n), 0.0, "panels")
 
 

@@ -121,6 +121,13 @@ class Pilot:
         assert named, f"nothing is labelled {texts}"
         return named[0]
 
+    def lines(self, table: str) -> list[str]:
+        """What stands in the first column of a list."""
+        view = self.field(table)
+        assert isinstance(view, QAbstractItemView)
+        model = view.model()
+        return [str(model.index(row, 0).data()) for row in range(model.rowCount())]
+
     # What is done
 
     def come_to_front(self) -> None:

@@ -1,6 +1,7 @@
 """Jobs, messages and selection as the window sees them: nothing is lost, nothing comes twice, nothing blocks."""
 
 import threading
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import Qt
@@ -245,6 +246,19 @@ def test_what_just_happened_goes_after_a_while(workspace, centre):
     passes(centre, 60.0)
     assert centre.line() == ""
     assert len(centre.messages()) == 2
+
+
+def test_what_just_happened_goes_when_the_site_is_no_longer_as_it_was_told(workspace, centre):
+    """“panels 46” beside a site that has 50 by now."""
+    workspace.change("Site", replace(workspace.document, site=single_panel()))
+    workspace.say(Severity.OK, "panels 46")
+    workspace.amend(replace(workspace.document, request=replace(workspace.document.request, seed=7)))
+    assert centre.line() == "Done: panels 46", "the form of the next plan changes nothing that was told"
+    workspace.say(Severity.WARNING, "the copy could not be written", about="project.copy")
+    workspace.say(Severity.OK, "panels 46")
+    workspace.change("Panels", replace(workspace.document, site=single_panel()))
+    assert centre.line() == "Warning: the copy could not be written", "what holds goes by itself only"
+    assert "panels 46" in centre.texts(), "the list keeps what was told, with its time"
 
 
 def test_an_error_of_a_job_holds_until_it_is_tried_again(application, workspace, centre):

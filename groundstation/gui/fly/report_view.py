@@ -150,7 +150,7 @@ class ReportView(QWidget):
             Reason.REPORT_LOST: self.tr("taken, but its report was lost"),
             Reason.TOO_FAR: self.tr("taken too far away"),
             Reason.WRONG_ANGLE: self.tr("looks elsewhere"),
-            Reason.FLIGHT_ENDED: self.tr("flight ended before"),
+            Reason.FLIGHT_ENDED: self.tr("not reached, flight broken off"),
             Reason.NOT_RECORDED: self.tr("not recorded any more"),
             Reason.NO_TRACK: self.tr("place not known"),
         }

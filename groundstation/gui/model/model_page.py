@@ -19,6 +19,7 @@ from groundstation.gui.questions import Questions, choose_new_file, file_name
 from groundstation.gui.stage import Stage
 from groundstation.gui.workspace import Workspace
 from groundstation.services.model_export import ENDINGS, OTHER_ENDINGS, ModelFormat, with_ending
+from groundstation.services.reconstruct_places import MODELS_FOLDER
 from groundstation.services.scene_card import PanelRow
 from groundstation.services.units import UnitSystem
 from planning.findings import Severity
@@ -109,7 +110,13 @@ class ModelPage(QObject):
     # What the user does
 
     def _open(self) -> None:
-        folder = self.questions.folder(self._stage.window(), self.tr("Folder of a model"))
+        card, project = self.desk.card, self._workspace.session.folder
+        places = (
+            None if project is None else project / MODELS_FOLDER,
+            None if card is None else card.folder.parent,
+            project,
+        )
+        folder = self.questions.folder(self._stage.window(), self.tr("Folder of a model"), *places)
         if folder is not None:
             self.desk.open(folder)
 

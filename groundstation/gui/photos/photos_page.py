@@ -177,7 +177,8 @@ class PhotosPage(QObject):
     # What the user does
 
     def _choose_folder(self) -> None:
-        folder = self.questions.folder(self._stage.window(), self.tr("Folder of photos"))
+        places = (self.desk.usual_folder(), self._workspace.session.folder)
+        folder = self.questions.folder(self._stage.window(), self.tr("Folder of photos"), *places)
         if folder is not None:
             self.desk.read(folder)
 

@@ -122,7 +122,9 @@ class ReconstructPage(QObject):
     # What the user does
 
     def _choose_data_set(self) -> None:
-        folder = self.questions.folder(self._stage.window(), self.tr("Folder of a data set"))
+        card = self.desk.card
+        places = (None if card is None else card.folder.parent, self._workspace.session.folder)
+        folder = self.questions.folder(self._stage.window(), self.tr("Folder of a data set"), *places)
         if folder is not None:
             self.desk.read(folder)
 

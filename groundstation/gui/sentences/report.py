@@ -5,14 +5,6 @@ from __future__ import annotations
 from PySide6.QtCore import QT_TRANSLATE_NOOP
 
 SENTENCES = (
-    QT_TRANSLATE_NOOP("Sentences", "their sortie was not flown"),
-    QT_TRANSLATE_NOOP("Sentences", "not reached"),
-    QT_TRANSLATE_NOOP("Sentences", "reached, but the camera did not answer"),
-    QT_TRANSLATE_NOOP("Sentences", "photographed, but the camera's report was lost"),
-    QT_TRANSLATE_NOOP("Sentences", "photo taken too far away"),
-    QT_TRANSLATE_NOOP("Sentences", "photo looks elsewhere"),
-    QT_TRANSLATE_NOOP("Sentences", "the flight ended before"),
-    QT_TRANSLATE_NOOP("Sentences", "the record does not say where the aircraft was"),
     QT_TRANSLATE_NOOP("Sentences", "there is no record of any flight"),
     QT_TRANSLATE_NOOP(
         "Sentences",
@@ -23,7 +15,12 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "look through the photos before planning a top-up flight"),
     QT_TRANSLATE_NOOP("Sentences", "plan a top-up flight for them"),
     QT_TRANSLATE_NOOP("Sentences", "{0} of {1} views have no photo that is known of: {2}; {3}"),
+    QT_TRANSLATE_NOOP("Sentences", "{0} of {1} views has no photo that is known of: {2}; {3}"),
     QT_TRANSLATE_NOOP("Sentences", "all {0} views have a photo"),
+    QT_TRANSLATE_NOOP(
+        "Sentences",
+        "1 photo belongs to no view, or to one that has a better photo; it counts for coverage, too",
+    ),
     QT_TRANSLATE_NOOP(
         "Sentences",
         "{0} photos belong to no view, or to one that has a better photo; they count for coverage, too",
@@ -46,6 +43,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "sections covered, {0} where {1} were planned"),
     QT_TRANSLATE_NOOP("Sentences", "plan a top-up flight"),
     QT_TRANSLATE_NOOP("Sentences", "{0} panels of the plan are on no photo, the first is '{1}'"),
+    QT_TRANSLATE_NOOP("Sentences", "the panel '{0}' of the plan is on no photo"),
     QT_TRANSLATE_NOOP("Sentences", "the distance kept is not known"),
     QT_TRANSLATE_NOOP("Sentences", "smallest distance flown, {0} s after the start"),
     QT_TRANSLATE_NOOP("Sentences", "see where, and keep further away"),

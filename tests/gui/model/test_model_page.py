@@ -1,6 +1,7 @@
 """The Model tab: panels are chosen, coloured, searched and measured, and their records are kept."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -81,6 +82,24 @@ def test_what_is_no_model_is_refused_in_words(application, page, tmp_path):
     assert "no scene of objects" in page.messages[-1].text
     assert page.desk.card is None
     assert page.side.open.isEnabled()
+
+
+def test_the_dialog_begins_at_the_projects_models_where_there_are_some(page, tmp_path, monkeypatch):
+    project = tmp_path / "house"
+    project.mkdir()
+    begun = []
+
+    def read(dialog):
+        begun.append(Path(dialog.directory().absolutePath()))
+        press("Cancel")(dialog)
+
+    monkeypatch.setattr(type(page._workspace.session), "folder", property(lambda _session: project))
+    with clicked(read):
+        page.side.open.click()
+    (project / "models").mkdir()
+    with clicked(read):
+        page.side.open.click()
+    assert begun == [project, project / "models"]
 
 
 def test_a_click_chooses_the_panel_that_the_process_finds(opened):

@@ -13,10 +13,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from missions.flight.outcome import FlightReport, Reason
-from missions.flight.record import FlightRecord, TakenPhoto, Track
+from missions.flight.outcome import Ending, FlightReport, Reason
+from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.flight.report import Limits, closest, report_case
-from missions.flight.report_rules import ENDED_BADLY
+from missions.flight.report_rules import ENDED_BADLY, ENDINGS, REASONS
 from missions.flight.report_text import report_text, report_to_json
 from planning.checks.case import Case
 from planning.findings import Finding, Severity
@@ -236,6 +236,60 @@ def test_an_aborted_sortie_is_judged_by_neither_duration_nor_success() -> None:
     assert "duration" not in {finding.code for finding in made.findings}
     assert made.summary.duration_flown_s is None
     assert problems(made.findings)["views-taken"].severity is Severity.ERROR
+
+
+@pytest.mark.parametrize(
+    ("events", "ending"),
+    [
+        ([("order", "returning home: done", 0.3), ("mode", "RTL", 1.0)], Ending.RETURN),
+        ([("mode", "RTL", 1.0)], Ending.RETURN),
+        ([("order", "landing here: done", 1.2), ("mode", "LAND", 1.0)], Ending.LAND),
+        ([("text", "Battery 1 is critical 13.20V", 0.5), ("mode", "RTL", 1.0)], Ending.BATTERY),
+        ([("text", "Battery Failsafe - Landing", 0.5), ("mode", "LAND", 1.0)], Ending.BATTERY),
+        # The autopilot warned only, and the pilot returned later, or at once.
+        ([("text", "Battery 1 is low 14.10V", -30.0), ("mode", "RTL", 1.0)], Ending.RETURN),
+        ([("text", "Battery 1 is low 14.10V", 0.0), ("order", "", 0.5), ("mode", "RTL", 1.0)], Ending.RETURN),
+        ([("text", "GCS Failsafe", 0.5), ("mode", "SMART_RTL", 1.0)], Ending.LINK),
+        ([("text", "GCS Failsafe Cleared", 0.5), ("mode", "RTL", 1.0)], Ending.RETURN),
+        ([("text", "Connection to ground station lost", 0.5), ("mode", "RTL", 1.0)], Ending.LINK),
+        ([("text", "Radio Failsafe - RTL", 0.5), ("mode", "RTL", 1.0)], Ending.REMOTE),
+        ([("text", "Fence breached", 0.5), ("mode", "RTL", 1.0)], Ending.FENCE),
+        ([("mode", "BRAKE", 0.0), ("mode", "RTL", 9.0), ("mode", "LAND", 20.0)], Ending.RETURN),
+        ([("mode", "RTL", 0.0), ("mode", "AUTO", 9.0)], Ending.UNKNOWN),
+        ([("text", "Mission finished, returning", 0.5), ("mode", "RTL", 1.0)], Ending.UNKNOWN),
+        ([("mode", "LOITER", 1.0)], Ending.HAND),
+        ([], Ending.UNKNOWN),
+    ],
+)
+def test_views_after_the_end_say_how_the_flight_was_broken_off(
+    events: list[tuple[str, str, float]], ending: Ending
+) -> None:
+    end_s = flown()[0].photos[5].time_s + 0.5
+    happened = [FlightEvent(0.0, "mode", "AUTO"), *(FlightEvent(end_s + t, code, text) for code, text, t in events)]
+    made = report((replace(cut_at(flown()[0], end_s), events=tuple(happened)),))
+    assert made.sorties[0].ending is ending
+    told = problems(made.findings)["views-taken"].message
+    assert told == f"6 of 12 views have no photo that is known of: 6 {ENDINGS[ending]}; plan a top-up flight for them"
+
+
+def test_motors_that_stopped_in_the_air_are_why_views_were_not_reached() -> None:
+    cut = cut_at(flown()[0], flown()[0].photos[5].time_s + 0.5)
+    made = report((replace(cut, is_disarmed=True, events=(FlightEvent(0.0, "mode", "AUTO"),)),))
+    assert made.sorties[0].ending is Ending.MOTORS
+    assert "6 not reached because the motors stopped in the air" in problems(made.findings)["views-taken"].message
+
+
+def test_every_reason_reads_on_after_its_number() -> None:
+    """As in “2 views ...”: no sentence of its own begins there, and no comma or colon falls among those of the list."""
+    for words in (*REASONS.values(), *ENDINGS.values()):
+        assert words.split()[0] in {"in", "not", "reached,", "photographed", "photographed,", "where", "after"}, words
+    assert set(ENDINGS) == set(Ending)
+    assert set(REASONS) == set(Reason) - {Reason.TAKEN}
+
+
+def test_one_view_without_a_photo_is_told_of_as_one() -> None:
+    made = report(photos(lambda p: p[1:]))
+    assert problems(made.findings)["views-taken"].message.startswith("1 of 12 views has no photo that is known of: 1 ")
 
 
 @pytest.mark.parametrize(
