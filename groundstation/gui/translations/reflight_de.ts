@@ -5354,8 +5354,8 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>blickt woandershin</translation>
     </message>
     <message>
-        <source>flight ended before</source>
-        <translation>Flug endete vorher</translation>
+        <source>not reached, flight broken off</source>
+        <translation>nicht erreicht, Flug abgebrochen</translation>
     </message>
     <message>
         <source>not recorded any more</source>
@@ -6683,10 +6683,6 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>{0:n} Befunde</translation>
     </message>
     <message>
-        <source>{0:n} their sortie was not flown</source>
-        <translation>{0:n} ihr Einsatz wurde nicht geflogen</translation>
-    </message>
-    <message>
         <source>{0:n} not reached</source>
         <translation>{0:n} nicht erreicht</translation>
     </message>
@@ -6699,24 +6695,60 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>{0:n} fotografiert, aber die Meldung der Kamera ging verloren</translation>
     </message>
     <message>
-        <source>{0:n} photo taken too far away</source>
-        <translation>{0:n} Foto zu weit entfernt aufgenommen</translation>
+        <source>{0:n} in sorties that were not flown</source>
+        <translation>{0:n} in Einsätzen, die nicht geflogen wurden</translation>
     </message>
     <message>
-        <source>{0:n} photo looks elsewhere</source>
-        <translation>{0:n} Foto blickt woandershin</translation>
+        <source>{0:n} photographed from too far away</source>
+        <translation>{0:n} aus zu großer Entfernung aufgenommen</translation>
     </message>
     <message>
-        <source>{0:n} the flight ended before</source>
-        <translation>{0:n} der Flug endete vorher</translation>
+        <source>{0:n} where the photo looks elsewhere</source>
+        <translation>{0:n} mit einem Foto, das woandershin blickt</translation>
     </message>
     <message>
-        <source>{0:n} the record ends before, in the air</source>
-        <translation>{0:n} die Aufzeichnung endet vorher, in der Luft</translation>
+        <source>{0:n} not reached before the flight ended</source>
+        <translation>{0:n} nicht erreicht, ehe der Flug endete</translation>
     </message>
     <message>
-        <source>{0:n} the record does not say where the aircraft was</source>
-        <translation>{0:n} die Aufzeichnung sagt nicht, wo das Fluggerät war</translation>
+        <source>{0:n} not reached because the flight was broken off by Return</source>
+        <translation>{0:n} nicht erreicht, weil der Flug mit Heimkehr abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>{0:n} not reached because the flight was broken off by Land</source>
+        <translation>{0:n} nicht erreicht, weil der Flug mit Landen abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>{0:n} not reached because the flight was broken off for low battery</source>
+        <translation>{0:n} nicht erreicht, weil der Flug wegen schwachen Akkus abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>{0:n} not reached because the flight was broken off for the lost link</source>
+        <translation>{0:n} nicht erreicht, weil der Flug wegen verlorener Funkverbindung abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>{0:n} not reached because the flight was broken off for the lost remote control</source>
+        <translation>{0:n} nicht erreicht, weil der Flug wegen verlorener Fernsteuerung abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>{0:n} not reached because the flight was broken off at the fence</source>
+        <translation>{0:n} nicht erreicht, weil der Flug am Geofence abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>{0:n} not reached because the pilot took over by hand</source>
+        <translation>{0:n} nicht erreicht, weil der Pilot von Hand übernahm</translation>
+    </message>
+    <message>
+        <source>{0:n} not reached because the motors stopped in the air</source>
+        <translation>{0:n} nicht erreicht, weil die Motoren in der Luft ausgingen</translation>
+    </message>
+    <message>
+        <source>{0:n} after the end of the record in the air</source>
+        <translation>{0:n} nach dem Ende der Aufzeichnung in der Luft</translation>
+    </message>
+    <message>
+        <source>{0:n} where the record does not tell the aircraft&apos;s place</source>
+        <translation>{0:n} ohne Ort des Fluggeräts in der Aufzeichnung</translation>
     </message>
     <message>
         <source>minimum distance (m) {0} instead of {1}</source>
@@ -10343,38 +10375,6 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>{0} Aufnahmen wurden gemacht, aber die Meldungen der Kamera gingen über Funk verloren; was sie zeigen, gilt als fehlend. Das Protokoll des Autopiloten (.BIN, .ulg) weiß davon: es statt der Flugdatei nennen</translation>
     </message>
     <message>
-        <source>their sortie was not flown</source>
-        <translation>ihr Einsatz wurde nicht geflogen</translation>
-    </message>
-    <message>
-        <source>not reached</source>
-        <translation>nicht erreicht</translation>
-    </message>
-    <message>
-        <source>reached, but the camera did not answer</source>
-        <translation>erreicht, aber die Kamera antwortete nicht</translation>
-    </message>
-    <message>
-        <source>photographed, but the camera&apos;s report was lost</source>
-        <translation>fotografiert, aber die Meldung der Kamera ging verloren</translation>
-    </message>
-    <message>
-        <source>photo taken too far away</source>
-        <translation>Foto zu weit entfernt aufgenommen</translation>
-    </message>
-    <message>
-        <source>photo looks elsewhere</source>
-        <translation>Foto blickt woandershin</translation>
-    </message>
-    <message>
-        <source>the flight ended before</source>
-        <translation>der Flug endete vorher</translation>
-    </message>
-    <message>
-        <source>the record does not say where the aircraft was</source>
-        <translation>die Aufzeichnung sagt nicht, wo das Fluggerät war</translation>
-    </message>
-    <message>
         <source>there is no record of any flight</source>
         <translation>es gibt keine Aufzeichnung eines Fluges</translation>
     </message>
@@ -10403,8 +10403,16 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>{0} von {1} Aufnahmen haben kein bekanntes Foto: {2}; {3}</translation>
     </message>
     <message>
+        <source>{0} of {1} views has no photo that is known of: {2}; {3}</source>
+        <translation>{0} von {1} Aufnahmen hat kein Foto, von dem man weiß: {2}; {3}</translation>
+    </message>
+    <message>
         <source>all {0} views have a photo</source>
         <translation>alle {0} Aufnahmen haben ein Foto</translation>
+    </message>
+    <message>
+        <source>1 photo belongs to no view, or to one that has a better photo; it counts for coverage, too</source>
+        <translation>1 Foto gehört zu keiner Aufnahme oder zu einer, die ein besseres Foto hat; es zählt für die Abdeckung mit</translation>
     </message>
     <message>
         <source>{0} photos belong to no view, or to one that has a better photo; they count for coverage, too</source>
@@ -10465,6 +10473,10 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     <message>
         <source>{0} panels of the plan are on no photo, the first is &apos;{1}&apos;</source>
         <translation>{0} Scheiben des Plans sind auf keinem Foto, die erste ist &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>the panel &apos;{0}&apos; of the plan is on no photo</source>
+        <translation>die Scheibe &apos;{0}&apos; des Plans ist auf keinem Foto</translation>
     </message>
     <message>
         <source>the distance kept is not known</source>
