@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 def python(code):
     return subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False
+        [sys.executable, "-W", "error", "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=500, check=False
     )
 
 

@@ -203,7 +203,11 @@ class Simulation:
         link = through_air(ground, decisions, self.conditions, lambda: vehicle.flight_s, self.seed)
         # It ends when the link is closed.
         threading.Thread(
-            target=serve, args=(vehicle, [air], self.speed_up), name="simulated-vehicle", daemon=True
+            target=serve,
+            args=(vehicle, [air], self.speed_up),
+            kwargs={"is_heard": ground.channel.is_idle},
+            name="simulated-vehicle",
+            daemon=True,
         ).start()
         return OpenedLink(link, decisions, vehicle)
 

@@ -60,15 +60,19 @@ class MemoryChannel:
     inbox: queue.SimpleQueue[bytes | None]
     outbox: queue.SimpleQueue[bytes | None]
     _is_closed: bool = field(init=False, default=False)
+    _is_reading: bool = field(init=False, default=False)
 
     def read(self, timeout_s: float) -> Chunk | None:
         """Next frame."""
         if self._is_closed:
             raise LinkError("the link is closed")
+        self._is_reading = True
         try:
             data = self.inbox.get(timeout=timeout_s) if timeout_s > 0.0 else self.inbox.get_nowait()
         except queue.Empty:
             return None
+        finally:
+            self._is_reading = False
         if data is None:
             self._is_closed = True
             raise LinkError("the other end closed the link")
@@ -82,6 +86,10 @@ class MemoryChannel:
 
     def heard(self, origin: Hashable) -> None:
         """Nothing to note: there is one other end."""
+
+    def is_idle(self) -> bool:
+        """Whether all that came was read, and the next is being waited for; from any thread."""
+        return self._is_reading and self.inbox.empty()
 
     def close(self) -> None:
         """Tell the other end."""

@@ -2,7 +2,8 @@
 
 Here alone simulated time meets real time. A `DirectLink` knows only simulated time: to wait for a message is to fly on.
 `serve` lets simulated time follow the clock, `speedup` times as fast; while a mission is being uploaded both run alike,
-because the time-outs of the upload are the vehicle's and the ground station's answers are not sped up.
+because the time-outs of the upload are the vehicle's and the ground station's answers are not sped up. Where it can be
+known that the ground station is still busy with what it was told, simulated time waits for it.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 
 from missions.mavlink.link import GROUND_STATION, FrameObserver, Link
@@ -26,6 +27,18 @@ LISTEN_S = 0.005
 
 MAX_STEP_S = 0.1
 """Of real time, flown in one go: a vehicle that cannot keep up, or was held up, gets slower instead of deaf."""
+
+MAX_FLOWN_S = 0.5
+"""Of simulated time, flown in one go: between two looks at what the ground station wants."""
+
+DEAF_S = 5.0
+"""How long simulated time waits for a ground station, in real time; one that takes longer does not listen at all."""
+
+
+def always() -> bool:
+    """Of links from whose other end nothing can be known: it listens."""
+    return True
+
 
 
 class DirectLink:
@@ -106,6 +119,7 @@ def serve(
     speedup: float = 1.0,
     stop: Stop = never,
     clock: Clock = time.perf_counter,
+    is_heard: Callable[[], bool] = always,
 ) -> None:
     """Fly a vehicle and answer for it on links, until told to stop or until the last link breaks.
 
@@ -116,6 +130,9 @@ def serve(
         clients may use at once; all hear everything that the vehicle says.
     speedup
         Simulated seconds for each real one, above 0 to 50.
+    is_heard
+        Whether the ground station has dealt with all that it was told, and listens. Where not, the vehicle waits, so
+        that a slow machine makes the flight longer and not another one.
 
     Raises
     ------
@@ -125,7 +142,7 @@ def serve(
     if not 0.0 < speedup <= MAX_SPEEDUP:
         raise ValueError(f"speedup: expected more than 0, at most {MAX_SPEEDUP:g}, got {speedup}")
     listening = list(links)
-    flown_until_s = clock()
+    flown_until_s = heard_s = clock()
     while listening and not stop():
         said: list[Message] = []
         for link in tuple(listening):
@@ -137,9 +154,12 @@ def serve(
             except LinkError:
                 listening.remove(link)
         now_s = clock()
-        elapsed_s = min(now_s - flown_until_s, MAX_STEP_S)
-        flown_until_s = now_s
-        said += vehicle.step(elapsed_s * (1.0 if vehicle.is_transferring else speedup))
+        if is_heard():
+            heard_s = now_s
+        if now_s == heard_s or now_s - heard_s > DEAF_S:
+            elapsed_s = min(now_s - flown_until_s, MAX_STEP_S)
+            flown_until_s = now_s
+            said += vehicle.step(min(elapsed_s * (1.0 if vehicle.is_transferring else speedup), MAX_FLOWN_S))
         _send(listening, said)
 
 

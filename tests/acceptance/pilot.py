@@ -42,7 +42,7 @@ GERMAN = Path(__file__).resolve().parents[2] / "groundstation/gui/translations/r
 QT_GERMAN = {"Yes": ("Ja",), "No": ("Nein",), "OK": ("OK",), "Cancel": ("Abbrechen",), "Save": ("Speichern",)}
 """Words of Qt's own dialogs."""
 
-PATIENCE_S = 120.0
+PATIENCE_S = 240.0
 
 
 @cache

@@ -57,7 +57,7 @@ def process():
 
     def run(*arguments, **options):
         command = [sys.executable, "-W", "error", str(ROOT / "app.py"), *map(str, arguments)]
-        return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, **options)
+        return subprocess.run(command, capture_output=True, text=True, timeout=500, check=False, **options)
 
     return run
 

@@ -30,7 +30,7 @@ def run_node(script: str, *arguments: object) -> Any:
     if not (HERE / "node_modules").is_dir():
         pytest.skip("readers of others are not installed: make foreign")
     command = [node, str(HERE / script), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, env={**os.environ, "NO_COLOR": "1"})
+    done = subprocess.run(command, capture_output=True, text=True, timeout=500, env={**os.environ, "NO_COLOR": "1"})
     assert done.returncode == 0, done.stderr[-2000:]
     return json.loads(done.stdout.strip().splitlines()[-1])
 

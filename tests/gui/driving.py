@@ -37,10 +37,10 @@ change), and where none does."""
 LOOK_MS, READ_MS, TRIES = 15, 150, 40
 """How often the hand looks for a dialog, and how long and how often it gives one of files to read its folder."""
 
-DIALOG_S = 20.0
-"""Longest wait for a dialog; nothing but a job stands before one."""
+PATIENCE_S = 240.0
+"""Longest wait for anything: it ends tests that would wait for ever, also where a second of work takes ten."""
 
-GUARD_MS, GUARD_S = 500, 5.0
+GUARD_MS, GUARD_S = 500, 60.0
 """How often somebody looks for dialogs that nobody clicks, and how long one may stand."""
 
 Step = Callable[[QDialog], None]
@@ -226,7 +226,7 @@ class Guard:
 
 
 @contextmanager
-def clicked(*steps: Step | str, timeout_s: float = DIALOG_S) -> Iterator[list[str]]:
+def clicked(*steps: Step | str, timeout_s: float = PATIENCE_S) -> Iterator[list[str]]:
     """Work the dialogs that the block brings up: one step each, a text standing for the button with that text.
 
     Yields the words of the dialogs, filled as they come. Ends when every step was taken.
@@ -335,7 +335,7 @@ def _name(widget: QWidget) -> str:
     return _plain(text) or type(widget).__name__
 
 
-def turn_until(application, condition: Callable[[], bool], timeout_s: float = 60.0) -> float:
+def turn_until(application, condition: Callable[[], bool], timeout_s: float = PATIENCE_S) -> float:
     """Process events until a condition holds; returns the longest time that one turn of the event loop took, s."""
     end, longest = time.perf_counter() + timeout_s, 0.0
     while not condition():
@@ -347,7 +347,7 @@ def turn_until(application, condition: Callable[[], bool], timeout_s: float = 60
     return longest
 
 
-def turn_until_idle(application, desk, timeout_s: float = 60.0) -> float:
+def turn_until_idle(application, desk, timeout_s: float = PATIENCE_S) -> float:
     """Process events until no job runs and none follows; returns the longest turn, s."""
     longest, quiet_since = 0.0, time.perf_counter()
     while time.perf_counter() - quiet_since < (SETTLE_S if _waits(desk) else CALM_S):

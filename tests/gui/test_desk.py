@@ -345,7 +345,7 @@ def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, mak
     turn_until(application, lambda: any(job.state is JobState.RUNNING for job in desk.workspace.jobs()))
     jobs = desk.workspace.jobs()
     assert desk.window.close()
-    assert all(job.wait(5.0) for job in jobs)
+    assert all(job.wait(120.0) for job in jobs)
     assert open_project(tmp_path / "project").document.site.site.name == "roof"
 
 

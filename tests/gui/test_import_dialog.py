@@ -30,8 +30,8 @@ class Dialog:
         self.dialog.show()
         self.idle()
 
-    def idle(self, timeout_s=60.0):
-        turn_until(self.application, lambda: not self.workspace.jobs(), timeout_s)
+    def idle(self):
+        turn_until(self.application, lambda: not self.workspace.jobs())
         self.application.processEvents()
 
     def choose(self, box, value):

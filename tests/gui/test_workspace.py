@@ -39,8 +39,8 @@ def messages(workspace):
     return MessageArea(workspace)
 
 
-def wait(application, condition, timeout_s=10.0):
-    turn_until(application, condition, timeout_s)
+def wait(application, condition):
+    turn_until(application, condition)
 
 
 class Gate:
@@ -117,7 +117,7 @@ def test_closing_cancels_what_runs_and_what_waits(application, runner):
     workspace, gate, heard = Workspace(Session(), runner), Gate(), []
     jobs = [workspace.start("first", gate, heard.append), workspace.start("second", gate, heard.append)]
     wait(application, gate.begun.is_set)
-    assert workspace.close(5.0)
+    assert workspace.close(120.0)
     application.processEvents()
     assert [job.state for job in jobs] == [JobState.CANCELLED] * 2
     assert not heard

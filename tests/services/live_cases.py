@@ -95,17 +95,18 @@ class Follower:
     """Collects the events of a flight; waits for what they say."""
 
     def __init__(self):
-        self.events, self.view = [], None
+        self.events, self.told_s, self.view = [], [], None
         self._queue = queue.SimpleQueue()
 
     def __call__(self, event):
-        self._queue.put(event)
+        self._queue.put((time.monotonic(), event))
 
-    def until(self, condition, timeout_s=180.0):
+    def until(self, condition, timeout_s=400.0):
         """Take events until one meets the condition; returns it."""
         end = time.monotonic() + timeout_s
         while True:
-            event = self._queue.get(timeout=max(0.01, end - time.monotonic()))
+            told_s, event = self._queue.get(timeout=max(0.01, end - time.monotonic()))
+            self.told_s.append(told_s)
             self.events.append(event)
             if isinstance(event, FlightChanged):
                 self.view = event.view
@@ -118,7 +119,7 @@ class Follower:
     def until_closed(self):
         return self.until(lambda event: isinstance(event, LinkChanged) and event.link is LinkState.CLOSED)
 
-    def until_ended(self, timeout_s=180.0):
+    def until_ended(self, timeout_s=400.0):
         return self.until(lambda event: isinstance(event, FlightEnded), timeout_s)
 
     def of(self, kind):

@@ -297,17 +297,17 @@ def test_discarding_waits_for_a_copy_that_is_being_written(project, monkeypatch)
 
     def slow(*arguments, **options):
         begun.set()
-        assert go_on.wait(10.0)
+        assert go_on.wait(120.0)
         return save_project(*arguments, **options)
 
     monkeypatch.setattr("groundstation.services.autosave.save_project", slow)
     with ThreadPoolExecutor(2) as executor:
         keeper = autosave(folder, executor=executor)
         keeper.keep(edited(saved, 9))
-        assert begun.wait(10.0)
+        assert begun.wait(120.0)
         discarding = executor.submit(keeper.discard)
         go_on.set()
-        discarding.result(10.0)
+        discarding.result(120.0)
         assert not (folder / AUTOSAVE_FOLDER).exists()
 
 

@@ -41,7 +41,7 @@ from planning.errors import InputError
 from tests.reconstruction.modelling.made_data_set import write_data_set
 
 TRAINING = Subject("training")
-PATIENCE_S = 60.0
+PATIENCE_S = 240.0
 
 
 class Heard:

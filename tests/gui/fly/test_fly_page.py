@@ -216,7 +216,7 @@ def test_losing_the_link_shows_a_band_and_is_survived(application, radio, desk, 
     take_off(application, page)
     assert page.band.isHidden()
     radio.cut.is_unplugged.set()
-    turn_until(application, lambda: page.band.isVisible(), 3.0)
+    turn_until(application, page.band.isVisible)
     assert "LINK LOST" in page.band.text()
     assert page.buttons.button(Request.RETURN).isEnabled()
     desk.window.show_tab("site")

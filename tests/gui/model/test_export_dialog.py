@@ -74,7 +74,7 @@ def test_a_model_is_written_and_the_user_is_told(application, page, trained, tmp
     assert page.messages == []
     with clicked(as_spz, choose(tmp_path / "tower")):
         page.side.export.click()
-    turn_until(application, lambda: bool(page.messages), 60.0)
+    turn_until(application, lambda: bool(page.messages))
     assert "The model is written" in page.messages[-1].text
     assert 0 < len(read_spz(tmp_path / "tower.spz")) <= page.desk.card.n_gaussians
 
@@ -85,14 +85,14 @@ def test_a_web_page_is_written_into_a_folder_that_is_named(application, page, tr
         page.side.export.click()
     with clicked("Choose a place ...", choose(tmp_path / "tower page")):
         page.side.export.click()
-    turn_until(application, lambda: bool(page.messages), 60.0)
+    turn_until(application, lambda: bool(page.messages))
     assert (tmp_path / "tower page" / "index.html").is_file()
 
 
 def test_what_cannot_be_written_is_told_and_the_window_goes_on(application, page, trained, tmp_path):
     opened_with(application, page, trained)
     page.desk.export(tmp_path / "absent" / "tower.spz", ModelExport(ModelFormat.SPZ))
-    turn_until(application, lambda: bool(page.messages), 60.0)
+    turn_until(application, lambda: bool(page.messages))
     assert "there is no folder" in page.messages[-1].text
     assert page.side.export.isEnabled()
 
@@ -101,5 +101,5 @@ def test_an_export_that_is_cancelled_leaves_nothing(application, page, trained, 
     opened_with(application, page, trained)
     page.desk.export(tmp_path / "tower.web", ModelExport(ModelFormat.WEB))
     page._workspace.cancel(page._workspace.jobs()[0])
-    turn_until(application, lambda: not page._workspace.jobs(), 60.0)
+    turn_until(application, lambda: not page._workspace.jobs())
     assert list(tmp_path.iterdir()) == []

@@ -74,7 +74,7 @@ def test_arrows_move_a_line_by_a_pixel_and_with_shift_by_ten_as_one_correction(k
 def test_a_line_that_rests_is_put_down_by_itself(keyed, qtbot):
     before = positions(keyed, "rows")
     keyed.keys(*["Tab"] * (len(keyed.grid.columns) + 2), "Down")
-    with qtbot.waitSignal(keyed.view.lineMoved, timeout=5000):
+    with qtbot.waitSignal(keyed.view.lineMoved, timeout=240_000):
         pass
     keyed.idle()
     assert positions(keyed, "rows")[1] == pytest.approx(before[1] + 1.0)

@@ -429,7 +429,7 @@ def test_as_a_user_trains_looks_around_and_stops(application, desk, data, tmp_pa
 
     def turn(condition):
         nonlocal longest
-        end = time.monotonic() + 60.0
+        end = time.monotonic() + 240.0
         while not condition():
             begun = time.thread_time()
             application.processEvents()

@@ -17,8 +17,8 @@ from tests.missions.flight.test_logs import LOGS, PLAN, SITE, tlog_records, writ
 
 FLOWN = flown_as_planned(PLAN)[:1]
 
-LONGEST_S = 5.0
-"""Of any single log of this size, on a busy machine; what hangs takes for ever."""
+LONGEST_S = 30.0
+"""Of processor time for any single log of this size, some hundred times what it takes; what hangs takes for ever."""
 
 
 @pytest.mark.parametrize("name", ["feedback.tlog", "captured.tlog", "flight.BIN", "flight.log", "flight.ulg"])
@@ -28,7 +28,7 @@ def test_logs_damaged_at_random_are_read_or_refused(tmp_path: Path, name: str) -
     n_read = 0
     for _ in range(12):
         path = written(tmp_path, name, write.damaged(content, rng))
-        start_s = time.perf_counter()
+        start_s = time.process_time()
         try:
             records = read_log(path, SITE).records
         except InputError:
@@ -38,7 +38,7 @@ def test_logs_damaged_at_random_are_read_or_refused(tmp_path: Path, name: str) -
             assert np.isfinite(record.track.position_enu_m).all()
             assert all(np.isfinite(photo.position_enu_m).all() for photo in record.photos)
             assert len(record.photos) <= 100
-        assert time.perf_counter() - start_s < LONGEST_S
+        assert time.process_time() - start_s < LONGEST_S
     assert n_read > 6
 
 
@@ -48,10 +48,10 @@ def test_real_logs_damaged_at_random_are_read_or_refused(shared_data: Path, tmp_
     content = (shared_data / "logs" / name).read_bytes()
     rng = np.random.default_rng(7)
     for _ in range(5):
-        start_s = time.perf_counter()
+        start_s = time.process_time()
         with pytest.raises(InputError, match=r"."):
             read_log(written(tmp_path, name, write.damaged(content, rng)), SITE)  # they are all of other sites
-        assert time.perf_counter() - start_s < LONGEST_S
+        assert time.process_time() - start_s < LONGEST_S
 
 
 def test_a_ulog_on_which_pyulog_never_ends_is_refused(tmp_path: Path) -> None:
@@ -60,10 +60,10 @@ def test_a_ulog_on_which_pyulog_never_ends_is_refused(tmp_path: Path) -> None:
     tail = bytes(5)
     damage = struct.pack("<HB", len(last) + 1 + len(tail), 0) + tail
     endless = b"ULog\x01\x12\x35\x01" + bytes(8) + write.ulog_message("B", bytes(40)) + last + damage
-    start_s = time.perf_counter()
+    start_s = time.process_time()
     with pytest.raises(InputError, match="damaged beyond reading"):
         read_log(written(tmp_path, "endless.ulg", endless), SITE)
-    assert time.perf_counter() - start_s < LONGEST_S
+    assert time.process_time() - start_s < LONGEST_S
 
 
 def test_a_record_length_of_zero_does_not_stop_the_reader(tmp_path: Path) -> None:
@@ -78,10 +78,10 @@ def test_a_record_length_of_zero_does_not_stop_the_reader(tmp_path: Path) -> Non
 @pytest.mark.slow
 def test_a_log_of_nothing_but_starts_of_frames_is_refused_at_once(tmp_path: Path) -> None:
     content = write.tlog(FLOWN, SITE)[:200] + (bytes(8) + b"\xfd") * 300_000
-    start_s = time.perf_counter()
+    start_s = time.process_time()
     with pytest.raises(InputError):
         read_log(written(tmp_path, "fd.tlog", content), SITE)
-    assert time.perf_counter() - start_s < 4.0 * LONGEST_S
+    assert time.process_time() - start_s < 4.0 * LONGEST_S
 
 
 def test_what_is_lost_is_counted(tmp_path: Path) -> None:

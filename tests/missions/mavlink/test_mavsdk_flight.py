@@ -26,7 +26,7 @@ telemetry = pytest.importorskip("mavsdk.plugins.telemetry")
 
 from tests.missions.mavlink.test_mavsdk_transfer import WAIT_S, served, software, theirs  # noqa: E402
 
-FLIGHT_S = 60.0
+FLIGHT_S = 240.0
 """Of real time; the flight itself takes three minutes, 50 times as fast."""
 
 

@@ -39,7 +39,7 @@ mavsdk = pytest.importorskip("mavsdk", reason="MAVSDK is not installed")
 mission_raw = pytest.importorskip("mavsdk.plugins.mission_raw")
 mission_raw_server = pytest.importorskip("mavsdk.plugins.mission_raw_server")
 
-WAIT_S = 10.0
+WAIT_S = 120.0
 FENCES = (FencePolygon(((22.1, 114.1), (22.2, 114.1), (22.2, 114.2)), False), FenceCircle(22.3, 114.3, 42.5, True))
 RALLY = rally_items((GeoPoint(22.31, 114.21, 85.0),), GeoPoint(22.3, 114.2, 60.0))
 

@@ -42,7 +42,7 @@ Services.console.reset();
 return found;
 """
 
-STARTS_S = 60.0
+STARTS_S = 240.0
 
 
 class Firefox(Browser):

@@ -60,7 +60,7 @@ def scene():
 def run_node(*arguments):
     if shutil.which("node") is None:
         pytest.skip("Node.js is not on this machine")
-    done = subprocess.run(["node", *map(str, arguments)], capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run(["node", *map(str, arguments)], capture_output=True, text=True, check=False, timeout=500)
     assert done.returncode == 0, done.stderr[-2000:]
 
 
