@@ -40,7 +40,6 @@ def always() -> bool:
     return True
 
 
-
 class DirectLink:
     """A link to a vehicle in the same process, without bytes and sockets: `receive` flies until there is a message.
 
