@@ -205,7 +205,7 @@ class Simulation:
         threading.Thread(
             target=serve,
             args=(vehicle, [air], self.speed_up),
-            kwargs={"is_heard": ground.channel.is_idle},
+            kwargs={"is_heard": ground.is_idle},
             name="simulated-vehicle",
             daemon=True,
         ).start()

@@ -149,6 +149,16 @@ class ChannelLink:
         self.channel.close()
 
 
+class MemoryLink(ChannelLink):
+    """A link whose other end is in the same process."""
+
+    channel: MemoryChannel
+
+    def is_idle(self) -> bool:
+        """Whether all that came was received and dealt with, and more is being waited for; safe from any thread."""
+        return self.channel.is_idle()
+
+
 def parsed_url(url: str) -> tuple[str, str, int]:
     """Kind, host or device, and port or baud rate of a url, without opening anything.
 
@@ -198,13 +208,13 @@ def open_link(
 
 def memory_pair(
     ground: Address = GROUND_STATION, vehicle: Address = VEHICLE, clock: Clock = time.perf_counter
-) -> tuple[ChannelLink, ChannelLink]:
+) -> tuple[MemoryLink, MemoryLink]:
     """Two links whose bytes go to each other, without sockets: the ground station's and the vehicle's."""
     up: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     down: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     return (
-        ChannelLink(MemoryChannel(down, up), ground, clock=clock),
-        ChannelLink(MemoryChannel(up, down), vehicle, clock=clock),
+        MemoryLink(MemoryChannel(down, up), ground, clock=clock),
+        MemoryLink(MemoryChannel(up, down), vehicle, clock=clock),
     )
 
 
