@@ -22,7 +22,7 @@ from planning.optimise.greedy import element_weights
 from planning.optimise.problem import ViewProblem, take
 from planning.plan import Constraints, FlightRules, ViewpointArrays
 from planning.planner import plan_flight
-from planning.progress import QUIET, Monitor, TimeLimit, Trace
+from planning.progress import QUIET, Monitor, Stop, TimeLimit, Trace, never
 from planning.reachability import find_reachable
 from planning.request import GreedyParameters, PlanRequest
 from planning.routing.flights import Flight, flight_times
@@ -62,7 +62,7 @@ def choose(
     usable_s: float,
     n_batteries: int,
     *,
-    seconds: float = 0.6,
+    stop: Stop | None = None,
     parameters: GreedyParameters = FEW,
     trace: Trace | None = None,
     monitor: Monitor = QUIET,
@@ -74,7 +74,7 @@ def choose(
         n_batteries,
         parameters,
         seed=0,
-        stop=TimeLimit(seconds),
+        stop=TimeLimit(0.6) if stop is None else stop,
         trace=Trace() if trace is None else trace,
         monitor=monitor,
     )
@@ -105,7 +105,7 @@ def test_a_few_candidates_give_what_brute_force_finds(
 ) -> None:
     pool = few_candidates(6, seed)
     monkeypatch.setattr("planning.optimise.budget.candidate_pool", lambda *_: pool)
-    views, bound = choose(usable_s, n_batteries)
+    views, bound = choose(usable_s, n_batteries, stop=never)
     covered, optimum = problem().model.covered_count(views), best_by_force(pool, usable_s, n_batteries)
     assert 0 < optimum < len(np.unique(pool.elements.items)) or usable_s > 50.0
     assert covered == optimum

@@ -142,7 +142,7 @@ def test_improvement_beats_plain_greedy_and_never_passes_the_reachable_bound():
 def test_fewest_views_for_a_share_reach_it_with_fewer_than_greedy_alone():
     problem = problem_of("office")
     plain, _ = run(greedy, problem, Goal(share=0.9), parameters=replace(FAST, improve=False))
-    better, _ = run(greedy, problem, Goal(share=0.9), stop=TimeLimit(10.0), parameters=FAST)
+    better, _ = run(greedy, problem, Goal(share=0.9), stop=Counting(160), parameters=FAST)
     pool = candidate_pool(problem, 0, FAST.n_candidates)
     wanted = 0.9 * len(np.unique(pool.elements.items))
     for found in (plain, better):

@@ -149,7 +149,7 @@ def test_goals_are_met() -> None:
 
 def test_without_a_goal_nearly_everything_is_covered_with_few_views() -> None:
     model = SCENES["single-panel"]()
-    planned = plan_flight(model, PlanRequest(greedy=FEW))
+    planned = plan_flight(model, PlanRequest(greedy=FEW, time_budget_s=600.0))
     coverage = planned.plan.coverage
     assert (coverage.covered, coverage.reachable_upper_bound, coverage.total) == (34, 34, 36)
     assert planned.n_undecided == 0
@@ -171,7 +171,7 @@ def sharply_seen(plan: Plan, limit_m: float) -> set[tuple[int, int]]:
 @pytest.mark.parametrize("share", [0.9, 0.99])
 def test_a_share_is_covered_sharply_too_as_far_as_that_can_be(share: float) -> None:
     greedy, limit_m = GreedyParameters(3000), profile("m3e").camera.distance_for_gsd_m(0.004)
-    request = PlanRequest(share=share, constraints=replace(NEAR, wanted_gsd_mm=4.0), greedy=greedy)
+    request = PlanRequest(share=share, constraints=replace(NEAR, wanted_gsd_mm=4.0), greedy=greedy, time_budget_s=600.0)
     plan = plan_flight(kiosk(), request).plan
     any_pixel = plan_flight(kiosk(), replace(request, constraints=replace(NEAR, wanted_gsd_mm=0.0))).plan
     near = replace(request, share=1.0, constraints=replace(NEAR, max_distance_m=limit_m))
@@ -187,7 +187,8 @@ def test_a_share_is_covered_sharply_too_as_far_as_that_can_be(share: float) -> N
 
 def test_spare_views_are_spent_on_sharp_ones_first() -> None:
     limit_m = profile("m3e").camera.distance_for_gsd_m(0.005)
-    request = PlanRequest(n_views=90, constraints=replace(NEAR, wanted_gsd_mm=5.0), greedy=GreedyParameters(3000))
+    greedy, constraints = GreedyParameters(3000), replace(NEAR, wanted_gsd_mm=5.0)
+    request = PlanRequest(n_views=90, constraints=constraints, greedy=greedy, time_budget_s=600.0)
     plan = plan_flight(kiosk(), request).plan
     any_pixel = plan_flight(kiosk(), replace(request, constraints=replace(NEAR, wanted_gsd_mm=0.0))).plan
     assert plan.coverage.covered >= any_pixel.coverage.covered - 1
@@ -218,7 +219,7 @@ def test_same_seed_gives_the_same_plan_whatever_the_number_of_threads(
 
 def test_improved_plans_repeat_too_when_the_search_ends_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     greedy = GreedyParameters(n_candidates=300)
-    request = PlanRequest(n_views=3, greedy=greedy, time_budget_s=120.0)
+    request = PlanRequest(n_views=3, greedy=greedy, time_budget_s=600.0)
     model = SCENES["single-panel"]()
     first = plan_flight(model, request)
     monkeypatch.setattr("planning.jit.n_threads", lambda: 1)
@@ -268,17 +269,18 @@ def test_cancelling_at_any_report_throws_the_plan_away() -> None:
 def test_stopped_at_once_a_plan_comes_out_all_the_same(name: str) -> None:
     stop = StopRequest()
     stop.request()
-    planned = plan_flight(kiosk(), replace(REQUESTS[name], time_budget_s=60.0), stop=stop)
+    started = time.process_time()
+    planned = plan_flight(kiosk(), replace(REQUESTS[name], time_budget_s=600.0), stop=stop)
+    assert time.process_time() - started < 30.0
     assert_keeps_the_contract(kiosk(), planned.plan)
     assert planned.n_undecided == planned.plan.coverage.total, "nothing was proven"
     assert planned.plan.coverage.covered > 0
-    assert sum(planned.seconds.values()) < 20.0
 
 
 def test_stopping_half_way_keeps_what_was_found() -> None:
     stop, trace = StopRequest(), Trace()
     trace.observer = lambda _point: stop.request() if len(trace.points) >= 8 else None
-    request = PlanRequest(n_views=12, constraints=NEAR, greedy=replace(FEW, improve=True), time_budget_s=100.0)
+    request = PlanRequest(n_views=12, constraints=NEAR, greedy=replace(FEW, improve=True), time_budget_s=600.0)
     started = time.process_time()
     planned = plan_flight(kiosk(), request, stop=stop, trace=trace)
     assert time.process_time() - started < 40.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import time
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -395,8 +396,9 @@ def test_the_trace_and_the_durations_show_what_time_bought() -> None:
 
 def test_a_stop_ends_the_search_with_a_whole_answer() -> None:
     plan = flown_plan()
-    found = topped_up(plan, photos(plan, range(15)), replace(SOON, time_budget_s=60.0), stop=lambda: True)
-    assert found.seconds < 5.0
+    started = time.process_time()
+    found = topped_up(plan, photos(plan, range(15)), replace(SOON, time_budget_s=600.0), stop=lambda: True)
+    assert time.process_time() - started < 30.0
     assert (found.closed, found.missing) == (found.wanted, ())
 
 
