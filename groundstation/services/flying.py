@@ -281,7 +281,7 @@ class _Case:
         outcome = conduct(run, link, direct.clock, show=look, monitor=self.monitor)
         record = None if run.recorder is None else truth.record(run.recorder, orders)
         if record is not None:
-            record = replace(record, vehicle=f"simulated {self.autopilot.value}", effects=effects)
+            record = replace(record, vehicle=f"simulated {self.autopilot.product}", effects=effects)
         expected_s = items_duration_s(orders, self.autopilot)
         return outcome, record, FlownSortie(orders.number, expected_s, effects, outcome.notes, None)
 

@@ -9,6 +9,7 @@ from groundstation.services.effects import EffectChoice
 from groundstation.services.flying import check_site
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
 from missions.build import missions_from_plan
+from missions.mavlink.autopilots import Autopilot
 from missions.simulator.build import decide_effects
 from missions.simulator.scene import Conditions, flight_scene
 from planning.checks import check_case
@@ -87,6 +88,10 @@ class TakeOff:
         Above the place of take-off.
     least_distance_m
         That the plan keeps to panels, building and obstacles.
+    duration_s, planned_s
+        How long the autopilot takes, and how long the plan reckons with.
+    autopilot
+        Who flies it.
     battery
         Part of a full battery that it uses.
     low
@@ -97,13 +102,15 @@ class TakeOff:
     highest_m: float
     length_m: float
     duration_s: float
+    planned_s: float
+    autopilot: Autopilot | None
     least_distance_m: float
     battery: float
     low: LowFlight | None
 
 
-def take_off_of(sortie: LiveSortie) -> TakeOff:
-    """What will happen when a sortie starts."""
+def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None) -> TakeOff:
+    """What will happen when a sortie starts on this autopilot."""
     plan, orders = sortie.case.plan, sortie.orders
     flown = plan.sorties[orders.number - 1]
     top_m = max((point[2] for point in flown.path_enu_m), default=orders.home_enu_m[2])
@@ -111,9 +118,11 @@ def take_off_of(sortie: LiveSortie) -> TakeOff:
         n_photos=len(flown.viewpoint_ids),
         highest_m=top_m - orders.home_enu_m[2],
         length_m=flown.length_m,
-        duration_s=flown.duration_s,
+        duration_s=orders.duration_s(autopilot),
+        planned_s=flown.duration_s,
+        autopilot=autopilot,
         least_distance_m=plan.constraints.min_distance_m,
-        battery=flown.duration_s / plan.aircraft.endurance_s,
+        battery=orders.duration_s(autopilot) / plan.aircraft.endurance_s,
         low=orders.low,
     )
 

@@ -8,13 +8,13 @@ when the place is within the item's radius, before the aircraft rests or the nos
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 from pymavlink.dialects.v20 import common as mavlink
 
-from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.setup import landing, leg_late_s
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem
@@ -26,7 +26,23 @@ from planning.plan import Plan
 from planning.timing import MotionLimits, leg_times_s, motion_limits
 
 
-def items_duration_s(orders: SortieOrders, autopilot: Autopilot) -> float:
+class TimedOrders(Protocol):
+    """What of a sortie's orders its time depends on (`orders.SortieOrders`)."""
+
+    @property
+    def mission(self) -> Mission:
+        """The sortie."""
+
+    @property
+    def items(self) -> Mapping[Autopilot, Sequence[MissionItem]]:
+        """Its items as each autopilot gets them."""
+
+    @property
+    def home_enu_m(self) -> Vec3:
+        """Where it takes off."""
+
+
+def items_duration_s(orders: TimedOrders, autopilot: Autopilot) -> float:
     """Time from lift-off to touch-down, seconds, as `autopilot` flies a sortie's items.
 
     Raises

@@ -241,7 +241,7 @@ def _battery(autopilot: Autopilot, values: Mapping[str, float], orders: SortieOr
         yield PreflightCheck("battery-low", Verdict.WARN, text)
         return
     reserve = orders.surroundings[autopilot].rules.battery_reserve
-    left = 1.0 - (orders.battery_needed - reserve)
+    left = 1.0 - (orders.battery_needed_by(autopilot) - reserve)
     for stage in stages:
         if stage.level is not None and stage.level > left and stage.deed is not Deed.GO_ON:
             text = (

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
+from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.surroundings import Surroundings
 from missions.mavlink.areas import FencePolygon, fence_items, rally_items, rally_points
 from missions.mavlink.autopilots import Autopilot
@@ -15,7 +17,7 @@ from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import to_wire
 from missions.model import GeoPoint, HeightReference, Mission
-from planning.errors import MissionError
+from planning.errors import InfeasibleError, MissionError
 from planning.frames import Vec3
 from planning.insight.flight_profile import LowFlight, low_flight
 from planning.plan import Plan
@@ -43,7 +45,10 @@ class SortieOrders:
     surroundings
         By autopilot, as photos are triggered by other items.
     battery_needed
-        Part of a full battery that the sortie takes, reserve included.
+        Part of a full battery that the sortie takes by the plan, reserve included.
+    autopilot_s
+        How long each autopilot takes for its items, with the time on the ground that the plan adds, seconds; none for
+        one that cannot fly them in the wind that the plan expects.
     low
         How low it flies outside of the column above home; None where it does not leave it.
     raised_m
@@ -61,6 +66,20 @@ class SortieOrders:
     return_height_m: float = 0.0
     raised_m: float = 0.0
     low: LowFlight | None = None
+    autopilot_s: Mapping[Autopilot, float] = field(default_factory=dict)
+
+    def duration_s(self, autopilot: Autopilot | None) -> float:
+        """How long the sortie takes, with the time on the ground: as planned, or longer where the autopilot is slower.
+
+        A plan reckons with how its own aircraft flies.
+        """
+        planned_s = self.mission.duration_s
+        return planned_s if autopilot is None else max(planned_s, self.autopilot_s.get(autopilot, planned_s))
+
+    def battery_needed_by(self, autopilot: Autopilot | None) -> float:
+        """Part of a full battery that the sortie takes with an autopilot, reserve included."""
+        longer_s = self.duration_s(autopilot) - self.mission.duration_s
+        return self.battery_needed + longer_s / self.mission.aircraft.endurance_s
 
     @property
     def home(self) -> GeoPoint:
@@ -115,7 +134,7 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m:
     needed = plan.rules.battery_reserve + mission.duration_s / plan.aircraft.endurance_s
     site = site_model.site
     space = unchecked_space(site_model, plan.constraints.min_distance_m)
-    return SortieOrders(
+    orders = SortieOrders(
         site=site,
         number=mission.number,
         mission=mission,
@@ -128,6 +147,11 @@ def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m:
         raised_m=raised_m,
         low=low_flight(plan, plan.sorties[mission.number - 1], site.home_enu_m, site.airspace.ground_z_m),
     )
+    autopilot_s = {}
+    for autopilot in Autopilot:
+        with contextlib.suppress(InfeasibleError):
+            autopilot_s[autopilot] = items_duration_s(orders, autopilot) + plan.rules.takeoff_landing_s
+    return replace(orders, autopilot_s=autopilot_s)
 
 
 def _raised(mission: Mission, raised_m: float) -> Mission:

@@ -285,16 +285,31 @@ def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
     return PreflightCheck("home-height", Verdict.OK, text, above_m, HOME_HEIGHT_M, "m")
 
 
+def _slower(orders: SortieOrders, autopilot: Autopilot) -> str:
+    """Why a sortie takes more of a battery than its plan says; empty where that does not show."""
+    needed, planned = orders.battery_needed_by(autopilot), orders.battery_needed
+    if f"{needed:.0%}" == f"{planned:.0%}":
+        return ""
+    takes, reckons = _minutes(orders.duration_s(autopilot)), _minutes(orders.mission.duration_s)
+    return f" ({autopilot.product} flies it in {takes} min, the plan reckons with {reckons} min)"
+
+
+def _minutes(duration_s: float) -> str:
+    minutes, seconds = divmod(round(duration_s), 60)
+    return f"{minutes}:{seconds:02d}"
+
+
 def _battery(state: VehicleState, orders: SortieOrders, now_s: float) -> PreflightCheck:
     level = None if state.battery is None else state.battery.value.remaining
     if level is None:
         return PreflightCheck("battery", Verdict.WAIT, "the battery's charge is not known")
-    needed = orders.battery_needed
+    needed = orders.battery_needed_by(state.autopilot)
+    why = "" if state.autopilot is None else _slower(orders, state.autopilot)
     if level < needed:
         advice = "put in a full one" if needed <= 1.0 else "none holds that much: plan it again, in shorter sorties"
-        text = f"the battery holds {level:.0%}; the sortie and the reserve take {needed:.0%}: {advice}"
+        text = f"the battery holds {level:.0%}; the sortie and the reserve take {needed:.0%}{why}: {advice}"
         return PreflightCheck("battery", Verdict.BAD, text, level, needed)
-    text = f"{level:.0%}; the sortie and the reserve take {needed:.0%}"
+    text = f"{level:.0%}; the sortie and the reserve take {needed:.0%}{why}"
     return PreflightCheck("battery", Verdict.OK, text, level, needed)
 
 
@@ -332,7 +347,7 @@ def _low_flight(orders: SortieOrders) -> Iterator[PreflightCheck]:
         return
     text = f"down to {low.lowest_m:.1f} m above the ground"
     if low.below_s is not None and low.lowest_m < LOW_M:
-        text = f"{text}, {low.below_s / 60.0:.1f} min below {LOW_M:g} m"
+        text = f"{text}, {_minutes(low.below_s)} min below {LOW_M:g} m"
     if low.lowest_m >= usual_m - HEIGHT_ROUNDING_M:
         yield PreflightCheck("low-flight", Verdict.OK, text, low.lowest_m, usual_m, "m")
         return

@@ -190,16 +190,16 @@ MISSION_MODES = frozenset(("AUTO", "MISSION"))
 RETURN_MODES = frozenset(("RTL", "SMART_RTL", "AUTO_RTL"))
 LAND_MODES = frozenset(("LAND", "PRECISION_LAND", "DESCEND"))
 HAND_MODES = frozenset(
-    "STABILIZE STABILIZED ALT_HOLD ALTCTL POSHOLD POSCTL LOITER MANUAL ACRO SPORT DRIFT FLOWHOLD".split()  # noqa: SIM905
+    ("STABILIZE", "STABILIZED", "ALT_HOLD", "ALTCTL", "POSHOLD", "POSCTL", "LOITER", "MANUAL", "ACRO", "SPORT", "DRIFT")
 )
 """As autopilots' logs call them. PX4's LOITER is a pause, but does not stand at the end of a flight that landed."""
 
 CAUSES = (
-    (Ending.BATTERY, re.compile(r"(?i)batter(y|ies)\b.*(failsafe|low|critical|emergency|dangerous)|low battery")),
-    (Ending.REMOTE, re.compile(r"(?i)radio failsafe|rc failsafe|(manual control|rc).*(lost|loss)")),
+    (Ending.BATTERY, re.compile(r"(?i)batter(y|ies)\b.*(failsafe|low|critical|emergency|dangerous)|low\sbattery")),
+    (Ending.REMOTE, re.compile(r"(?i)(radio|rc)\sfailsafe|(manual\scontrol|\brc\b).*(lost|loss)")),
     (
         Ending.LINK,
-        re.compile(r"(?i)gcs failsafe(?!.*(cleared|continuing))|(ground station|data ?link|gcs).*(lost|loss)"),
+        re.compile(r"(?i)gcs\sfailsafe(?!.*(cleared|continuing))|(ground\sstation|data\s?link|gcs).*los[st]"),
     ),
     (Ending.FENCE, re.compile(r"(?i)fence.*breach|geofence")),
 )
@@ -235,7 +235,7 @@ def _cause(record: FlightRecord, change: FlightEvent) -> Ending | None:
     return next((cause for cause, pattern in CAUSES if any(pattern.search(text) for text in said)), None)
 
 
-MISSION_DONE = re.compile(r"(?i)mission (finished|complete)")
+MISSION_DONE = re.compile(r"(?i)mission\s(finished|complete)")
 """Said where the way home is the mission's own."""
 
 

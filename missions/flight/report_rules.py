@@ -185,8 +185,9 @@ def _views_taken(views: Sequence[ViewOutcome], sorties: Sequence[SortieOutcome])
         advice = (
             "look through the photos before planning a top-up flight" if is_lost else "plan a top-up flight for them"
         )
-        have = "has" if len(missing) == 1 else "have"
-        text = f"{len(missing)} of {len(views)} views {have} no photo that is known of: {why}; {advice}"
+        text = f"{len(missing)} of {len(views)} views have no photo that is known of: {why}; {advice}"
+        if len(missing) == 1:
+            text = f"1 of {len(views)} views has no photo that is known of: {why}; {advice}"
         severity = Severity.WARNING if is_lost else Severity.ERROR
         first = missing[0].view_id
         yield Finding(severity, "views-taken", text, first, float(n_taken), float(len(views)), "views")

@@ -127,7 +127,7 @@ def test_a_battery_limit_that_ends_the_mission_early_is_told(planned):
     """A sortie that leaves 70 % is broken off where the vehicle returns at 80 %."""
     orders = orders_of(planned)
     reserve = orders.surroundings[ARDUPILOT].rules.battery_reserve
-    orders = replace(orders, battery_needed=0.3 + reserve)
+    orders = replace(orders, battery_needed=0.3 + reserve, autopilot_s={})
     limits = {"BATT_FS_LOW_ACT": 2.0, "BATT_LOW_VOLT": 0.0, "BATT_CAPACITY": 3300.0}
     early = found(orders, ARDUPILOT, "battery-low", **limits, BATT_LOW_MAH=0.8 * 3300.0)
     assert early.verdict is Verdict.WARN

@@ -41,6 +41,10 @@ def orders():
     return sortie_orders(plan, model, mission)
 
 
+def charged(state, remaining):
+    return replace(state, battery=Timed(BatteryLevel(remaining), NOW_S))
+
+
 def ready_state(orders):
     x, y, z = orders.home_enu_m
     return VehicleState(
@@ -95,7 +99,11 @@ def far(metres):
         ("gnss", Verdict.WAIT, lambda s, o: replace(s, fix=Timed(GnssFix(6, 5, None, None), NOW_S - 60.0))),
         ("home", Verdict.BAD, far(4.0)),
         ("home", Verdict.BAD, far(4000.0)),
-        ("battery", Verdict.BAD, lambda s, o: replace(s, battery=Timed(BatteryLevel(o.battery_needed - 0.01), NOW_S))),
+        (
+            "battery",
+            Verdict.BAD,
+            lambda s, o: replace(s, battery=Timed(BatteryLevel(o.battery_needed_by(s.autopilot) - 0.01), NOW_S)),
+        ),
         ("battery", Verdict.WAIT, lambda s, o: replace(s, battery=Timed(BatteryLevel(None), NOW_S))),
         ("sensors", Verdict.WAIT, lambda s, o: replace(s, sensor_problems=Timed(("pre-arm checks",), NOW_S))),
         ("wind", Verdict.BAD, lambda s, o: replace(s, wind_enu_m_s=Timed((30.0, 0.0, 0.0), NOW_S))),
@@ -112,9 +120,9 @@ def test_each_thing_that_is_missing_is_found_and_only_that(orders, code, verdict
         (
             LowFlight(4.2, 90.0, 300.0),
             Verdict.WARN,
-            "down to 4.2 m above the ground, 1.5 min below 10 m, under the usual",
+            "down to 4.2 m above the ground, 1:30 min below 10 m, under the usual",
         ),
-        (LowFlight(5.0, 30.0, 300.0), Verdict.OK, "down to 5.0 m above the ground, 0.5 min below 10 m"),
+        (LowFlight(5.0, 30.0, 300.0), Verdict.OK, "down to 5.0 m above the ground, 0:30 min below 10 m"),
         (LowFlight(12.0, 0.0, 300.0), Verdict.OK, "down to 12.0 m above the ground"),
         (LowFlight(3.0, None, None), Verdict.WARN, "down to 3.0 m above the ground, under the usual 5 m"),
     ],
@@ -198,6 +206,20 @@ def test_longer_holds_take_as_much_longer(orders):
         longer = replace(items[index], params=(items[index].params[0] + 7.0, *items[index].params[1:]))
         changed = replace(orders, items={autopilot: (*items[:index], longer, *items[index + 1 :])})
         assert items_duration_s(changed, autopilot) - items_duration_s(orders, autopilot) == pytest.approx(7.0)
+
+
+def test_the_battery_must_last_for_the_autopilot_that_is_there_not_for_the_plans_aircraft(orders):
+    """PX4 takes nearly twice as long for a plan that reckons with ArduPilot."""
+    aircraft, planned = orders.mission.aircraft, orders.battery_needed
+    slow = replace(orders, autopilot_s={Autopilot.PX4: orders.mission.duration_s + 0.2 * aircraft.endurance_s})
+    for autopilot, needed in ((Autopilot.ARDUPILOT, planned), (Autopilot.PX4, planned + 0.2)):
+        assert slow.battery_needed_by(autopilot) == pytest.approx(needed)
+        state = charged(replace(ready_state(slow), autopilot=autopilot), needed - 0.01)
+        (check,) = [check for check in checks(state, slow) if check.code == "battery"]
+        assert check.verdict is Verdict.BAD
+        assert ("PX4 flies it in" in check.text) == (autopilot is Autopilot.PX4)
+    faster = replace(orders, autopilot_s={Autopilot.PX4: 1.0})
+    assert faster.battery_needed_by(Autopilot.PX4) == planned, "never less than the plan says"
 
 
 def test_a_sortie_that_no_battery_lasts_for_is_not_cured_by_a_full_one(orders):

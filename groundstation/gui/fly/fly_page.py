@@ -207,9 +207,11 @@ class FlyPage(QObject):
 
     def _may_start(self) -> bool:
         in_hand = self.desk.in_hand
-        return in_hand is not None and self.questions.start(
-            self._stage.window(), take_off_of(in_hand.sortie), self._workspace.units
-        )
+        if in_hand is None:
+            return False
+        autopilot = None if in_hand.view is None else in_hand.view.state.autopilot
+        take_off = take_off_of(in_hand.sortie, autopilot)
+        return self.questions.start(self._stage.window(), take_off, self._workspace.units)
 
     def _disconnect(self) -> None:
         if not self.desk.is_in_flight or self.questions.leave_in_flight(self._stage.window()):

@@ -38,10 +38,18 @@ class FlightQuestions(QObject):
                 take_off.n_photos, length_unit(units).text(take_off.least_distance_m)
             ),
             *([] if take_off.low is None else [self._low_text(take_off.low, units)]),
-            self.tr("It uses about {0:.0%} of a full battery.").format(take_off.battery),
+            self._battery_text(take_off),
             self.tr("Is everybody clear of the aircraft?"),
         ]
         return "\n\n".join(lines)
+
+    def _battery_text(self, take_off: TakeOff) -> str:
+        text = self.tr("It uses about {0:.0%} of a full battery.").format(take_off.battery)
+        takes, reckons = minutes_text(take_off.duration_s), minutes_text(take_off.planned_s)
+        if take_off.autopilot is None or takes == reckons:
+            return text
+        why = self.tr("{0} is slower than the plan, which reckons with {1}.")
+        return f"{text} {why.format(take_off.autopilot.product, duration_text(take_off.planned_s))}"
 
     def _low_text(self, low: LowFlight, units: UnitSystem) -> str:
         length = length_unit(units)

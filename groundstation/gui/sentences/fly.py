@@ -153,6 +153,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "{0}, under the usual {1} m: look for people, cars and cables on the whole way"),
     QT_TRANSLATE_NOOP("Sentences", "the battery's charge is not known"),
     QT_TRANSLATE_NOOP("Sentences", "the battery holds {0}; the sortie and the reserve take {1}: {2}"),
+    QT_TRANSLATE_NOOP("Sentences", " ({0} flies it in {1} min, the plan reckons with {2} min)"),
     QT_TRANSLATE_NOOP("Sentences", "put in a full one"),
     QT_TRANSLATE_NOOP("Sentences", "none holds that much: plan it again, in shorter sorties"),
     QT_TRANSLATE_NOOP("Sentences", "{0}; the sortie and the reserve take {1}"),
@@ -436,7 +437,6 @@ SENTENCES = (
         "an aircraft that returns by itself, {0} m above take-off, crosses a no-fly zone; fly it back by hand",
     ),
     QT_TRANSLATE_NOOP("Sentences", "an aircraft that returns by itself flies {0} m above take-off, {1} m are allowed"),
-    QT_TRANSLATE_NOOP("Sentences", "the record ends before, in the air"),
     QT_TRANSLATE_NOOP(
         "Sentences", "the motors stopped {0} m above take-off: the aircraft fell; look for it, and for the cause"
     ),

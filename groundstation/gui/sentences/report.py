@@ -5,6 +5,23 @@ from __future__ import annotations
 from PySide6.QtCore import QT_TRANSLATE_NOOP
 
 SENTENCES = (
+    QT_TRANSLATE_NOOP("Sentences", "in sorties that were not flown"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached"),
+    QT_TRANSLATE_NOOP("Sentences", "reached, but the camera did not answer"),
+    QT_TRANSLATE_NOOP("Sentences", "photographed, but the camera's report was lost"),
+    QT_TRANSLATE_NOOP("Sentences", "photographed from too far away"),
+    QT_TRANSLATE_NOOP("Sentences", "where the photo looks elsewhere"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached before the flight ended"),
+    QT_TRANSLATE_NOOP("Sentences", "after the end of the record in the air"),
+    QT_TRANSLATE_NOOP("Sentences", "where the record does not tell the aircraft's place"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached because the flight was broken off by Return"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached because the flight was broken off by Land"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached because the flight was broken off for low battery"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached because the flight was broken off for the lost link"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached because the flight was broken off for the lost remote control"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached because the flight was broken off at the fence"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached because the pilot took over by hand"),
+    QT_TRANSLATE_NOOP("Sentences", "not reached because the motors stopped in the air"),
     QT_TRANSLATE_NOOP("Sentences", "there is no record of any flight"),
     QT_TRANSLATE_NOOP(
         "Sentences",
@@ -15,7 +32,7 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "look through the photos before planning a top-up flight"),
     QT_TRANSLATE_NOOP("Sentences", "plan a top-up flight for them"),
     QT_TRANSLATE_NOOP("Sentences", "{0} of {1} views have no photo that is known of: {2}; {3}"),
-    QT_TRANSLATE_NOOP("Sentences", "{0} of {1} views has no photo that is known of: {2}; {3}"),
+    QT_TRANSLATE_NOOP("Sentences", "1 of {0} views has no photo that is known of: {1}; {2}"),
     QT_TRANSLATE_NOOP("Sentences", "all {0} views have a photo"),
     QT_TRANSLATE_NOOP(
         "Sentences",

@@ -2,13 +2,14 @@
 
 import gc
 import itertools
+import re
 import time
 from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import QMargins, QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QLineEdit, QMessageBox
+from PySide6.QtWidgets import QLabel, QLineEdit, QMessageBox
 
 from groundstation.gui.fly.flight_buttons import APART_PX, ICON_PX, PLACES
 from groundstation.services.document import Document, ItemKind, PlanEntry
@@ -696,3 +697,44 @@ def test_connected_the_form_of_the_vehicle_makes_room_for_the_list_before_take_o
     click_on(page.connection.button.window(), page.connection.button)
     turn_until(application, lambda: not page.desk.is_connected)
     assert page.connection.kind.isVisible()
+
+
+@pytest.mark.parametrize("autopilot", Autopilot)
+def test_the_battery_and_the_time_of_a_sortie_agree_from_the_mission_tab_to_the_start(
+    application, desk, page, autopilot
+):
+    """What it uses, and with the reserve that must be left; where the autopilot is slower than the plan, that it is."""
+    reserve = 100.0 * desk.workspace.document.current.plan.rules.battery_reserve
+    connect(application, page, autopilot=autopilot)
+    upload(application, page)
+    told = re.search(
+        r"the sortie and the reserve take (\d+)%(?: \((\S+) flies it in (\S+) min, the plan reckons with (\S+) min\))?",
+        page.checks.text(),
+    )
+    assert told is not None, page.checks.text()
+    with clicked("Cancel") as asked:
+        ask_for(page, Request.START)
+    desk.window.show_tab("mission")
+    turn_until_idle(application, desk)
+    table = desk.window.tab("mission").sorties._rows
+    heads = [table.horizontalHeaderItem(column).text() for column in range(table.columnCount())]
+    used, planned = (table.item(0, heads.index(head)).text() for head in ("Used", "Time"))
+    takes, uses = (re.search(pattern, asked[0])[1] for pattern in (r"in about (\S+),", r"uses about (\d+)%"))
+    # Each of the figures is rounded by itself.
+    assert abs(int(told[1]) - int(uses) - reserve) <= 1.0
+    if told[2] is None:
+        assert abs(int(uses) - int(used[:-1])) <= 1
+    else:
+        assert told.groups()[1:] == (autopilot.product, takes, planned)
+        assert f"{autopilot.product} is slower than the plan, which reckons with {planned} min" in asked[0]
+        assert takes != planned
+
+
+@pytest.mark.parametrize(("autopilot", "name"), [(Autopilot.ARDUPILOT, "ArduPilot"), (Autopilot.PX4, "PX4")])
+def test_autopilots_are_called_as_their_makers_call_them(application, desk, page, autopilot, name):
+    connect(application, page, autopilot=autopilot)
+    assert f"Link: {name} answers" in page.checks.text()
+    labels = [label.text() for label in desk.window.findChildren(QLabel) if label.isVisible()]
+    notes = [message.text for message in desk.window.messages.messages()]
+    for text in (*labels, *notes, page.checks.text()):
+        assert autopilot.value not in text, f"the word of files and commands is shown: {text}"
