@@ -1607,6 +1607,10 @@ Blickrichtung: {2}</translation>
         <translation>Halten alle Abstand vom Fluggerät?</translation>
     </message>
     <message>
+        <source>{0} is slower than the plan, which reckons with {1}.</source>
+        <translation>{0} ist langsamer als der Plan, der mit {1} rechnet.</translation>
+    </message>
+    <message>
         <source>Away from home it flies {0} above the ground or higher.</source>
         <translation>Abseits des Startplatzes fliegt es {0} oder höher über dem Boden.</translation>
     </message>
@@ -9584,7 +9588,11 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     </message>
     <message>
         <source>the battery holds {0}; the sortie and the reserve take {1}: {2}</source>
-        <translation>der Akku hat {0}; Einsatz und Reserve brauchen {1}: {2}</translation>
+        <translation>der Akku hat {0}; Flug und Reserve brauchen {1}: {2}</translation>
+    </message>
+    <message>
+        <source> ({0} flies it in {1} min, the plan reckons with {2} min)</source>
+        <translation> ({0} fliegt ihn in {1} min, der Plan rechnet mit {2} min)</translation>
     </message>
     <message>
         <source>put in a full one</source>
@@ -9685,10 +9693,6 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     <message>
         <source>an aircraft that returns by itself flies {0} m above take-off, {1} m are allowed</source>
         <translation>ein Fluggerät, das selbst zurückkehrt, fliegt {0} m über dem Startplatz, {1} m sind erlaubt</translation>
-    </message>
-    <message>
-        <source>the record ends before, in the air</source>
-        <translation>die Aufzeichnung endet vorher, in der Luft</translation>
     </message>
     <message>
         <source>the motors stopped {0} m above take-off: the aircraft fell; look for it, and for the cause</source>
@@ -10403,8 +10407,76 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>{0} von {1} Aufnahmen haben kein bekanntes Foto: {2}; {3}</translation>
     </message>
     <message>
-        <source>{0} of {1} views has no photo that is known of: {2}; {3}</source>
-        <translation>{0} von {1} Aufnahmen hat kein Foto, von dem man weiß: {2}; {3}</translation>
+        <source>in sorties that were not flown</source>
+        <translation>in Einsätzen, die nicht geflogen wurden</translation>
+    </message>
+    <message>
+        <source>not reached</source>
+        <translation>nicht erreicht</translation>
+    </message>
+    <message>
+        <source>reached, but the camera did not answer</source>
+        <translation>erreicht, aber die Kamera antwortete nicht</translation>
+    </message>
+    <message>
+        <source>photographed, but the camera&apos;s report was lost</source>
+        <translation>aufgenommen, aber die Meldung der Kamera ging verloren</translation>
+    </message>
+    <message>
+        <source>photographed from too far away</source>
+        <translation>aus zu großer Entfernung aufgenommen</translation>
+    </message>
+    <message>
+        <source>where the photo looks elsewhere</source>
+        <translation>mit einem Foto, das woandershin blickt</translation>
+    </message>
+    <message>
+        <source>not reached before the flight ended</source>
+        <translation>nicht erreicht, ehe der Flug endete</translation>
+    </message>
+    <message>
+        <source>after the end of the record in the air</source>
+        <translation>nach dem Ende der Aufzeichnung in der Luft</translation>
+    </message>
+    <message>
+        <source>where the record does not tell the aircraft&apos;s place</source>
+        <translation>ohne Ort des Fluggeräts in der Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>not reached because the flight was broken off by Return</source>
+        <translation>nicht erreicht, weil der Flug mit Heimkehr abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>not reached because the flight was broken off by Land</source>
+        <translation>nicht erreicht, weil der Flug mit Landen abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>not reached because the flight was broken off for low battery</source>
+        <translation>nicht erreicht, weil der Flug wegen schwachen Akkus abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>not reached because the flight was broken off for the lost link</source>
+        <translation>nicht erreicht, weil der Flug wegen verlorener Funkverbindung abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>not reached because the flight was broken off for the lost remote control</source>
+        <translation>nicht erreicht, weil der Flug wegen verlorener Fernsteuerung abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>not reached because the flight was broken off at the fence</source>
+        <translation>nicht erreicht, weil der Flug am Geofence abgebrochen wurde</translation>
+    </message>
+    <message>
+        <source>not reached because the pilot took over by hand</source>
+        <translation>nicht erreicht, weil der Pilot von Hand übernahm</translation>
+    </message>
+    <message>
+        <source>not reached because the motors stopped in the air</source>
+        <translation>nicht erreicht, weil die Motoren in der Luft ausgingen</translation>
+    </message>
+    <message>
+        <source>1 of {0} views has no photo that is known of: {1}; {2}</source>
+        <translation>1 von {0} Aufnahmen hat kein bekanntes Foto: {1}; {2}</translation>
     </message>
     <message>
         <source>all {0} views have a photo</source>
