@@ -13,7 +13,7 @@ from enum import Enum, auto
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, QObject
-from PySide6.QtWidgets import QDialog, QFileDialog, QInputDialog, QLineEdit, QMessageBox, QWidget
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFileDialog, QInputDialog, QLineEdit, QMessageBox, QWidget
 
 from planning.folders import FILE_ENDING
 
@@ -198,6 +198,9 @@ class _PathDialog(QFileDialog):
             # It is asked here, for the name with its ending.
             self.setOption(QFileDialog.Option.DontConfirmOverwrite)
             self.selectFile(name)
+        line = self.findChild(QLineEdit, "fileNameEdit")
+        if line is not None:
+            line.textChanged.connect(self._may_be_taken)
 
     def ask(self) -> tuple[Path, ...]:
         """The paths; none where the user thought better of it."""
@@ -226,6 +229,13 @@ class _PathDialog(QFileDialog):
         if self._is_wanted(paths) and self._may_replace(paths[0]):
             self._typed = paths
             self.done(QDialog.DialogCode.Accepted)
+
+    def _may_be_taken(self, text: str) -> None:
+        """Qt 6.11 lets nothing be taken any more once the line was empty, whatever is typed then."""
+        buttons = self.findChild(QDialogButtonBox)
+        for button in () if buttons is None else buttons.buttons():
+            if buttons.buttonRole(button) == QDialogButtonBox.ButtonRole.AcceptRole:
+                button.setEnabled(bool(text.strip()))
 
     def _is_wanted(self, paths: tuple[Path, ...]) -> bool:
         match self._wanted:
