@@ -206,15 +206,19 @@ def _shown_by(pool: Pool, n_elements: int) -> NDArray[np.int64]:
 
 
 def most_telling(model: CoverageModel, views: ViewpointArrays, n_views: int, n_locked: int) -> ViewpointArrays:
-    """So many of the views, the locked ones in front, that cover most, chosen greedily; all where they are no more."""
+    """So many of the views, the locked ones in front, chosen greedily by what they cover; then those chosen first.
+
+    All of them where they are no more.
+    """
     if len(views.heading_rad) <= n_views:
         return views
     locked = take(views, np.arange(n_locked))
     pool = Pool(views, model.elements(views))
     weights, covered = np.ones(model.n_elements), covered_by(model, locked)
     chosen, _ = choose_greedily(pool, weights, max(0, n_views - n_locked), np.inf, Trace(), QUIET, covered)
-    free = chosen[chosen >= n_locked]
-    return concatenate([locked, take(views, np.sort(free))])
+    first = np.concatenate([np.arange(n_locked), chosen[chosen >= n_locked]])
+    others = np.setdiff1d(np.arange(len(views.heading_rad)), first)
+    return take(views, np.sort(np.concatenate([first, others])[: max(n_views, n_locked)]))
 
 
 def _bound(

@@ -144,7 +144,7 @@ def test_less_than_was_asked_for_is_said(reflight, pane, tmp_path):
     done = reflight("plan", pane / "site.json", "-o", out, "--method", "noto", "--coverage", 0.9, *QUICK)
     assert done.status == 0
     assert "% of what is possible at most, 90 % were asked for; the method flies a pattern of its own" in done.err
-    done = reflight("plan", pane / "site.json", "-o", out, "--views", 20_000, *QUICK)
+    done = reflight("plan", pane / "site.json", "-o", out, "--views", 20_000, *QUICK, "--time-budget", 600)
     assert f"{len(read_plan(out).viewpoints)} views instead of the 20000 asked for" in done.err
 
 

@@ -168,7 +168,7 @@ def sharply_seen(plan: Plan, limit_m: float) -> set[tuple[int, int]]:
     }
 
 
-@pytest.mark.parametrize("share", [0.9, 0.99])
+@pytest.mark.parametrize("share", [slow(0.9), 0.99])
 def test_a_share_is_covered_sharply_too_as_far_as_that_can_be(share: float) -> None:
     greedy, limit_m = GreedyParameters(3000), profile("m3e").camera.distance_for_gsd_m(0.004)
     request = PlanRequest(share=share, constraints=replace(NEAR, wanted_gsd_mm=4.0), greedy=greedy, time_budget_s=600.0)
