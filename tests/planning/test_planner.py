@@ -209,7 +209,8 @@ def without_wall_times(plan: Plan) -> str:
 def test_same_seed_gives_the_same_plan_whatever_the_number_of_threads(
     goal: dict[str, float], precision: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    request = PlanRequest(constraints=NEAR, greedy=FEW, precision=precision, seed=5, **goal)  # type: ignore[arg-type]
+    wanted = PlanRequest(constraints=NEAR, greedy=FEW, precision=precision, seed=5, time_budget_s=600.0)
+    request = replace(wanted, **goal)  # type: ignore[arg-type]
     first = without_wall_times(plan_flight(kiosk(), request).plan)
     monkeypatch.setattr("planning.jit.n_threads", lambda: 1)
     assert without_wall_times(plan_flight(kiosk(), request).plan) == first
@@ -229,7 +230,7 @@ def test_improved_plans_repeat_too_when_the_search_ends_by_itself(monkeypatch: p
 
 def test_both_precisions_plan_alike() -> None:
     plans = [
-        plan_flight(kiosk(), PlanRequest(share=0.6, constraints=NEAR, greedy=FEW, precision=precision)).plan
+        plan_flight(kiosk(), replace(REQUESTS["share"], share=0.6, precision=precision, time_budget_s=600.0)).plan
         for precision in ("f32", "f64")
     ]
     assert abs(plans[0].coverage.covered - plans[1].coverage.covered) <= 2

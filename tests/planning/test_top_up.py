@@ -48,7 +48,7 @@ def prepared_kiosk() -> Prepared:
 @functools.cache
 def flown_plan(n_views: int = 25) -> Plan:
     """A plan over the kiosk, with a reserve that leaves 75 % of a battery."""
-    request = PlanRequest(n_views=n_views, constraints=NEAR, greedy=QUICK, time_budget_s=4.0)
+    request = PlanRequest(n_views=n_views, constraints=NEAR, greedy=QUICK, time_budget_s=600.0)
     return plan_flight(kiosk(), request, prepared=prepared_kiosk()).plan
 
 

@@ -43,7 +43,7 @@ def prepared() -> Prepared:
 def planned() -> Plan:
     """Two sorties of about ten views."""
     request = PlanRequest(
-        n_views=20, constraints=NEAR, greedy=QUICK, rules=FlightRules(battery_reserve=0.92), time_budget_s=3.0
+        n_views=20, constraints=NEAR, greedy=QUICK, rules=FlightRules(battery_reserve=0.92), time_budget_s=600.0
     )
     plan = plan_flight(site(), request, prepared=prepared()).plan
     assert len(plan.sorties) == 2
