@@ -76,6 +76,7 @@ function goTo(goal) {
     camera.distance = from.distance + t * (goal.distance - from.distance);
     changed();
     if (share < 1) requestAnimationFrame(step);
+    else goTo.current = null;
   };
   goTo.current = step;
   step(start);

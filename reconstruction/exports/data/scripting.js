@@ -10,13 +10,13 @@ window.reflight = Object.freeze({
   seenAt: (x, y) => { const pane = seenAt(x, y); return pane === null ? null : model.panes[pane].id; },
   pick: (id) => pick(model.panes.findIndex((pane) => pane.id === id)),
   state: () => ({ isLoaded: state.isLoaded, n: picture?.n ?? 0, picked: state.picked === null ? null : model.panes[state.picked].id }),
-  // All loaded, in order and drawn at full size.
+  // All loaded, arrived, in order and drawn at full size.
   async settled() {
     await loading;
     do {
       sorter?.want(camera);
       await pause(20);
-    } while (sorter && !sorter.isSettled);
+    } while (goTo.current || (sorter && !sorter.isSettled));
     clearTimeout(restTimer);
     state.isMoving = false;
     draw();
