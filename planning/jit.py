@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
@@ -38,6 +39,12 @@ def kernel(function: F) -> F:
 def inline(function: F) -> F:
     """Compile a small helper into whatever kernel calls it."""
     return cast("F", numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function))
+
+
+def is_compiled(compiled: Callable[..., Any]) -> bool:
+    """Whether a kernel was compiled on this computer before, and is kept on disk."""
+    place, name = Path(cast("Any", compiled).stats.cache_path), cast("Any", compiled).py_func.__qualname__
+    return any(place.glob(f"*.{name}-*.nbi"))
 
 
 def n_threads() -> int:

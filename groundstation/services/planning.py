@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +20,7 @@ from planning.checks.geometry_rules import low_flight_allowed
 from planning.errors import InputError
 from planning.findings import Finding, Severity
 from planning.insight.flight_profile import lowest_flight
+from planning.jit import is_compiled
 from planning.json_file import check_output
 from planning.optimise.shortfall import WhyOpen
 from planning.plan import Plan, Viewpoint
@@ -27,6 +29,7 @@ from planning.planner import Planned, plan_flight
 from planning.prepare import Prepared
 from planning.progress import QUIET, Monitor, Stop, Trace, never
 from planning.request import PlanRequest
+from planning.routing.three_opt import kick
 from planning.site import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel
 
 
@@ -86,10 +89,33 @@ def plan_document_site(
     wanted = (site_model, camera, request.constraints, request.precision, request.seed)
     if prepared is not None and (prepared.is_cut_short or prepared.unfit_for(*wanted)):
         prepared = None
+    compiled_s = _compile_once(monitor)
+    if started_s is not None:
+        started_s += compiled_s
     planned = plan_flight(
         site_model, request, prepared=prepared, started_s=started_s, stop=stop, trace=trace, monitor=monitor
     )
-    return replace(planned, findings=(*planned.findings, *_shortfalls(request, planned)))
+    findings = [*planned.findings, *_shortfalls(request, planned)]
+    if compiled_s > 0.0:
+        text = f"compiled for this computer in {compiled_s:.0f} s, once; the time budget began behind it"
+        findings.append(Finding(Severity.NOTE, "compiled", text, "", compiled_s, None, "s"))
+    return replace(planned, findings=tuple(findings))
+
+
+def _compile_once(monitor: Monitor) -> float:
+    """Compile the kernels of planning where this computer has none yet; returns how long that took, s.
+
+    `make setup` does it for who works on the sources. Who installs the program has it done with the first plan: it
+    takes longer than many a time budget.
+    """
+    if is_compiled(kick):
+        return 0.0
+    from planning.warm_up import compile_kernels
+
+    monitor.report("compiling for this computer, once", 0, 1)
+    started_s = time.perf_counter()
+    compile_kernels()
+    return time.perf_counter() - started_s
 
 
 def reunited(planned: Planned, site_model: SiteModel, prepared: Prepared | None) -> Planned:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.jit import chunks, inline, kernel, n_threads, run_chunks, run_parallel
+from planning.jit import chunks, inline, is_compiled, kernel, n_threads, run_chunks, run_parallel
 
 
 @given(n=st.integers(0, 200), size=st.integers(1, 50))
@@ -100,3 +101,15 @@ def test_a_kernel_is_compiled_once_whatever_constants_others_call_it_with() -> N
     assert _powers_summed(2.0) == 28.0
     _powers_summed.recompile()  # type: ignore[attr-defined]  # what came from the disk called nothing here
     assert len(_power.signatures) == 1  # type: ignore[attr-defined]
+
+
+def test_it_is_known_which_kernels_are_kept_on_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "doubling.py").write_text("def doubled(x):\n    return 2 * x\n\n\ndef tripled(x):\n    return 3 * x\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    import doubling  # type: ignore[import-not-found]
+
+    doubled, tripled = kernel(doubling.doubled), kernel(doubling.tripled)
+    assert not is_compiled(doubled)
+    assert doubled(4) == 8
+    assert is_compiled(doubled)
+    assert not is_compiled(tripled)

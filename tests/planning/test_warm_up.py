@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from planning.scenes import write_scene
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
@@ -46,3 +49,26 @@ def test_nothing_is_left_to_compile_after_the_warm_up(tmp_path: Path) -> None:
     warm = run("-m", "planning.warm_up", cache=tmp_path)
     assert len(warm) > 100
     assert run("-c", PLANS, cache=tmp_path) == warm
+
+
+@pytest.mark.slow
+def test_the_first_plan_of_an_installation_compiles_before_its_time_budget_begins(tmp_path: Path) -> None:
+    site = write_scene("office", tmp_path)
+    command = [
+        sys.executable,
+        "app.py",
+        "plan",
+        str(site),
+        "-o",
+        str(tmp_path / "p.json"),
+        "--time-budget",
+        "5",
+        "--json",
+    ]
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    codes = []
+    for _ in range(2):
+        done = subprocess.run(command, cwd=REPOSITORY, env=environment, check=True, capture_output=True, text=True)
+        codes.append([finding["code"] for finding in json.loads(done.stdout)["findings"]])
+    assert "compiled" in codes[0]
+    assert "compiled" not in codes[1]

@@ -246,4 +246,5 @@ SENTENCES = (
         "Sentences",
         "takes {0} of {1} batteries: more views would show nothing new or could not be flown",
     ),
+    QT_TRANSLATE_NOOP("Sentences", "compiled for this computer in {0} s, once; the time budget began behind it"),
 )

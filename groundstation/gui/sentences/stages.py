@@ -6,6 +6,7 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP
 
 SENTENCES = (
     QT_TRANSLATE_NOOP("Sentences", "checking"),
+    QT_TRANSLATE_NOOP("Sentences", "compiling for this computer, once"),
     QT_TRANSLATE_NOOP("Sentences", "comparing plans"),
     QT_TRANSLATE_NOOP("Sentences", "finding what stands in the way"),
     QT_TRANSLATE_NOOP("Sentences", "counting what each view covers"),
