@@ -7343,6 +7343,10 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
         <translation>lassen sich abdecken; mehr Zeit geben</translation>
     </message>
     <message>
+        <source>compiled for this computer in {0} s, once; the time budget began behind it</source>
+        <translation>in {0} s für diesen Rechner übersetzt, einmalig; die Zeitvorgabe begann danach</translation>
+    </message>
+    <message>
         <source>inside a solid</source>
         <translation>tief in etwas Festem</translation>
     </message>
@@ -9009,6 +9013,10 @@ Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speich
     <message>
         <source>checking</source>
         <translation>Prüfung</translation>
+    </message>
+    <message>
+        <source>compiling for this computer, once</source>
+        <translation>wird einmalig für diesen Rechner übersetzt</translation>
     </message>
     <message>
         <source>comparing plans</source>
