@@ -349,7 +349,7 @@ class Desk(QObject):
             self._discard(found)
             return False
         when = "" if found.saved_at is None else f"{found.saved_at.astimezone():%Y-%m-%d %H:%M}"
-        changes = tuple(map(self.workspace.words, found.changes))
+        changes = tuple(map(self.workspace.words, found.changes)) if found.was_saved else ()
         answer = self._questions.recover(self.window, when, changes, found.is_of_saved_state)
         if answer is Answer.YES:
             self._take_over(found)

@@ -101,13 +101,19 @@ class Questions(QObject):
         return {_Button.Save: Answer.YES, _Button.Discard: Answer.NO}.get(said, Answer.CANCEL)
 
     def recover(self, parent: QWidget, when: str, changes: tuple[str, ...], is_of_saved_state: bool) -> Answer:
-        """Whether unsaved work from before a crash is wanted."""
-        listed = "\n".join(f"- {change}" for change in changes)
-        text = self.tr(
-            "Nothing is lost: Reflight ended before this work was saved, and kept a copy of it at {0}. In the copy, "
-            "and not in what was saved:\n{1}\n\nGo on with it? What was saved stays as it is until you save again."
-        ).format(when, listed)
-        if not is_of_saved_state:
+        """Whether unsaved work from before a crash is wanted; without `changes` it was never saved at all."""
+        if changes:
+            text = self.tr(
+                "Nothing is lost: Reflight ended before this work was saved, and kept a copy of it at {0}. In the "
+                "copy, and not in what was saved:\n{1}\n\nGo on with it? What was saved stays as it is until you save "
+                "again."
+            ).format(when, "\n".join(f"- {change}" for change in changes))
+        else:
+            text = self.tr(
+                "Nothing is lost: Reflight ended before this work was saved, and kept a copy of it at {0}. All of it "
+                "is in the copy: it was never saved as a project.\n\nGo on with it?"
+            ).format(when)
+        if changes and not is_of_saved_state:
             text += "\n\n" + self.tr(
                 "The project was saved by others since then: what they changed is not in the copy."
             )

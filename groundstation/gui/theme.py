@@ -187,6 +187,9 @@ def _style_sheet(found: Colours) -> str:
     QMenu::item:selected, QMenuBar::item:selected {{ background: {found.accent}; color: {found.accent_text}; }}
     QMenuBar::item {{ padding: 7px 12px; }}
     QCheckBox, QRadioButton {{ min-height: {TOUCH_PX - 8}px; spacing: 8px; }}
+    QTabBar QToolButton {{ min-height: 0px; padding: 0px; }}
+    QTabBar QToolButton:focus {{ padding: 0px; }}
+    QTabBar::scroller {{ width: {2 * (TOUCH_PX - 8)}px; }}
     QTabBar::tab {{ min-height: {TOUCH_PX - 8}px; padding: 2px 12px; background: {found.window}; color: {found.text};
         border: none; border-bottom: 3px solid transparent; }}
     QTabBar::tab:selected {{ border-bottom: 3px solid {found.accent}; font-weight: bold; }}

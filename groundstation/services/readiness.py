@@ -86,15 +86,12 @@ UNKNOWN_DAY = FlightDay()
 
 def readiness_findings(case: Case, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
     """All findings of the rules of planning, and of those here."""
-    return (
-        *check_case(case, monitor),
-        *_coverage(case),
-        *_place(case),
-        *_items(case),
-        *_glass(case),
-        *_sun(case, day.at),
-        *_cold(case, day.temperature_c),
-    )
+    return (*check_case(case, monitor), *findings_beside(case), *_sun(case, day.at), *_cold(case, day.temperature_c))
+
+
+def findings_beside(case: Case) -> tuple[Finding, ...]:
+    """What is found besides the rules of planning, whatever the day: it takes no time worth waiting for."""
+    return (*_coverage(case), *_place(case), *_items(case), *_glass(case))
 
 
 def _coverage(case: Case) -> Iterator[Finding]:

@@ -54,6 +54,11 @@ class Recovery:
     copy: OpenedProject | None
     problem: str = ""
 
+    @property
+    def was_saved(self) -> bool:
+        """Whether there is a project that the work was to be saved in."""
+        return is_project(self.folder)
+
 
 def find_recovery(folder: Path) -> Recovery | None:
     """The copy of unsaved work in a project's folder, damaged or not; never raises for one that is damaged.

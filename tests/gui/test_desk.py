@@ -317,6 +317,7 @@ def test_work_without_a_project_survives_a_crash_too(application, make_desk, tmp
     assert second.workspace.document.site.site.name == "roof"
     assert "Nothing is lost" in asked[0]
     assert "it was never saved as a project" in asked[0]
+    assert "What was saved" not in asked[0], "nothing was"
     assert "cannot" not in asked[0]
     assert "Your work is back. It is not saved yet" in second.window.messages.texts()
 

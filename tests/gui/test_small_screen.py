@@ -8,6 +8,7 @@ import gc
 
 import pytest
 from PySide6.QtCore import QPoint, QRect
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractScrollArea,
@@ -18,6 +19,7 @@ from PySide6.QtWidgets import (
     QPushButton,
     QScrollArea,
     QTabBar,
+    QTabWidget,
     QToolButton,
     QWidget,
 )
@@ -279,3 +281,30 @@ def test_the_import_dialog_can_be_reached(looks, tmp_path):
     QApplication.processEvents()
     dialog.reject()
     assert looks.found == {}
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.6])
+def test_tabs_that_have_no_room_are_reached_by_arrows_that_can_be_seen(application, scale):
+    from groundstation.gui.theme import apply_theme
+    from groundstation.services.settings import Theme
+
+    apply_theme(application, Theme.LIGHT, scale)
+    tabs = QTabWidget()
+    for name in ("Viewpoints", "Not covered", "Clearance", "Plans"):
+        tabs.addTab(QWidget(), name)
+    tabs.resize(220, 120)
+    tabs.show()
+    application.processEvents()
+    arrows = [arrow for arrow in tabs.tabBar().findChildren(QToolButton) if arrow.isVisible()]
+    assert len(arrows) == 2
+    for arrow in arrows:
+        assert arrow.width() >= 24
+        middle = arrow.grab().toImage().convertToFormat(QImage.Format.Format_Grayscale8)
+        inside = [
+            middle.pixelColor(x, y).lightness()
+            for x in range(4, middle.width() - 4)
+            for y in range(8, middle.height() - 8)
+        ]
+        assert max(inside) - min(inside) > 40, "the arrow is not drawn"
+    tabs.close()
+    apply_theme(application, Theme.LIGHT)

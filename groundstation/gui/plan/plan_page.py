@@ -24,6 +24,7 @@ from groundstation.gui.workspace import Workspace
 from groundstation.services.document import Document, Item, ItemKind
 from groundstation.services.jobs import Job, JobBounded, JobImproved
 from groundstation.services.plan_bench import PlanInHand
+from groundstation.services.readiness import findings_beside
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
 from planning.findings import Severity, is_flyable
 from planning.plan import Plan
@@ -181,11 +182,13 @@ class PlanPage(QObject):
         self._show_result(in_hand)
 
     def _show_result(self, in_hand: PlanInHand) -> None:
-        findings, plan = in_hand.revision.findings, in_hand.plan
+        # As many as the Mission tab counts, where nothing is said there of the day.
+        revision, plan = in_hand.revision, in_hand.plan
+        findings = (*revision.findings, *findings_beside(revision.case))
         wrong = [finding for finding in findings if finding.severity is Severity.ERROR]
         warned = sum(finding.severity is Severity.WARNING for finding in findings)
         if is_flyable(findings):
-            self._say_verdict(self.tr("Ready to fly; warnings: {0}").format(warned), "ok")
+            self._say_verdict(self.tr("Ready to fly; warnings: {0}").format(warned), "warning" if warned else "ok")
         else:
             self._say_verdict(
                 self.tr("NOT ready to fly; errors: {0}. {1}").format(

@@ -104,6 +104,21 @@ def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, workspace,
     assert all(action.isEnabled() for action in page.actions())
 
 
+def test_the_plan_tab_counts_the_warnings_that_the_mission_tab_counts(page, workspace, planned, idle):
+    """One verdict: a place that is often just the city, and coverage far under what flights can cover."""
+    from groundstation.gui.plan.plan_page import PlanPage
+
+    plan_page = PlanPage(workspace, page._stage)
+    model, plan = planned
+    doubtful = replace(model, site=replace(model.site, place_from="ifc-site"))
+    entry = PlanEntry("plan-1", "First plan", plan)
+    workspace.session.open(Document(site=doubtful, plans=(entry,), current_plan_id="plan-1"), None)
+    idle(lambda: page.findings.verdict().startswith("Ready to fly") and plan_page.verdict().startswith("Ready to fly"))
+    n = sum(finding.severity is Severity.WARNING for finding in page._preflight.findings)
+    assert n >= 1
+    assert plan_page.verdict().splitlines()[0] == f"Ready to fly; warnings: {n}"
+
+
 def test_only_the_list_in_sight_is_filled_and_none_while_the_tab_is_hidden(page, workspace, planned, idle, application):
     model = page.lists.waypoints.model()
     workspace.session.open(opened(planned), None)
