@@ -4653,6 +4653,14 @@ Go on with it? What was saved stays as it is until you save again.</source>
 Damit weiterarbeiten? Das Gespeicherte bleibt, wie es ist, bis Sie wieder speichern.</translation>
     </message>
     <message>
+        <source>Nothing is lost: Reflight ended before this work was saved, and kept a copy of it at {0}. All of it is in the copy: it was never saved as a project.
+
+Go on with it?</source>
+        <translation>Nichts ist verloren: Reflight endete, bevor diese Arbeit gespeichert war, und hat um {0} eine Kopie behalten. Alles ist in der Kopie: Es wurde nie als Projekt gespeichert.
+
+Damit weiterarbeiten?</translation>
+    </message>
+    <message>
         <source>The project was saved by others since then: what they changed is not in the copy.</source>
         <translation>Das Projekt wurde seitdem von anderen gespeichert: was sie geändert haben, ist nicht in der Kopie.</translation>
     </message>
