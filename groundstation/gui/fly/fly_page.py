@@ -293,6 +293,7 @@ class FlyPage(QObject):
     def _show_state(self) -> None:
         """What can be done, and where things stand, in words."""
         desk = self.desk
+        self.readouts.set_live(is_live=desk.is_connected)
         self.connection.set_connected(is_connected=desk.is_connected, says=self._words.connected_to())
         is_busy = desk.is_preparing or desk.signing.is_busy
         can_connect = desk.plan is not None and bool(desk.plan.sorties) and not is_busy

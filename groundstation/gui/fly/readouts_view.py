@@ -21,6 +21,7 @@ class ReadoutsView(QWidget):
         super().__init__(parent)
         self._units = UnitSystem.METRIC
         self._view: LiveView | None = None
+        self._is_live = False
         self._tiles: dict[str, _Tile] = {}
         self._coverage = QProgressBar()
         self._coverage.setRange(0, 1000)
@@ -57,6 +58,12 @@ class ReadoutsView(QWidget):
         self._view = view
         self._show()
 
+    def set_live(self, *, is_live: bool) -> None:
+        """Say whether the vehicle is connected: what it told last is not shown for what it is now."""
+        if is_live is not self._is_live:
+            self._is_live = is_live
+            self._show()
+
     def set_counted(self, counted: PhotoCounted | None) -> None:
         """Show the coverage after a photo."""
         self._counted = counted
@@ -73,7 +80,7 @@ class ReadoutsView(QWidget):
 
     def _show(self) -> None:
         view = self._view
-        shown = Readouts() if view is None else view.readouts
+        shown = view.readouts if view is not None and self._is_live else Readouts()
         length, speed = length_unit(self._units), speed_unit(self._units)
         codes = {} if view is None else {warning.code: warning.severity.value for warning in view.warnings}
         states = () if view is None else view.view_states

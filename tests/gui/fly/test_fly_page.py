@@ -738,3 +738,16 @@ def test_autopilots_are_called_as_their_makers_call_them(application, desk, page
     notes = [message.text for message in desk.window.messages.messages()]
     for text in (*labels, *notes, page.checks.text()):
         assert autopilot.value not in text, f"the word of files and commands is shown: {text}"
+
+
+def test_after_disconnecting_no_battery_and_no_height_is_shown_for_that_of_now(application, page):
+    connect(application, page)
+    turn_until(application, lambda: "100%" in page.readouts.text() and "RTK" in page.readouts.text())
+    page.connection.button.click()
+    turn_until(application, lambda: not page.desk.is_connected)
+    shown = page.readouts.text()
+    assert "%" not in shown, shown
+    assert "RTK" not in shown, shown
+    assert "0/6" in shown, "what was photographed stays"
+    connect(application, page)
+    turn_until(application, lambda: "100%" in page.readouts.text())
