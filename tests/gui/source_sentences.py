@@ -19,6 +19,9 @@ RECORDS = {"planning/site.py", "planning/plan.py", "planning/request.py"}
 STAGES = {"report", "_Report"}
 """Calls that name the stage of a job first; also a stage of one word is shown."""
 
+STATEMENT_LISTS = ("body", "orelse", "finalbody", "handlers", "cases")
+"""Fields of the syntax tree that hold statements, or what holds them in turn."""
+
 PLACE = re.compile(r"^(?:\{0\}(?:, line \{1\})?|[a-z]+(?:_[a-z]+)+): ")
 FIELD_OF_RECORD = re.compile(r"^[\w.{}\[\]]+: ")
 """What a message begins with where it names its file or field; the window takes it off before it looks for the rest,
@@ -26,6 +29,7 @@ for more may stand before it: `plan.json: sorties[3].id: expected a name`.
 """
 
 
+@cache
 def collect():
     """Templates by where they stand: {(path, line): [template, ...]}."""
     found = {}
@@ -37,6 +41,7 @@ def collect():
     return found
 
 
+@cache
 def files_of_the_window():
     """Files that the window imports, at once or later: what is made elsewhere does not come into it."""
     reached, waiting = set(), sorted((ROOT / "groundstation" / "gui").rglob("*.py"))
@@ -51,13 +56,20 @@ def files_of_the_window():
 def _imported(tree):
     """Files of this project that a module imports, also within functions."""
     names = set()
-    for node in ast.walk(tree):
+    for node in _statements(tree):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
             names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
     places = [ROOT.joinpath(*name.split(".")) for name in names if name.partition(".")[0] in TOPS]
     return [file for place in places for file in (place.with_suffix(".py"), place / "__init__.py") if file.is_file()]
+
+
+def _statements(node):
+    """All statements below a node: no others import, and most nodes are expressions."""
+    for inner in itertools.chain.from_iterable(getattr(node, name, ()) for name in STATEMENT_LISTS):
+        yield inner
+        yield from _statements(inner)
 
 
 @cache
