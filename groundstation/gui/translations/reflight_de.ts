@@ -1376,7 +1376,7 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
     <message>
         <source>Turn to the other side</source>
-        <translation>Auf die andere Seite drehen</translation>
+        <translation>Seite umdrehen</translation>
     </message>
     <message>
         <source>No panels</source>
@@ -2950,7 +2950,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Export mission files ...</source>
-        <translation>Missionsdateien exportieren ...</translation>
+        <translation>Mission exportieren ...</translation>
     </message>
     <message>
         <source>For DJI, QGroundControl, ...</source>
@@ -2958,7 +2958,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
     <message>
         <source>Import mission files ...</source>
-        <translation>Missionsdateien importieren ...</translation>
+        <translation>Mission importieren ...</translation>
     </message>
     <message>
         <source>Compare with file ...</source>
@@ -3971,7 +3971,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>Weight sections by solid angle</source>
-        <translation>Sektoren nach Raumwinkel</translation>
+        <translation>Raumwinkel gewichten</translation>
     </message>
     <message>
         <source>single (fast)</source>
@@ -12945,7 +12945,7 @@ Damit weiterarbeiten?</translation>
     </message>
     <message>
         <source>Import a building model</source>
-        <translation>Gebäudemodell importieren</translation>
+        <translation>Gebäude importieren</translation>
     </message>
     <message>
         <source>Building models ({0});;All files (*)</source>
@@ -13158,7 +13158,7 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
     <message>
         <source>Turn to the other side</source>
-        <translation>Auf die andere Seite drehen</translation>
+        <translation>Seite umdrehen</translation>
     </message>
     <message>
         <source>Remove</source>
@@ -13282,7 +13282,7 @@ Größe: {3}; Dreiecke: {4}</translation>
     </message>
     <message>
         <source>Import a building model</source>
-        <translation>Gebäudemodell importieren</translation>
+        <translation>Gebäude importieren</translation>
     </message>
     <message>
         <source>Open a site file</source>
