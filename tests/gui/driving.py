@@ -34,6 +34,10 @@ SETTLE_S, CALM_S = 0.35, 0.05
 """Time without a job after which none follows: where a timer still runs (effects are looked at 0.3 s after the last
 change), and where none does."""
 
+TURN_S, LONG_TURN_S = 0.005, 0.01
+"""Pauses between turns of the event loop, while something happens and while only a timer runs: turns cost processor
+time that other tests want."""
+
 LOOK_MS, READ_MS, TRIES = 15, 150, 40
 """How often the hand looks for a dialog, and how long and how often it gives one of files to read its folder."""
 
@@ -343,7 +347,7 @@ def turn_until(application, condition: Callable[[], bool], timeout_s: float = PA
         application.processEvents()
         longest = max(longest, time.perf_counter() - started)
         assert time.perf_counter() < end, "it did not happen in time"
-        time.sleep(0.002)
+        time.sleep(TURN_S)
     return longest
 
 
@@ -351,7 +355,7 @@ def turn_until_idle(application, desk, timeout_s: float = PATIENCE_S) -> float:
     """Process events until no job runs and none follows; returns the longest turn, s."""
     longest, quiet_since = 0.0, time.perf_counter()
     end = quiet_since + timeout_s
-    while time.perf_counter() - quiet_since < (SETTLE_S if _waits(desk) else CALM_S):
+    while (quiet_s := time.perf_counter() - quiet_since) < CALM_S or (quiet_s < SETTLE_S and _waits(desk)):
         longest = max(longest, turn_until(application, lambda: not desk.workspace.jobs(), timeout_s))
         started = time.perf_counter()
         application.processEvents()

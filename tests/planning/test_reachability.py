@@ -71,7 +71,7 @@ def test_nothing_proven_unreachable_is_ever_seen_from_an_allowed_place(scene, oc
     assert found.n_reachable <= found.upper_bound <= model.n_elements
 
 
-@pytest.mark.parametrize(("scene", "occlusion"), [("office", False), ("court", True)])
+@pytest.mark.parametrize(("scene", "occlusion"), [("office", False), ("canyon", True), slow("court", True)])
 def test_every_witness_covers_its_section_by_the_definition(scene, occlusion):
     model, space, found = whole_scene(scene, occlusion)
     panel, section = np.nonzero(found.verdicts == REACHABLE)
@@ -151,7 +151,7 @@ def test_stopping_at_once_leaves_everything_undecided_and_the_bound_at_the_total
 
 
 def test_more_effort_only_settles_more():
-    model, space, whole = whole_scene("library", False)
+    model, space, whole = whole_scene("office", False)
     bounds = [*(find_reachable(model, space, max_cells=n).upper_bound for n in (1, 100)), whole.upper_bound]
     assert bounds == sorted(bounds, reverse=True)
     assert bounds[0] > bounds[-1]
