@@ -3963,7 +3963,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>Count whole panels only</source>
-        <translation>Nur ganze Scheiben zählen</translation>
+        <translation>Nur ganze Scheiben</translation>
     </message>
     <message>
         <source>A view counts only when all four corners are in the picture</source>
@@ -7952,7 +7952,7 @@ Damit weiterarbeiten?</translation>
     </message>
     <message>
         <source>import it first (&apos;import&apos;, or Mission &gt; Import mission files)</source>
-        <translation>zuerst importieren (Mission &gt; Missionsdateien importieren)</translation>
+        <translation>zuerst importieren (Mission &gt; Mission importieren)</translation>
     </message>
     <message>
         <source>import it first (&apos;site import&apos;, or Site &gt; Import), and plan a flight over that</source>
@@ -12460,7 +12460,7 @@ Damit weiterarbeiten?</translation>
     </message>
     <message>
         <source>expected a plan file, found a mission file, and the first plan does not name an aircraft of the catalogue to read it for; make a plan of it first (Mission &gt; Import mission files)</source>
-        <translation>erwartet war eine Plandatei, gefunden eine Missionsdatei, und der erste Plan nennt kein Fluggerät des Katalogs, für das sie zu lesen wäre; erst einen Plan daraus machen (Mission &gt; Missionsdateien importieren)</translation>
+        <translation>erwartet war eine Plandatei, gefunden eine Missionsdatei, und der erste Plan nennt kein Fluggerät des Katalogs, für das sie zu lesen wäre; erst einen Plan daraus machen (Mission &gt; Mission importieren)</translation>
     </message>
     <message>
         <source>the plan has no {0}, so nothing can be placed on the globe; open its site first</source>
@@ -12524,7 +12524,7 @@ Damit weiterarbeiten?</translation>
     </message>
     <message>
         <source>import it first: Mission &gt; Import mission files</source>
-        <translation>erst importieren: Mission &gt; Missionsdateien importieren</translation>
+        <translation>erst importieren: Mission &gt; Mission importieren</translation>
     </message>
     <message>
         <source>import it first (Site &gt; Import building model), and plan a flight over that</source>
@@ -13728,7 +13728,7 @@ Größe: {3}; Dreiecke: {4}</translation>
     <name>ViewpointPage</name>
     <message>
         <source>Move in the 3-D view</source>
-        <translation>In der 3D-Ansicht verschieben</translation>
+        <translation>In 3D verschieben</translation>
     </message>
     <message>
         <source>Drag the selected viewpoint; with Shift along its line of sight; or arrow keys</source>
