@@ -11,8 +11,21 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QLocale, QObject, QSignalBlocker, QSize, Qt, Signal
-from PySide6.QtGui import QKeyEvent, QKeySequence, QValidator
-from PySide6.QtWidgets import QAbstractSlider, QAbstractSpinBox, QComboBox, QDoubleSpinBox, QHBoxLayout, QWidget
+from PySide6.QtGui import QHelpEvent, QKeyEvent, QKeySequence, QPaintEvent, QValidator
+from PySide6.QtWidgets import (
+    QAbstractSlider,
+    QAbstractSpinBox,
+    QComboBox,
+    QDoubleSpinBox,
+    QFormLayout,
+    QHBoxLayout,
+    QLayout,
+    QStyle,
+    QStyleOptionComboBox,
+    QStylePainter,
+    QToolTip,
+    QWidget,
+)
 
 from groundstation.services.units import Unit, UnitSystem, length_unit, speed_unit
 
@@ -23,6 +36,12 @@ PERCENT = Unit("%", 100.0, 1)
 
 N_LETTERS_SHOWN, ARROW_PX = 6, 40
 """Least room of a list to choose from."""
+
+N_LETTERS_IN_FORM = 16
+"""Least room of one in a form; what is beside it goes above it before it has less."""
+
+TEXT_MARGIN_PX = 2
+"""Between the frame of a list to choose from and its text."""
 
 N_DIGITS_SHOWN = 9
 """Width of a box for whole numbers; longer ones scroll in it."""
@@ -74,24 +93,86 @@ def calm(widget: QWidget) -> None:
 
 
 class ChoiceBox(QComboBox):
-    """A list to choose from, each entry with its value."""
+    """A list to choose from, each entry with its value.
+
+    A text that has no room ends in an ellipsis, and the tool tip says all of it.
+    """
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._n_letters = N_LETTERS_SHOWN
+        for changed in (self.model().rowsInserted, self.model().rowsRemoved, self.model().dataChanged):
+            changed.connect(self.updateGeometry)
         calm(self)
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802
         """Room for a few letters: a long text is cut before it pushes other things off a small screen."""
-        hint = super().minimumSizeHint()
-        return QSize(
-            min(hint.width(), N_LETTERS_SHOWN * self.fontMetrics().averageCharWidth() + ARROW_PX), hint.height()
-        )
+        hint, metrics = super().minimumSizeHint(), self.fontMetrics()
+        longest = max((metrics.horizontalAdvance(self.itemText(n)) for n in range(self.count())), default=0)
+        letters = min(longest, self._n_letters * metrics.averageCharWidth())
+        return QSize(letters + ARROW_PX, hint.height())
+
+    def want_letters(self, n_letters: int) -> None:
+        """Have room for more letters at least, where an entry is that long."""
+        self._n_letters = n_letters
+        self.updateGeometry()
+
+    def shown_text(self) -> str:
+        """The choice, as far as there is room for it."""
+        option = QStyleOptionComboBox()
+        self.initStyleOption(option)
+        control, field = QStyle.ComplexControl.CC_ComboBox, QStyle.SubControl.SC_ComboBoxEditField
+        room = self.style().subControlRect(control, option, field, self).width() - 2 * TEXT_MARGIN_PX
+        if not option.currentIcon.isNull():
+            room -= option.iconSize.width() + 2 * TEXT_MARGIN_PX
+        return self.fontMetrics().elidedText(self.currentText(), Qt.TextElideMode.ElideRight, room)
+
+    def is_cut(self) -> bool:
+        """Whether the choice is longer than what is shown of it."""
+        return self.shown_text() != self.currentText()
+
+    def help_text(self) -> str:
+        """What the tool tip says: all of a choice that is cut, and what the box is for."""
+        return "\n".join(text for text in (self.currentText() if self.is_cut() else "", self.toolTip()) if text)
+
+    def event(self, event: QEvent) -> bool:
+        """Say all of what is cut."""
+        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent) and self.is_cut():
+            QToolTip.showText(event.globalPos(), self.help_text(), self)
+            return True
+        return super().event(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
+        """Draw the choice with an ellipsis where it is cut."""
+        painter, option = QStylePainter(self), QStyleOptionComboBox()
+        self.initStyleOption(option)
+        painter.drawComplexControl(QStyle.ComplexControl.CC_ComboBox, option)
+        option.currentText = self.shown_text()
+        painter.drawControl(QStyle.ControlElement.CE_ComboBoxLabel, option)
 
     def show_value(self, value: object, text: str = "") -> None:
         """Choose the entry with a value; where there is none, such as one from a file, it gets one."""
         if self.findData(value) < 0:
             self.addItem(text or str(value), value)
         self.setCurrentIndex(self.findData(value))
+
+
+class Form(QFormLayout):
+    """Titles and fields; a title goes above its field where there is no room for both beside each other."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
+        self.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        self.setLabelAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+
+    def addRow(self, *parts: QWidget | QLayout | str) -> None:  # type: ignore[override]  # noqa: N802
+        """As forms do; a list to choose from has room for its words."""
+        field = parts[-1]
+        if isinstance(field, ChoiceBox):
+            field.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+            field.want_letters(N_LETTERS_IN_FORM)
+        super().addRow(*parts)
 
 
 class NumberBox(QDoubleSpinBox):

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QLibraryInfo, QLocale, QTranslator
+from PySide6.QtCore import QT_TRANSLATE_NOOP, QLibraryInfo, QLocale, QTranslator
+from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication
 
 from groundstation.services.settings import Language
 
+KEYS_UNNAMED = (QT_TRANSLATE_NOOP("QShortcut", "Return"), QT_TRANSLATE_NOOP("QShortcut", "Enter"))
+"""Keys that Qt's own translations leave in English; it looks for their names here first."""
+
 FOLDER = Path(__file__).parent / "translations"
+
+
+def shown_keys(keys: QKeySequence) -> str:
+    """Keys in the user's language, as menus name them."""
+    return keys.toString(QKeySequence.SequenceFormat.NativeText)
 
 
 class Translations:

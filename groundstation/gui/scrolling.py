@@ -60,11 +60,15 @@ class CurrentStack(QStackedWidget):
 
 
 class WrappingRow(QLayout):
-    """Widgets beside each other, and in further rows where there is no room."""
+    """Widgets beside each other, and in further rows where there is no room.
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    `first_grows`: the first of each row takes what is left of it, so that the others stand at its end.
+    """
+
+    def __init__(self, parent: QWidget | None = None, *, first_grows: bool = False) -> None:
         super().__init__(parent)
         self._items: list[QLayoutItem] = []
+        self._first_grows = first_grows
         self.setContentsMargins(0, 0, 0, 0)
         self.setSpacing(4)
 
@@ -117,20 +121,65 @@ class WrappingRow(QLayout):
     def _shown(self) -> list[QLayoutItem]:
         return [item for item in self._items if not item.isEmpty()]
 
-    def _arrange(self, room: QRect, *, is_trial: bool) -> int:
-        x, y, high = room.x(), room.y(), 0
+    def _rows(self, width: int) -> list[list[tuple[QLayoutItem, QSize]]]:
+        """What stands in each row, and its size."""
+        rows: list[list[tuple[QLayoutItem, QSize]]] = []
+        left = 0
         for item in self._shown():
             size = item.sizeHint()
-            if size.width() > room.width():
-                size.setWidth(max(room.width(), item.minimumSize().width()))
+            if size.width() > width:
+                size.setWidth(max(width, item.minimumSize().width()))
                 if item.hasHeightForWidth():
                     size.setHeight(item.heightForWidth(size.width()))
-            if x > room.x() and x + size.width() > room.x() + room.width():
-                x, y, high = room.x(), y + high + self.spacing(), 0
-            if not is_trial:
-                item.setGeometry(QRect(QPoint(x, y), size))
-            x, high = x + size.width() + self.spacing(), max(high, size.height())
-        return y + high - room.y()
+            if not rows or size.width() > left:
+                rows.append([])
+                left = width
+            rows[-1].append((item, size))
+            left -= size.width() + self.spacing()
+        if self._first_grows:
+            for row in rows:
+                used = sum(size.width() for _, size in row) + self.spacing() * (len(row) - 1)
+                first, size = row[0]
+                size.setWidth(size.width() + max(0, width - used))
+                if first.hasHeightForWidth():
+                    size.setHeight(first.heightForWidth(size.width()))
+        return rows
+
+    def _arrange(self, room: QRect, *, is_trial: bool) -> int:
+        y = room.y()
+        for row in self._rows(room.width()):
+            x, high = room.x(), max(size.height() for _, size in row)
+            for item, size in row:
+                if not is_trial:
+                    item.setGeometry(QRect(QPoint(x, y), QSize(size.width(), high) if self._first_grows else size))
+                x += size.width() + self.spacing()
+            y += high + self.spacing()
+        return max(0, y - self.spacing() - room.y())
+
+
+class ButtonGrid(WrappingRow):
+    """Buttons of equal width, in as many columns as have room for their words; those of each row fill it."""
+
+    def __init__(self, n_columns: int = 2, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._n_columns = n_columns
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """With all columns."""
+        wide = self._n_columns * (self._cell_px() + self.spacing()) - self.spacing()
+        return QSize(wide, self.heightForWidth(wide))
+
+    def _cell_px(self) -> int:
+        return max((item.sizeHint().width() for item in self._shown()), default=0)
+
+    def _rows(self, width: int) -> list[list[tuple[QLayoutItem, QSize]]]:
+        items, gap = self._shown(), self.spacing()
+        n_columns = max(1, min(self._n_columns, (width + gap) // (self._cell_px() + gap)))
+        rows = [items[first : first + n_columns] for first in range(0, len(items), n_columns)]
+        return [
+            [(item, QSize((width - gap * (len(row) - 1)) // len(row), item.sizeHint().height())) for item in row]
+            for row in rows
+        ]
 
 
 def labelled(title: str, box: QWidget) -> QWidget:

@@ -11,6 +11,7 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QMenu, QTextBrowser, QVBoxLayout
 
+from groundstation.gui.languages import shown_keys
 from groundstation.gui.main_window import MainWindow
 
 Row = tuple[str, str]
@@ -72,9 +73,8 @@ def view_keys() -> list[tuple[str, list[Row]]]:
     """Keys of views, while they have the keyboard; sections in the order of `VIEWS`."""
     translate = QCoreApplication.translate
     arrows, enter = translate("Shortcuts", "Arrows"), translate("Shortcuts", "Enter")
-    page_up, page_down = translate("Shortcuts", "Page up"), translate("Shortcuts", "Page down")
-    insert, delete, space = QKeySequence("Ins"), QKeySequence("Del"), QKeySequence("Space")
-    ins, gone, bar = (key.toString(QKeySequence.SequenceFormat.NativeText) for key in (insert, delete, space))
+    names = ("Ins", "Del", "Space", "PgUp", "PgDown", "Backspace", "Home")
+    ins, gone, bar, page_up, page_down, back, home = (shown_keys(QKeySequence(name)) for name in names)
     shift = translate("Shortcuts", "with Shift")
     return [
         (
@@ -91,7 +91,7 @@ def view_keys() -> list[tuple[str, list[Row]]]:
                 (arrows, translate("Shortcuts", "Move what is held by a step")),
                 (f"{page_up}, {page_down}", translate("Shortcuts", "Nearer to the facade, farther from it")),
                 (enter, translate("Shortcuts", "Finish")),
-                (translate("Shortcuts", "Backspace"), translate("Shortcuts", "Take the last corner back")),
+                (back, translate("Shortcuts", "Take the last corner back")),
                 ("Esc", translate("Shortcuts", "Put the tool away")),
             ],
         ),
@@ -141,7 +141,7 @@ def view_keys() -> list[tuple[str, list[Row]]]:
                 (translate("Shortcuts", "Ctrl and arrows"), translate("Shortcuts", "Look elsewhere")),
                 ("W A S D E Q", translate("Shortcuts", "Fly: forward, left, back, right, up, down")),
                 (f"+ = {page_up}, - {page_down}", translate("Shortcuts", "Nearer, farther")),
-                (f"0, {translate('Shortcuts', 'Home')}", translate("Shortcuts", "Back to the first view")),
+                (f"0, {home}", translate("Shortcuts", "Back to the first view")),
             ],
         ),
         (translate("Shortcuts", "Messages"), [("Esc", translate("Shortcuts", "Close the list"))]),
@@ -159,7 +159,7 @@ def _all_of(menu: QMenu) -> list[QAction]:
 
 def _rows(actions: Iterable[QAction]) -> list[Row]:
     texts = {
-        action.shortcut().toString(QKeySequence.SequenceFormat.NativeText): action.text().replace("&", "")
+        shown_keys(action.shortcut()): action.text().replace("&", "")
         for action in actions
         if not action.shortcut().isEmpty()
     }

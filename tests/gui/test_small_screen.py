@@ -7,7 +7,7 @@ scrolls to it; and buttons are wide enough for their words.
 import gc
 
 import pytest
-from PySide6.QtCore import QPoint, QRect
+from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -15,6 +15,8 @@ from PySide6.QtWidgets import (
     QAbstractSpinBox,
     QApplication,
     QComboBox,
+    QFormLayout,
+    QLabel,
     QLineEdit,
     QPushButton,
     QScrollArea,
@@ -24,6 +26,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.stage import StagePage
 from groundstation.services.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.live_choice import ConnectionChoice
@@ -38,6 +41,11 @@ SCREEN = QRect(0, 0, 1280, 720)
 LEAST_PX = 40
 """Of something that scrolls, to be of use."""
 
+LEAST_LETTERS = 5
+"""Of a choice that is cut, to be told from others."""
+
+DIRECT = Qt.FindChildOption.FindDirectChildrenOnly
+
 CONTROLS = (QAbstractButton, QComboBox, QAbstractSpinBox, QLineEdit)
 
 
@@ -51,7 +59,7 @@ def controls(window):
 
 
 def text_of(widget):
-    kind = next((kind for kind in (QAbstractButton, QLineEdit) if isinstance(widget, kind)), None)
+    kind = next((kind for kind in (QAbstractButton, QLineEdit, QLabel) if isinstance(widget, kind)), None)
     return widget.accessibleName() if kind is None else kind.text(widget)
 
 
@@ -118,6 +126,51 @@ def cut_short(window):
     return found
 
 
+def cut_choices(window):
+    """Lists to choose from whose choice is cut though the row has more room, or cut without saying all of it."""
+    found = []
+    for box in controls(window):
+        if isinstance(box, ChoiceBox) and box.is_cut():
+            form = box.parentWidget().layout()
+            is_form = isinstance(form, QFormLayout) and form.indexOf(box) >= 0
+            room = form.contentsRect().width() if is_form else 0
+            if is_form and box.width() < room - 2:
+                found.append(f"{name_of(box)}: “{box.shown_text()}” of “{box.currentText()}”, {box.width()} of {room}")
+            if len(box.shown_text()) < LEAST_LETTERS or box.currentText() not in box.help_text():
+                found.append(f"{name_of(box)}: “{box.shown_text()}” of “{box.currentText()}”")
+    return found
+
+
+def squeezed(window):
+    """Boxes that are lower than their text needs."""
+    return [
+        f"{name_of(box)} is {QWidget.height(box)} px high, its text {box.fontMetrics().height()}"
+        for box in controls(window)
+        if isinstance(box, (QComboBox, QAbstractSpinBox)) and QWidget.height(box) < box.fontMetrics().height() + 2
+    ]
+
+
+def sideways(window):
+    """Columns of forms that have more to the side than they show, each with what needs the width."""
+    found = []
+    for area in window.findChildren(QScrollArea):
+        view, inside = QAbstractScrollArea.viewport(area), QScrollArea.widget(area)
+        if area.isVisible() and inside is not None and inside.width() > view.width():
+            found.append(f"{type(inside).__name__} {inside.width()} > {view.width()}: {why_wide(inside)}")
+    return found
+
+
+def why_wide(widget):
+    """The way down to what makes a widget wide."""
+    parts = [part for part in widget.findChildren(QWidget, options=DIRECT) if part.isVisible()]
+    way = f"{type(widget).__name__} “{text_of(widget)}” {least_px(widget)}"
+    return f"{way} > {why_wide(max(parts, key=least_px))}" if parts and not isinstance(widget, CONTROLS) else way
+
+
+def least_px(widget):
+    return max(widget.minimumSizeHint().width(), widget.minimumWidth())
+
+
 class Looks:
     """Looks at the window in each state."""
 
@@ -127,11 +180,17 @@ class Looks:
     def at(self, state, window=None):
         turn_until_idle(self.application, self.desk)
         window = self.desk.window if window is None else window
-        problems = out_of_reach(window) + cut_short(window)
+        checks = (out_of_reach, cut_short, cut_choices, squeezed, sideways)
+        problems = [problem for check in checks for problem in check(window)]
         if window.width() > SCREEN.width() or window.height() > SCREEN.height():
             problems.append(f"the window is {window.width()} x {window.height()}")
         if problems:
             self.found[state] = problems
+
+    def told(self):
+        """What was found, one problem a line, each where it was seen first."""
+        first = {problem: state for state, problems in reversed(self.found.items()) for problem in problems}
+        return "\n".join(f"{state}: {problem}" for problem, state in first.items())
 
     def dialog(self, state, open_it):
         """Look at a dialog that an action brings up, and leave it."""
@@ -202,7 +261,7 @@ def test_everything_can_be_reached_in_every_tab_phase_and_dialog(looks):
     looks.dialog("shortcuts", desk.menus.show_shortcuts)
     looks.dialog("about", desk.menus._show_about)
     looks.dialog("save as", desk.save_as)
-    assert looks.found == {}
+    assert not looks.found, looks.told()
 
 
 THINGS = ((ItemKind.BUILDING, ""), (ItemKind.HOME, ""), (ItemKind.AIRSPACE, ""), (ItemKind.FACADE, "A"))
@@ -280,7 +339,7 @@ def test_the_import_dialog_can_be_reached(looks, tmp_path):
     looks.at("import", dialog)
     QApplication.processEvents()
     dialog.reject()
-    assert looks.found == {}
+    assert not looks.found, looks.told()
 
 
 @pytest.mark.parametrize("scale", [1.0, 1.6])

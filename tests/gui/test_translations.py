@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 from PySide6.QtCore import QTranslator
-from PySide6.QtWidgets import QMenu
+from PySide6.QtWidgets import QMenu, QWidget
 
 from groundstation.gui.languages import FOLDER
 from groundstation.services.settings import Language
@@ -165,3 +165,16 @@ def test_no_two_german_entries_of_a_menu_share_a_letter(desk):
         for menu in menus:
             letters = [found for action in menu.actions() for found in re.findall(r"&(\w)", action.text().lower())]
             assert len(letters) == len(set(letters)), [action.text() for action in menu.actions()]
+
+
+def test_keys_have_german_names_wherever_they_are_shown(desk):
+    from groundstation.gui.shortcuts import sections
+
+    desk.choose(language=Language.GERMAN)
+    told = " ".join(keys for _, rows in sections(desk.window) for keys, _ in rows)
+    for english in ("Ctrl", "Shift", "Return", "Enter", "Home", "Space", "PgUp", "Page", "Backspace", "Startplatz"):
+        assert english not in told
+    for key in ("Strg+Umschalt+Eingabe", "Pos1", "Leertaste", "Entf"):
+        assert key in told
+    tips = [button.toolTip() for button in desk.window.findChildren(QWidget) if "Ctrl+" in button.toolTip()]
+    assert tips == []

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QFormLayout, QLabel, QLineEdit, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QLineEdit, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.fly.signing_box import SigningBox
-from groundstation.gui.inputs import ChoiceBox, NumberBox
+from groundstation.gui.inputs import ChoiceBox, Form, NumberBox
 from groundstation.gui.tab_order import set_enabled
 from groundstation.services.live_choice import USUAL_ADDRESS, ConnectionChoice, LinkKind
 from missions.mavlink.autopilots import Autopilot
@@ -56,7 +56,7 @@ class ConnectionBox(QWidget):
         self._fields = QWidget()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Minimum)
         self._fields.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self._form = QFormLayout(self._fields)
+        self._form = Form(self._fields)
         self._form.setContentsMargins(0, 0, 0, 0)
         self._form.addRow(self.tr("Vehicle"), self.kind)
         self._form.addRow(self.tr("Autopilot"), self.autopilot)

@@ -6,6 +6,7 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QColor, QIcon, QKeySequence, QMouseEvent, QPainter, QPainterPath, QPixmap
 from PySide6.QtWidgets import QGridLayout, QPushButton, QSizePolicy, QWidget
 
+from groundstation.gui.languages import shown_keys
 from groundstation.gui.tab_order import set_enabled
 from groundstation.gui.theme import colours
 from groundstation.services.live_events import Request
@@ -54,7 +55,7 @@ class FlightButtons(QWidget):
             button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
             button.setIconSize(QSize(ICON_PX, ICON_PX))
             button.setProperty("flight", request.name.lower())
-            button.setToolTip(self.tr("{0} ({1})").format(tip, key))
+            button.setToolTip(self.tr("{0} ({1})").format(tip, shown_keys(action.shortcut())))
             button.clicked.connect(action.trigger)
             self._actions[request], self._buttons[request] = action, button
             row, column, width = PLACES[request]

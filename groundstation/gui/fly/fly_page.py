@@ -93,7 +93,7 @@ class FlyPage(QObject):
     def _make_left(self) -> QWidget:
         left = QWidget()
         layout = QVBoxLayout(left)
-        layout.setContentsMargins(6, 6, 6, 6)
+        layout.setContentsMargins(3, 6, 3, 6)
         self.sortie.setAccessibleName(self.tr("Sortie to be flown"))
         rest = QWidget()
         below = QVBoxLayout(rest)

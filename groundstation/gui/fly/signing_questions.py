@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFormLayout, QLabel, QLineEdit, QWidget
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QLineEdit, QWidget
 
+from groundstation.gui.inputs import Form
 from groundstation.gui.questions import agrees
 from groundstation.services.signing import MIN_PASSPHRASE
 
@@ -34,7 +35,7 @@ class PassphraseDialog(QDialog):
         self.buttons = QDialogButtonBox(buttons)
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
-        layout = QFormLayout(self)
+        layout = Form(self)
         layout.addRow(says)
         layout.addRow(self.tr("Passphrase"), self.first)
         layout.addRow(self.tr("Once more"), self.second)

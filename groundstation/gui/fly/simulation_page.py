@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QFormLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import ChoiceBox, NumberBox, SpeedBox
+from groundstation.gui.inputs import ChoiceBox, Form, NumberBox, SpeedBox
 from groundstation.gui.plan.effects_panel import EffectsPanel
 from groundstation.services.effects import EffectChoice
 from groundstation.services.units import UnitSystem
@@ -39,7 +39,7 @@ class SimulationPage(QWidget):
             ("single", self.tr("without RTK")),
         ):
             self.fix.addItem(text, kind)
-        form = QFormLayout()
+        form = Form()
         form.addRow(self.tr("Wind"), self.wind)
         form.addRow(self.tr("Wind from"), self.wind_from)
         form.addRow(self.tr("GNSS"), self.fix)
@@ -71,9 +71,6 @@ class SimulationPage(QWidget):
     def set_effects(self, choices: tuple[EffectChoice, ...]) -> None:
         """Show what was decided about each effect."""
         self.effects.set_effects(choices)
-        # Long names take two lines: a scroll bar stands beside the cards.
-        for label in self.effects.findChildren(QLabel):
-            label.setWordWrap(True)
 
     def set_units(self, units: UnitSystem) -> None:
         """Show speeds in other units."""

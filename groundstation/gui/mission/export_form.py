@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QFormLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QWidget
 
-from groundstation.gui.inputs import ChoiceBox, LengthBox
+from groundstation.gui.inputs import ChoiceBox, Form, LengthBox
 from groundstation.services.mission_files import MAVLINK_FORMATS
 from groundstation.services.units import UnitSystem
 from missions.dji.write import MIN_RTH_HEIGHT_M, LinkLoss
@@ -34,9 +34,8 @@ class ExportForm(QWidget):
         self._return = LengthBox(MIN_RTH_HEIGHT_M, MAX_RETURN_HEIGHT_M, 5.0, units)
         self._return.setValue(FIRST_RETURN_HEIGHT_M)
         self._fill()
-        form = self._form = QFormLayout(self)
+        form = self._form = Form(self)
         form.setContentsMargins(0, 0, 0, 0)
-        form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
         form.addRow(self.tr("Format"), self._format)
         form.addRow(self.tr("Heights in the file"), self._heights)
         form.addRow(self.tr("Autopilot"), self._autopilot)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import get_args
 
 from PySide6.QtCore import QCoreApplication
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFormLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import ChoiceBox
+from groundstation.gui.inputs import ChoiceBox, Form
 from groundstation.services.model_export import (
     OF_ALL_PARTS,
     WITH_PRESETS,
@@ -49,7 +49,7 @@ class ExportDialog(QDialog):
         for preset, title in zip(PRESETS, (self.tr("small"), self.tr("balanced"), self.tr("fine")), strict=True):
             self.preset.addItem(title, preset)
         self.preset.setCurrentIndex(PRESETS.index("balanced"))
-        form = QFormLayout()
+        form = Form()
         form.addRow(self.tr("Format"), self.format)
         form.addRow(self.about)
         form.addRow(self.tr("Part"), self.part)

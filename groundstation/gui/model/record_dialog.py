@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
     QDialogButtonBox,
-    QFormLayout,
     QLabel,
     QLineEdit,
     QPlainTextEdit,
@@ -22,7 +21,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.inputs import ChoiceBox
+from groundstation.gui.inputs import ChoiceBox, Form
 from groundstation.gui.model.record_words import choice_words, field_words, kind_words
 from groundstation.gui.questions import choose_file
 from planning.errors import GroundStationError
@@ -78,7 +77,7 @@ class RecordDialog(QDialog):
         self.file: Path | None = None
         self.choose = QPushButton()
         self.setWindowTitle(kind_words(kind))
-        form = QFormLayout()
+        form = Form()
         for name in SHOWN[kind]:
             if name in {each.name for each in fields(kind)}:
                 self.boxes[name] = self._box(name)

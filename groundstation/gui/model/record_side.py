@@ -9,7 +9,6 @@ from PySide6.QtCore import QCoreApplication, QLocale, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QDialog,
-    QFormLayout,
     QGridLayout,
     QLabel,
     QMenu,
@@ -20,7 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.inputs import ChoiceBox
+from groundstation.gui.inputs import ChoiceBox, Form
 from groundstation.gui.model.record_dialog import RecordDialog
 from groundstation.gui.model.record_words import choice_words, field_words, kind_words
 from groundstation.services.scene_card import Level, Subject
@@ -143,7 +142,7 @@ class RecordSide(QWidget):
             self.kinds.addAction(f"{kind_words(kind)} ...").setData(kind)
         self.tree.currentItemChanged.connect(self._enable)
         self.tree.itemActivated.connect(self._change)
-        self._facts = facts = QFormLayout()
+        self._facts = facts = Form()
         for name, label in (
             (self.tr("Records of"), self.level),
             (self.tr("Facade"), self.facade),

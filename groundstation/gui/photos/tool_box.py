@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QButtonGroup, QGridLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QButtonGroup, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.photos.grid_view import Tool
+from groundstation.gui.scrolling import ButtonGrid
 
 
 class ToolBox(QWidget):
@@ -28,9 +29,12 @@ class ToolBox(QWidget):
         self.redo.setAccessibleName(self.tr("Redo"))
         self._buttons: dict[Tool, QPushButton] = {}
         group = QButtonGroup(self)
-        layout = QGridLayout(self)
+        layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
+        tools, steps = ButtonGrid(), ButtonGrid(6)
+        layout.addLayout(tools)
+        layout.addLayout(steps)
         texts = (
             (
                 Tool.MOVE,
@@ -48,19 +52,17 @@ class ToolBox(QWidget):
             (Tool.ADD_ROW, self.tr("Add level line"), self.tr("A press adds a horizontal line of the grid")),
             (Tool.REMOVE_LINE, self.tr("Remove line"), self.tr("A press on a line removes it")),
         )
-        for number, (tool, text, tip) in enumerate(texts):
+        for tool, text, tip in texts:
             button = QPushButton(text)
             button.setCheckable(True)
             button.setToolTip(tip)
             button.clicked.connect(lambda _checked=False, tool=tool: self.valueChanged.emit(tool))
             group.addButton(button)
             self._buttons[tool] = button
-            layout.addWidget(button, number // 2, 2 * (number % 2), 1, 2)
-        layout.addWidget(self.undo, 2, 2)
-        layout.addWidget(self.redo, 2, 3)
+            tools.addWidget(button)
         self._arrows = tuple(self._arrow(*each) for each in self._directions())
-        for column, arrow in enumerate(self._arrows):
-            layout.addWidget(arrow, 3, column)
+        for button in (self.undo, self.redo, *self._arrows):
+            steps.addWidget(button)
         self.setValue(Tool.MOVE)
 
     def _directions(self) -> tuple[tuple[str, str, int, int], ...]:

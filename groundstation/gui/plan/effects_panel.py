@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QLabel, QVBoxLayout, QWidget
 
 from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.own_words import own_words
+from groundstation.gui.scrolling import WrappingRow
 from groundstation.services.effects import EffectChoice
 from groundstation.services.units import UnitSystem
 
@@ -81,14 +82,14 @@ class _EffectCard(QFrame):
         self._name, self._state, self._words, self._size = QLabel(), QLabel(), QLabel(), QLabel()
         self._name.setProperty("role", "heading")
         self._size.setProperty("role", "muted")
-        for label in (self._words, self._size):
+        for label in (self._name, self._words, self._size):
             label.setWordWrap(True)
         self.wish = ChoiceBox()
         for wish, text in zip(WISHES, (self.tr("auto"), self.tr("on"), self.tr("off")), strict=True):
             self.wish.addItem(text, wish)
         self.wish.currentIndexChanged.connect(lambda _index: self.wishChanged.emit(str(self.wish.currentData())))
-        above = QHBoxLayout()
-        above.addWidget(self._name, 1)
+        above = WrappingRow(first_grows=True)
+        above.addWidget(self._name)
         above.addWidget(self._state)
         above.addWidget(self.wish)
         layout = QVBoxLayout(self)

@@ -7,15 +7,13 @@ from dataclasses import replace
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
-    QFormLayout,
     QLabel,
     QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
-from groundstation.gui.inputs import ChoiceBox, LengthBox, NumberBox, PercentBox, QuantityBox, SpeedBox, WholeBox
+from groundstation.gui.inputs import ChoiceBox, Form, LengthBox, NumberBox, PercentBox, QuantityBox, SpeedBox, WholeBox
 from groundstation.gui.own_words import own_words
 from groundstation.gui.plan.aircraft_box import AircraftBox
 from groundstation.gui.plan.method_names import method_name
@@ -67,7 +65,9 @@ class PlanForm(QWidget):
         self._more.setText(self.tr("More settings"))
         layout.addWidget(self._more)
         self._further = QWidget()
-        self._further.setLayout(self._rows(self._further_rows()))
+        further = self._rows(self._further_rows())
+        further.setContentsMargins(0, 0, 0, 0)
+        self._further.setLayout(further)
         self._further.setVisible(False)
         self._more.toggled.connect(self._further.setVisible)
         layout.addWidget(self._further)
@@ -138,14 +138,9 @@ class PlanForm(QWidget):
             (self.tr("Seed"), self._seed),
         )
 
-    def _rows(self, rows: tuple[tuple[str, QWidget], ...]) -> QFormLayout:
-        layout = QFormLayout()
-        layout.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
-        layout.setRowWrapPolicy(QFormLayout.RowWrapPolicy.DontWrapRows)
+    def _rows(self, rows: tuple[tuple[str, QWidget], ...]) -> Form:
+        layout = Form()
         for label, widget in rows:
-            widget.setMinimumWidth(80)
-            if isinstance(widget, QComboBox):
-                widget.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
             if label:
                 layout.addRow(label, widget)
             else:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import LengthBox, NumberBox
+from groundstation.gui.inputs import Form, LengthBox, NumberBox
+from groundstation.gui.scrolling import ButtonGrid
 from groundstation.services.units import UnitSystem
 from planning.mesh import MAX_COORDINATE_M
 from planning.plan import ANGLE_DECIMALS, Camera, Viewpoint
@@ -60,11 +61,11 @@ class ViewpointEditor(QWidget):
         self.setValue(None)
 
     def _lay_out(self) -> None:
-        form = QFormLayout()
+        form = Form()
         names = (self.tr("East"), self.tr("North"), self.tr("Up"), self.tr("Heading"), self.tr("Pitch"))
         for name, box in zip(names, (*self._position, self._heading, self._pitch), strict=True):
             form.addRow(name, box)
-        buttons = QHBoxLayout()
+        buttons = ButtonGrid(3)
         for button in (self._aim, self._add, self._delete):
             buttons.addWidget(button)
         layout = QVBoxLayout(self)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import ChoiceBox, NumberBox
+from groundstation.gui.inputs import ChoiceBox, Form, NumberBox
 from groundstation.gui.own_words import own_words
 from groundstation.services.reconstruct_choices import (
     LONGEST_MIN,
@@ -84,9 +84,7 @@ class ChoiceForm(QWidget):
             box.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.about.setWordWrap(True)
         self.about.setProperty("role", "muted")
-        self._form = QFormLayout()
-        self._form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.ExpandingFieldsGrow)
-        self._form.setLabelAlignment(Qt.AlignmentFlag.AlignLeft)
+        self._form = Form()
         self._form.addRow(self.tr("Method"), self.method)
         self._form.addRow(self.about)
         self._form.addRow(self.tr("Time"), self.time)

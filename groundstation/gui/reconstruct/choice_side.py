@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.reconstruct.choice_form import ChoiceForm
 from groundstation.gui.reconstruct.machine_words import MachineWords
 from groundstation.gui.reconstruct.reconstruct_desk import BUSY, Phase, ReconstructDesk
+from groundstation.gui.scrolling import ButtonGrid, WrappingRow
 
 
 class ChoiceSide(QWidget):
@@ -97,23 +98,21 @@ class ChoiceSide(QWidget):
         layout.addWidget(self.there)
         layout.addWidget(self.wrong)
         layout.addWidget(self.train)
-        grid = QGridLayout()
-        grid.addWidget(self.pause, 0, 0)
-        grid.addWidget(self.break_off, 0, 1)
-        grid.addWidget(self.stop, 1, 0, 1, 2)
+        grid = ButtonGrid()
+        for button in (self.pause, self.break_off, self.stop):
+            grid.addWidget(button)
         layout.addLayout(grid)
         layout.addStretch(1)
 
 
-def _headed(text: str, button: QPushButton) -> QGridLayout:
+def _headed(text: str, button: QPushButton) -> WrappingRow:
     heading = QLabel(text)
     heading.setProperty("role", "heading")
-    grid = QGridLayout()
-    grid.addWidget(heading, 0, 0)
-    grid.addWidget(button, 0, 1)
-    grid.setColumnStretch(0, 1)
+    row = WrappingRow(first_grows=True)
+    row.addWidget(heading)
+    row.addWidget(button)
     button.setAccessibleName(f"{text}: {button.text()}")
-    return grid
+    return row
 
 
 def _short(folder: Path) -> str:

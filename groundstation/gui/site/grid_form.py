@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import LengthBox, WholeBox
+from groundstation.gui.inputs import Form, LengthBox, WholeBox
+from groundstation.gui.scrolling import ButtonGrid
 from groundstation.gui.site.value_boxes import ErrorLine, PointBox, muted
 from groundstation.services.units import UnitSystem, length_unit
 from planning.scenes import Rectangle
@@ -71,8 +72,7 @@ class GridForm(QWidget):
 
     def _lay_out(self) -> None:
         self._size.setWordWrap(True)
-        form = QFormLayout()
-        form.setLabelAlignment(Qt.AlignmentFlag.AlignVCenter)
+        form = Form()
         form.addRow(self.tr("Rows"), self._rows)
         form.addRow(self.tr("Columns"), self._columns)
         form.addRow(self.tr("Gap"), self._gap)
@@ -84,7 +84,7 @@ class GridForm(QWidget):
         for title, box in zip(titles, self._corners, strict=True):
             corners.addWidget(QLabel(title))
             corners.addWidget(box)
-        buttons = QHBoxLayout()
+        buttons = ButtonGrid()
         buttons.addWidget(self._accept)
         buttons.addWidget(self._cancel)
         layout = QVBoxLayout(self)

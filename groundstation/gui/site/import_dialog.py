@@ -9,18 +9,17 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QDialog,
-    QFrame,
     QHBoxLayout,
     QLabel,
     QPlainTextEdit,
     QPushButton,
-    QScrollArea,
     QSplitter,
     QVBoxLayout,
     QWidget,
 )
 
 from groundstation.gui.job_bar import DialogFoot
+from groundstation.gui.scrolling import scrolled
 from groundstation.gui.site.grid_form import GridForm, GridWish
 from groundstation.gui.site.import_form import ImportForm
 from groundstation.gui.site.import_texts import preview_text
@@ -86,11 +85,7 @@ class ImportDialog(QDialog):
         column.addWidget(heading)
         column.addWidget(self.grid)
         column.addStretch(1)
-        area = QScrollArea()
-        area.setWidget(left)
-        area.setWidgetResizable(True)
-        area.setFrameShape(QFrame.Shape.NoFrame)
-        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area = scrolled(left)
         area.setMinimumWidth(FORM_WIDTH_PX)
         right = QWidget()
         column = QVBoxLayout(right)

@@ -9,9 +9,9 @@ from typing import cast
 
 from PySide6.QtCore import QLocale, Signal
 from PySide6.QtGui import QDoubleValidator
-from PySide6.QtWidgets import QComboBox, QFormLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QWidget
 
-from groundstation.gui.inputs import ChoiceBox, LengthBox
+from groundstation.gui.inputs import ChoiceBox, Form, LengthBox
 from groundstation.gui.site.origin_box import OriginBox
 from groundstation.gui.site.site_tree_model import size_text
 from groundstation.gui.site.value_boxes import NameBox
@@ -74,9 +74,8 @@ class ImportForm(QWidget):
         self.setValue(ImportOptions())
 
     def _lay_out(self, is_mesh: bool) -> None:
-        self._form = QFormLayout(self)
+        self._form = Form(self)
         self._form.setContentsMargins(0, 0, 0, 0)
-        self._form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapAllRows)
         if self._has_map:
             self._form.addRow(self.tr("Building"), self._building)
         if is_mesh:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFormLayout, QWidget
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.inputs import LengthBox, NumberBox
+from groundstation.gui.inputs import Form, LengthBox, NumberBox
 from groundstation.gui.own_words import own_words
 from groundstation.gui.site.value_boxes import DECIMALS, ErrorLine, muted
 from groundstation.services.site_edits import HeightReference, height_above_sea_m, origin_at
@@ -42,9 +42,8 @@ class OriginBox(QWidget):
         self._sea.setToolTip(
             self.tr("Mean sea level by the EGM96 geoid, as autopilots and DJI use it; good to about a metre")
         )
-        layout = QFormLayout(self)
+        layout = Form(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.setLabelAlignment(Qt.AlignmentFlag.AlignVCenter)
         layout.addRow(self.tr("Latitude"), self._lat)
         layout.addRow(self.tr("Longitude"), self._lon)
         layout.addRow(muted(self.tr("Height of the site's zero:")))

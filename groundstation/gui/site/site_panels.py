@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
-    QGridLayout,
     QLabel,
     QPushButton,
-    QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
 
-from groundstation.gui.scrolling import scrolled
+from groundstation.gui.scrolling import ButtonGrid, CurrentStack, scrolled
 from groundstation.gui.site.findings_list import FindingsList
 from groundstation.gui.site.grid_form import GridForm
 from groundstation.gui.site.grid_maker import GridMaker
@@ -61,7 +59,7 @@ class SiteSide(QWidget):
         self.opener = SiteOpener(workspace, self)
         self.start = StartPage(self.opener)
         self.tree = SiteTree()
-        self._pages = QStackedWidget()
+        self._pages = CurrentStack()
         self._pages.addWidget(self.start)
         self._pages.addWidget(self._site_page())
         layout = QVBoxLayout(self)
@@ -77,17 +75,15 @@ class SiteSide(QWidget):
 
     def _site_page(self) -> QWidget:
         page = QWidget()
-        buttons = QGridLayout()
-        buttons.setSpacing(4)
+        buttons = ButtonGrid()
         imported, opened, bundled = (
             QPushButton(text) for text in (self.tr("Import..."), self.tr("Open..."), self.tr("Bundled site"))
         )
         opened.clicked.connect(self.opener.choose_site)
         imported.clicked.connect(self.opener.choose_import)
         bundled.setMenu(self.opener.bundled_menu(bundled))
-        buttons.addWidget(imported, 0, 0)
-        buttons.addWidget(opened, 0, 1)
-        buttons.addWidget(bundled, 1, 0, 1, 2)
+        for button in (imported, opened, bundled):
+            buttons.addWidget(button)
         layout = QVBoxLayout(page)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addLayout(buttons)

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QGridLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QPushButton, QWidget
 
 from groundstation.gui.questions import choose_file
+from groundstation.gui.scrolling import ButtonGrid
 from groundstation.gui.site.pages import Edit
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.stage import Stage, StagePage
@@ -66,20 +67,18 @@ class SiteTools(QWidget):
         self._scene: SceneView | None = None
         self._grid_tool: RectangleTool | None = None
         self._buttons: dict[SiteTool, QPushButton] = {}
-        layout = QGridLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(4)
-        for number, (tool, text, tip) in enumerate(self._texts()):
+        layout = ButtonGrid(parent=self)
+        for tool, text, tip in self._texts():
             button = QPushButton(text)
             button.setCheckable(True)
             button.setToolTip(tip)
             button.clicked.connect(lambda checked, tool=tool: self.use(tool) if checked else self.put_away())
             self._buttons[tool] = button
-            layout.addWidget(button, number // 2, number % 2)
+            layout.addWidget(button)
         mesh = QPushButton(self.tr("Obstacle mesh..."))
         mesh.setToolTip(self.tr("Add an obstacle from a mesh file in the site's coordinates (a crane, a tree)"))
         mesh.clicked.connect(self._choose_mesh)
-        layout.addWidget(mesh, len(self._buttons) // 2, len(self._buttons) % 2)
+        layout.addWidget(mesh)
         stage.with_scene(self._connect)
 
     def _texts(self) -> tuple[tuple[SiteTool, str, str], ...]:

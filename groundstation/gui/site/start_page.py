@@ -20,6 +20,7 @@ class StartPage(QWidget):
         layout.setSpacing(8)
         heading = QLabel(self.tr("Begin with a site"))
         heading.setProperty("role", "heading")
+        heading.setWordWrap(True)
         layout.addWidget(heading)
         layout.addWidget(muted(self.tr("A site holds the glass panels, the building, and where you may fly.")))
         self.import_button = _large(self.tr("Import a building model"), primary=True)

@@ -4590,6 +4590,17 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>QShortcut</name>
+    <message>
+        <source>Return</source>
+        <translation>Eingabe</translation>
+    </message>
+    <message>
+        <source>Enter</source>
+        <translation>Eingabe</translation>
+    </message>
+</context>
+<context>
     <name>QualityChart</name>
     <message>
         <source>Good enough, stop here</source>
@@ -12601,14 +12612,6 @@ Damit weiterarbeiten?</translation>
         <translation>Eingabe</translation>
     </message>
     <message>
-        <source>Page up</source>
-        <translation>Bild auf</translation>
-    </message>
-    <message>
-        <source>Page down</source>
-        <translation>Bild ab</translation>
-    </message>
-    <message>
         <source>with Shift</source>
         <translation>mit Umschalt</translation>
     </message>
@@ -12643,10 +12646,6 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>Finish</source>
         <translation>Abschließen</translation>
-    </message>
-    <message>
-        <source>Backspace</source>
-        <translation>Rückschritt</translation>
     </message>
     <message>
         <source>Take the last corner back</source>
