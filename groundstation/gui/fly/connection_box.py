@@ -55,7 +55,7 @@ class ConnectionBox(QWidget):
         self.autopilot.addItem("PX4", Autopilot.PX4)
         self._fields = QWidget()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Minimum)
-        self._fields.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self._fields.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Minimum)
         self._form = Form(self._fields)
         self._form.setContentsMargins(0, 0, 0, 0)
         self._form.addRow(self.tr("Vehicle"), self.kind)
