@@ -209,7 +209,7 @@ def test_theme_units_and_language_change_at_once_and_are_kept(application, desk)
 TOKENS = {
     **dict.fromkeys(("Left", "Right", "Up", "Down"), "Arrows"),
     **dict.fromkeys(("Return", "Enter"), "Enter"),
-    **{"Plus": "+", "Minus": "-", "Equal": "=", "PageUp": "Page up", "PageDown": "Page down", "Escape": "Esc"},
+    **{"Plus": "+", "Minus": "-", "Equal": "=", "PageUp": "PgUp", "PageDown": "PgDown", "Escape": "Esc"},
     **{"Delete": "Del", "Insert": "Ins"},
 }
 """What keys are called in the list of all, where it is not Qt's own name."""
