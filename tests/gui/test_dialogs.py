@@ -197,7 +197,7 @@ def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(applica
     desk.window.show_tab("mission")
     turn_until_idle(application, desk)
     trigger(desk.window, "Export mission files ...")
-    dialog = desk.window.findChild(ExportDialog)
+    dialog = next(each for each in desk.window.findChildren(ExportDialog) if each.isVisible())
     turn_until(application, lambda: dialog.prepared() is not None)
     with clicked(escape):
         press_in(dialog, "Write ...")
