@@ -12,34 +12,29 @@ from functools import partial
 
 import numpy as np
 
-from planning.catalogue import Profile, profile
+from planning.aircraft.catalogue import Profile, profile
+from planning.base.errors import InputError
+from planning.base.findings import Finding
+from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
+from planning.coverage.evaluate import DepthCount, coverage, depth
 from planning.coverage.model import exact_coverage
-from planning.errors import InputError
-from planning.evaluate import DepthCount, coverage, depth
-from planning.findings import Finding
-from planning.methods import method_named
-from planning.optimise.budget import best_flights, views_within_budget, with_fewer_views
-from planning.optimise.greedy import greedy, most_telling
-from planning.optimise.locked import locked_views
-from planning.optimise.problem import Goal, Optimiser, ViewProblem, nothing_to_see
-from planning.optimise.shortfall import OpenSection, open_sections
-from planning.optimise.spacing import merge_close_views
-from planning.plan import (
-    HistoryPoint,
-    Plan,
-    ViewpointArrays,
-    viewpoint_arrays,
-)
-from planning.plan_records import as_written, plan_records
-from planning.prepare import Prepared, prepare
-from planning.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
+from planning.motion.timing import motion_limits, round_trip_metric
+from planning.plan import HistoryPoint, Plan, ViewpointArrays, viewpoint_arrays
 from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, PlanRequest
 from planning.routing.flights import Flight, flight_times, plan_flights
 from planning.routing.legs import n_stops_within
 from planning.routing.roadmap import build_roadmap
-from planning.site import SiteModel
-from planning.space import free_space
-from planning.timing import motion_limits, round_trip_metric
+from planning.site.free_space import free_space
+from planning.site.records import SiteModel
+from planning.viewpoints.budget import best_flights, views_within_budget, with_fewer_views
+from planning.viewpoints.greedy import greedy, most_telling
+from planning.viewpoints.locked import locked_views
+from planning.viewpoints.methods import method_named
+from planning.viewpoints.plan_records import as_written, plan_records
+from planning.viewpoints.prepare import Prepared, prepare
+from planning.viewpoints.problem import Goal, Optimiser, ViewProblem, nothing_to_see
+from planning.viewpoints.shortfall import OpenSection, open_sections
+from planning.viewpoints.spacing import merge_close_views
 
 REACHABILITY_SHARE, ROUTING_SHARE = 0.3, 0.3
 """Parts of the time budget: what proofs of what can be reached may take at most, and what is kept for routing."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from planning.catalogue import DEFAULT_PROFILE
+from planning.aircraft.catalogue import DEFAULT_PROFILE
 from planning.plan import Constraints, FlightRules, Viewpoint
 
 Precision = Literal["f32", "f64"]
@@ -62,7 +62,7 @@ class PlanRequest:
     n_batteries
         Best coverage within so many sorties.
     profile_id
-        Aircraft and camera: see `planning.catalogue.profile`.
+        Aircraft and camera: see `planning.aircraft.catalogue.profile`.
     time_budget_s
         Wall time for the whole plan; the search ends earlier when it finds nothing more.
     locked

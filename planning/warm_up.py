@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from planning import smooth_path
-from planning.catalogue import DEFAULT_PROFILE, profile
+from planning.aircraft.catalogue import DEFAULT_PROFILE, profile
 from planning.checks import check_plan
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import PanelFrames, SectionGrid, panel_frames
 from planning.insight import warm_up as insight
+from planning.motion import smooth_path
 from planning.plan import Constraints, ViewpointArrays
 from planning.planner import plan_flight
 from planning.request import GreedyParameters, PlanRequest, Precision
 from planning.routing import lower_bound, orienteering, sorties, tour
-from planning.scenes import SCENES
-from planning.site import panel_corners
+from planning.site.bundled import SCENES
+from planning.site.records import panel_corners
 
 LONG_ENOUGH_S = 60.0
 """Compiling counts as planning time: with less, searches would be stopped before their kernels ran."""

@@ -7,34 +7,34 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from planning.effects import Wish
-from reconstruction.baselines.cube_map import CubeMap
-from reconstruction.baselines.ref_gs import SphMip
-from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
+from planning.base.effects import Wish
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels
-from reconstruction.modelling.dssim_kernel import dissimilarity
+from reconstruction.light.cube.map import CubeMap
+from reconstruction.light.directions.environment_map import EnvironmentMap
+from reconstruction.light.directions.harmonics import HarmonicTexture
+from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.glass_light import GlassLight
+from reconstruction.light.glass_rays import rays_of_pixels
+from reconstruction.light.grid.grid_box import GridBox
+from reconstruction.light.grid.radiance_grid import RadianceGrid
+from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.light.ray_table import RayTable
+from reconstruction.light.reflective_panels import ReflectivePanels
+from reconstruction.metrics.overlaps import pixel_overlaps
+from reconstruction.metrics.raster import index_image
+from reconstruction.panels.search.segment import segment_rectified
 from reconstruction.photos.sharpness import sharpness
-from reconstruction.reflections.environment_map import EnvironmentMap
-from reconstruction.reflections.glass_learned import GlassLearned
-from reconstruction.reflections.glass_light import GlassLight
-from reconstruction.reflections.glass_rays import rays_of_pixels
-from reconstruction.reflections.grid_box import GridBox
-from reconstruction.reflections.harmonics import HarmonicTexture
-from reconstruction.reflections.photo_set import PanelPlanes
-from reconstruction.reflections.radiance_grid import RadianceGrid
-from reconstruction.reflections.ray_table import RayTable
-from reconstruction.reflections.reflective_panels import ReflectivePanels
-from reconstruction.scenes.bundled import bundled_scene
-from reconstruction.scenes.effect_names import NEAR_FIELD
-from reconstruction.scenes.renderer import Renderer, RenderSettings
-from reconstruction.scores.overlaps import pixel_overlaps
-from reconstruction.scores.raster import index_image
-from reconstruction.segmentation.segment import segment_rectified
-from reconstruction.splatting.detail_tree import FEWEST, detail_tree
-from reconstruction.splatting.rasteriser import rasterise
-from reconstruction.splatting.sky import Sky
-from reconstruction.splatting.splats import Splats
-from reconstruction.splatting.views import View
+from reconstruction.scenes.effects.names import NEAR_FIELD
+from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.world.bundled import bundled_scene
+from reconstruction.splats.detail_tree import FEWEST, detail_tree
+from reconstruction.splats.rasterising.rasteriser import rasterise
+from reconstruction.splats.rasterising.views import View
+from reconstruction.splats.sky import Sky
+from reconstruction.splats.splats import Splats
+from reconstruction.training.losses.dssim_kernel import dissimilarity
+from reconstruction.training.methods.ref_gs import SphMip
 
 
 def compile_kernels() -> None:

@@ -92,21 +92,22 @@ READS = re.compile(
 
 READERS = {
     # Where files of others are opened, and texts parsed within bounds.
-    "planning/files.py", "planning/json_file.py", "planning/mesh.py",
+    "planning/base/files.py", "planning/base/json_file.py", "planning/geo/mesh.py",
     # Behind that: what was read or looked at there is given to the library of its kind.
-    "planning/site_import/ifc_content.py", "reconstruction/records/ifc_extract.py", "missions/safe_files.py",
-    "reconstruction/exports/sog_reading.py", "reconstruction/exports/sog_images.py", "reconstruction/photos/decode.py",
-    "reconstruction/scores/lpips_weights.py", "reconstruction/modelling/checkpoints.py",
-    "reconstruction/objects/store.py", "reconstruction/splatting/ply_file.py",
+    "planning/site/importing/ifc_content.py", "reconstruction/records/ifc/extract.py", "missions/mission/safe_files.py",
+    "reconstruction/exports/sog/reading.py", "reconstruction/exports/sog/images.py", "reconstruction/photos/decode.py",
+    "reconstruction/metrics/lpips_weights.py", "reconstruction/training/checkpoints.py",
+    "reconstruction/objects/store.py", "reconstruction/splats/ply_file.py",
     # SQLite looks at its files itself, and texts of one cell are short.
-    "reconstruction/records/database.py", "reconstruction/records/schema.py", "groundstation/services/map_tiles.py",
-    "reconstruction/records/book.py", "reconstruction/records/rows.py", "reconstruction/records/csv_cells.py",
+    "reconstruction/records/database.py", "reconstruction/records/schema.py", "groundstation/services/map/tiles.py",
+    "reconstruction/records/book.py", "reconstruction/records/rows.py", "reconstruction/records/csv/cells.py",
     # Files of our own: in the package, or made by a process of ours a moment ago; the system's; texts of our own.
-    "planning/geodesy/geoid.py", "planning/geodesy/make_egm96_grid.py", "planning/step_file.py",
-    "planning/site_import/ifc_worker.py", "reconstruction/records/ifc_process.py", "reconstruction/exports/web.py",
-    "reconstruction/scenes/cluster_photographers.py", "reconstruction/scenes/run_record.py",
-    "reconstruction/objects/organise.py", "groundstation/services/reconstruct_choices.py",
-    "groundstation/services/flying_sitl.py", "groundstation/cli/tradeoff_train.py",
+    "planning/geo/geoid.py", "planning/geo/make_egm96_grid.py", "planning/base/step_physical_file.py",
+    "planning/site/importing/ifc_file.py", "reconstruction/records/ifc/process.py",
+    "reconstruction/exports/web/page.py",
+    "reconstruction/scenes/photos/cluster_workers.py", "reconstruction/scenes/photos/run_record.py",
+    "reconstruction/objects/organise.py", "groundstation/services/reconstruct/choices.py",
+    "groundstation/services/fly/sitl.py", "groundstation/cli/tradeoff_train.py",
 }  # fmt: skip
 
 
@@ -117,7 +118,7 @@ def test_files_of_others_are_opened_in_one_place():
         for path in (ROOT / folder).rglob("*.py")
         if READS.search(path.read_text("utf-8"))
     }
-    assert found - READERS == set(), "read them by planning.files: read_given, open_given or check_given"
+    assert found - READERS == set(), "read them by planning.base.files: read_given, open_given or check_given"
     assert READERS - found == set(), "these read nothing any more"
 
 
@@ -189,7 +190,7 @@ def test_dialogs_of_qt_are_asked_in_one_place():
         if path.name != "questions.py" or path.parent.name != "gui"
         for line in calls_of(path.read_text(), asking)
     ]
-    assert found == [], "ask by the functions of groundstation.gui.questions: they give a bool or a path"
+    assert found == [], "ask by the functions of groundstation.gui.widgets.questions: they give a bool or a path"
 
 
 def test_no_test_answers_in_place_of_a_dialog():

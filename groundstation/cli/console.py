@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from groundstation.services.jobs import JobContext, JobEvent, JobProgress, JobRunner
-from planning.findings import Finding, Severity
+from groundstation.services.jobs.runner import JobContext, JobEvent, JobProgress, JobRunner
+from planning.base.findings import Finding, Severity
 
 if TYPE_CHECKING:
     from missions.flight.outcome import FlightReport
@@ -95,7 +95,7 @@ def print_findings(findings: Iterable[Finding]) -> None:
 
 def verdict_text(findings: Iterable[Finding]) -> str:
     """Whether a plan is ready to fly, in words."""
-    from groundstation.services.readiness import Readiness, readiness_of
+    from groundstation.services.mission.readiness import Readiness, readiness_of
 
     findings = tuple(findings)
     match readiness_of(findings):

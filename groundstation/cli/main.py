@@ -19,7 +19,7 @@ from typing import Any, NoReturn
 from groundstation.cli import commands
 from groundstation.cli.console import program_name
 from groundstation.cli.options import new_folder
-from planning.errors import GroundStationError, OperationCancelled, shortened
+from planning.base.errors import GroundStationError, OperationCancelled, shortened
 
 EXIT_DONE, EXIT_FAILED, EXIT_USAGE = 0, 1, 2
 

@@ -9,12 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from planning.errors import InputError
-from planning.folders import PLAIN_ENDINGS, check_ending, check_folder_name
+from planning.base.errors import InputError
+from planning.base.folders import PLAIN_ENDINGS, check_ending, check_folder_name
 
 if TYPE_CHECKING:
-    from groundstation.services.readiness import FlightDay
-    from planning.effects import Wish
+    from groundstation.services.mission.readiness import FlightDay
+    from planning.base.effects import Wish
 
 OPTIONS = {
     "views": "--views",
@@ -116,7 +116,7 @@ class _Profile(argparse.Action):
 
 
 def _print_profiles() -> None:
-    from planning.catalogue import profiles
+    from planning.aircraft.catalogue import profiles
 
     for identifier, profile in profiles().items():
         aircraft, camera = profile.aircraft, profile.camera
@@ -185,7 +185,7 @@ def flight_day(options: argparse.Namespace) -> FlightDay:
     """
     from datetime import datetime
 
-    from groundstation.services.readiness import FlightDay
+    from groundstation.services.mission.readiness import FlightDay
 
     at = None
     if options.at is not None:

@@ -6,10 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.photo_poses import RefinedOutcome, RefineWish
+    from groundstation.services.photos.poses import RefinedOutcome, RefineWish
 
 
 def add_pose_arguments(parser: Any) -> None:
@@ -41,7 +41,7 @@ def refine_wish(options: argparse.Namespace) -> RefineWish | None:
         An option that belongs to `--refine` stands without it, or its value is out of range.
     """
     from groundstation.cli.options import in_words_of_options
-    from groundstation.services.photo_poses import RefineWish
+    from groundstation.services.photos.poses import RefineWish
 
     if options.refine:
         with in_words_of_options():

@@ -31,7 +31,7 @@ def add_arguments(parser: Any) -> None:
 def run_model(options: argparse.Namespace) -> int:
     """Score and print; returns the exit status."""
     from groundstation.cli.console import counted, print_json, run_job
-    from groundstation.services.model_scoring import score_files, score_summary
+    from groundstation.services.model.scoring import score_files, score_summary
 
     scored = run_job(
         "score",

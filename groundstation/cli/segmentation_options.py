@@ -6,10 +6,10 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from reconstruction.segmentation.parameters import SegmentationParameters
+    from reconstruction.panels.search.parameters import SegmentationParameters
 
 OPTIONS = {"long_side_px": "--long-side", "n_samples": "--samples", "detector": "--detector"}
 """Options by the settings that they change."""
@@ -23,7 +23,7 @@ def parameters_of(options: argparse.Namespace) -> SegmentationParameters:
     InputError
         The file cannot be read, or a value is out of range.
     """
-    from reconstruction.segmentation.parameters import SegmentationParameters, read_parameters
+    from reconstruction.panels.search.parameters import SegmentationParameters, read_parameters
 
     base = SegmentationParameters() if options.parameters is None else read_parameters(options.parameters)
     typed = {name: getattr(options, option[2:].replace("-", "_")) for name, option in OPTIONS.items()}

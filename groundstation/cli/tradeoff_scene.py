@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.lists import counts, words
 from groundstation.cli.options import add_profile_argument, checked_seed, effect_wishes, in_words_of_options, number
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.scene_tradeoff import SceneTradeoff
-    from groundstation.services.scene_views import SceneWish
-    from reconstruction.scores.scene_downstream import EffectWorth
-    from reconstruction.scores.scene_tradeoff import SceneVariants
+    from groundstation.services.scenes.tradeoff import SceneTradeoff
+    from groundstation.services.scenes.views import SceneWish
+    from reconstruction.tradeoff.scene_downstream import EffectWorth
+    from reconstruction.tradeoff.scene_tradeoff import SceneVariants
 
 EPILOG = """Every way to render is compared with the truth: the same photos by Mitsuba with every effect and
 --truth-rays rays a pixel (--truth-rays 0: by the embedded renderer with 64). Rays, sizes and effects are turned one
@@ -82,9 +82,9 @@ def add_arguments(parser: Any) -> None:
 def run_scene(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.scene_tradeoff import scene_tradeoff
-    from reconstruction.scores.scene_downstream import worth_rows
-    from reconstruction.scores.scene_tradeoff import scene_rows, truth_error
+    from groundstation.services.scenes.tradeoff import scene_tradeoff
+    from reconstruction.tradeoff.scene_downstream import worth_rows
+    from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
 
     wish, variants = _wish(options), _variants(options)
     if options.truth_rays < 0:
@@ -121,9 +121,9 @@ def run_scene(options: argparse.Namespace) -> int:
 
 
 def _wish(options: argparse.Namespace) -> SceneWish:
-    from groundstation.services.scene_views import SceneWish
-    from reconstruction.scenes.effect_names import EFFECTS
-    from reconstruction.scenes.renderer import RenderSettings
+    from groundstation.services.scenes.views import SceneWish
+    from reconstruction.scenes.effects.names import EFFECTS
+    from reconstruction.scenes.photos.renderer import RenderSettings
 
     wishes = effect_wishes(options.effects, EFFECTS)
     with in_words_of_options():
@@ -140,7 +140,7 @@ def _wish(options: argparse.Namespace) -> SceneWish:
 
 
 def _variants(options: argparse.Namespace) -> SceneVariants:
-    from reconstruction.scores.scene_tradeoff import OF_A_PHOTO, SceneVariants
+    from reconstruction.tradeoff.scene_tradeoff import OF_A_PHOTO, SceneVariants
 
     turned = options.turn
     by_option = {name.lower().replace(" ", "-"): name for name in OF_A_PHOTO}
@@ -155,7 +155,7 @@ def _variants(options: argparse.Namespace) -> SceneVariants:
 
 def _print(made: SceneTradeoff) -> None:
     from missions.simulator.build import effects_table
-    from reconstruction.scores.scene_tradeoff import scene_rows, truth_error
+    from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
 
     own = truth_error(made.truth)
     accuracy = f", itself good to {255.0 * own:.2f} grey levels" if own else ""
@@ -177,7 +177,7 @@ def _print(made: SceneTradeoff) -> None:
 
 
 def _print_worths(worths: Sequence[EffectWorth]) -> None:
-    from reconstruction.scores.scene_downstream import worth_rows
+    from reconstruction.tradeoff.scene_downstream import worth_rows
 
     print("  reflections learned from photos, scored on glass of unseen views that have all that the scene calls for:")
     print(f"  {'photos':<36}{'rendered in':>12}{'PSNR':>10}{'lost':>9}{'worst':>10}{'on their own kind':>20}")

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.lists import above_zero, count
-from planning.errors import InputError
-from reconstruction.modelling.methods import DEFAULT_METHOD, METHODS
-from reconstruction.modelling.preset_names import PRESETS
+from planning.base.errors import InputError
+from reconstruction.training.methods.registry import DEFAULT_METHOD, METHODS
+from reconstruction.training.names import PRESETS
 
 DEFAULT_SECONDS = 60.0
 
@@ -26,7 +26,7 @@ DEFAULT_KNOBS = (
 KNOB_LINES = "\n".join(f"  --vary {knob}" for knob in DEFAULT_KNOBS)
 
 EPILOG = f"""Every training has the same time, and is scored on the views that were held out. Any setting of a training
-(reconstruction/modelling/config.py) can be turned, inner ones with dots. Without --vary these are:
+(reconstruction/training/config.py) can be turned, inner ones with dots. Without --vary these are:
 {KNOB_LINES}
 
 examples:
@@ -53,9 +53,9 @@ def run_train(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
     from groundstation.cli.options import checked_seed
-    from groundstation.services.model_training import TrainWish
-    from groundstation.services.train_tradeoff import train_tradeoff
-    from reconstruction.modelling.tradeoff import trial_rows
+    from groundstation.services.reconstruct.tradeoff import train_tradeoff
+    from groundstation.services.reconstruct.training import TrainWish
+    from reconstruction.tradeoff.train_tradeoff import trial_rows
 
     seconds = options.seconds or (DEFAULT_SECONDS if options.iterations is None else None)
     wish = TrainWish(

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from groundstation.gui.virtual_screen import has_screen, start_virtual_screen
-from planning.errors import InputError
+from groundstation.gui.screenshots.virtual_screen import has_screen, start_virtual_screen
+from planning.base.errors import InputError
 
 
 def run_window(path: Path | None = None) -> int:
@@ -32,7 +32,7 @@ def run_window(path: Path | None = None) -> int:
     from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QApplication
 
-    from groundstation.gui.desk import Desk
+    from groundstation.gui.window.project_controller import Desk
 
     application = QApplication.instance() or QApplication(sys.argv[:1])
     assert isinstance(application, QApplication)
@@ -56,7 +56,7 @@ def take_pictures(folder: Path, site: Path | None) -> int:
     """
     if not has_screen():
         start_virtual_screen()
-    from groundstation.gui.screenshots import take_screenshots
+    from groundstation.gui.screenshots.window import take_screenshots
 
     n_pictures = take_screenshots(folder, site)
     sys.stdout.write(f"{folder}: {n_pictures} pictures\n")

@@ -5,18 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from groundstation.services.flying import FlightWish, Flown, fly_files
-from groundstation.services.missions import SUFFIXES, export_plan
-from groundstation.services.planning import plan_site
-from groundstation.services.preflight import preflight
-from planning.errors import InputError
-from planning.findings import Finding, is_flyable
-from planning.plan_file import read_plan
+from groundstation.services.fly.flying import FlightWish, Flown, fly_files
+from groundstation.services.mission.export import SUFFIXES, export_plan
+from groundstation.services.mission.preflight import preflight
+from groundstation.services.plan.planning import plan_site
+from planning.base.errors import InputError
+from planning.base.findings import Finding, is_flyable
+from planning.base.progress import QUIET, Monitor
+from planning.plan import read_plan
 from planning.planner import Planned
-from planning.progress import QUIET, Monitor
 from planning.request import PlanRequest
-from planning.scenes import write_scene
-from planning.site_file import read_site
+from planning.site.bundled import write_scene
+from planning.site.file import read_site
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,14 +16,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 
-from groundstation.services.units import (
-    UnitSystem,
-    area_unit,
-    distance_unit,
-    length_unit,
-    sampling_unit,
-    speed_unit,
-)
+from groundstation.services.units import UnitSystem, area_unit, distance_unit, length_unit, sampling_unit, speed_unit
 
 Translate = Callable[[str], str]
 """A template in the user's language; the template itself where there is no translation."""

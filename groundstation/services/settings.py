@@ -13,12 +13,12 @@ from typing import Any
 
 import msgspec
 
-from groundstation.services.kept import Tell, or_first
+from groundstation.services.preferences import Tell, or_first
 from groundstation.services.units import UnitSystem
-from planning.catalogue import DEFAULT_PROFILE
-from planning.errors import InputError
-from planning.files import real_path
-from planning.json_file import read_toml, to_record, write_atomically
+from planning.aircraft.catalogue import DEFAULT_PROFILE
+from planning.base.errors import InputError
+from planning.base.files import real_path
+from planning.base.json_file import read_toml, to_record, write_atomically
 
 CONFIG_VARIABLE = "REFLIGHT_CONFIG_DIR"
 """Environment variable that names the folder for settings and data, for tests and for a program on a stick."""
@@ -65,7 +65,7 @@ class Settings:
     map_tiles
         Path of an MBTiles file for maps without network; empty for none.
     default_profile
-        Aircraft and camera that a new plan starts with: see `planning.catalogue.profile`.
+        Aircraft and camera that a new plan starts with: see `planning.aircraft.catalogue.profile`.
     window_layouts
         Layout of the window as text, by its size ("1280x720").
     """

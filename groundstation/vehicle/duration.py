@@ -19,11 +19,11 @@ from groundstation.vehicle.setup import landing, leg_late_s
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem
 from missions.mavlink.px4_motion import px4_leg_s, px4_turn_s
-from missions.model import Mission
-from planning.frames import Vec3, wrap_heading_deg
-from planning.geodesy.enu import enu_from_geodetic
+from missions.mission.model import Mission
+from planning.geo.enu import enu_from_geodetic
+from planning.geo.frames import Vec3, wrap_heading_deg
+from planning.motion.timing import MotionLimits, leg_times_s, motion_limits
 from planning.plan import Plan
-from planning.timing import MotionLimits, leg_times_s, motion_limits
 
 
 class TimedOrders(Protocol):

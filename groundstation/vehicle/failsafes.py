@@ -18,8 +18,8 @@ from groundstation.vehicle.preflight import PreflightCheck, Verdict
 from groundstation.vehicle.surroundings import Surroundings
 from groundstation.vehicle.watch import DISTANCE_TOLERANCE_M
 from missions.mavlink.autopilots import Autopilot
-from planning.frames import Vec3
-from planning.rally import return_way
+from planning.geo.frames import Vec3
+from planning.routing.rally import return_way
 
 NAMES = {
     Autopilot.ARDUPILOT: (

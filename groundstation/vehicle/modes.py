@@ -9,7 +9,7 @@ from pathlib import Path
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import CommandLong
 from missions.mavlink.mode_numbers import mode_numbers, px4_main_and_sub
-from planning.json_file import read_toml
+from planning.base.json_file import read_toml
 
 DATA_PATH = Path(__file__).parent / "data" / "vehicle.toml"
 

@@ -16,14 +16,14 @@ from missions.mavlink.items import MissionItem, Polygon, mission_items
 from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import to_wire
-from missions.model import GeoPoint, HeightReference, Mission
-from planning.errors import InfeasibleError, MissionError
-from planning.frames import Vec3
+from missions.mission.model import GeoPoint, HeightReference, Mission
+from planning.base.errors import InfeasibleError, MissionError
+from planning.geo.frames import Vec3
 from planning.insight.flight_profile import LowFlight, low_flight
 from planning.plan import Plan
-from planning.rally import return_height
-from planning.site import Site, SiteModel
-from planning.space import TAKEOFF_CLIMB_M, unchecked_space
+from planning.routing.rally import return_height
+from planning.site.free_space import TAKEOFF_CLIMB_M, unchecked_space
+from planning.site.records import Site, SiteModel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,7 +110,7 @@ def rally_messages(orders: SortieOrders, autopilot: Autopilot) -> tuple[MissionI
 
 
 def sortie_orders(plan: Plan, site_model: SiteModel, mission: Mission, raised_m: float = 0.0) -> SortieOrders:
-    """Orders for one of a plan's missions (`missions.build`).
+    """Orders for one of a plan's missions (`missions.mission.build`).
 
     Parameters
     ----------

@@ -11,12 +11,12 @@ from groundstation.vehicle.orders import SortieOrders
 from groundstation.vehicle.setup import ParameterChange, change_text
 from groundstation.vehicle.state import VehicleState
 from groundstation.vehicle.watch import FIX_3D, RTK_FLOAT, STALE_S
-from missions.heights import altitude_amsl_m as home_altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.transfer.exchange import MissionType
-from planning.frames import Vec3
+from missions.mission.model import altitude_amsl_m as home_altitude_amsl_m
+from planning.geo.frames import Vec3
 from planning.insight.flight_profile import LOW_M
-from planning.site import MIN_HEIGHT_ABOVE_GROUND_M
+from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
 
 HOME_M = 3.0
 """How far from the planned home the aircraft may stand: it climbs where it is, and the plan's column has that room."""

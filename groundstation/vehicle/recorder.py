@@ -10,8 +10,8 @@ from missions.flight.logs.raw import RawLog
 from missions.flight.logs.telemetry import TelemetryReader
 from missions.flight.record import FlightRecord
 from missions.mavlink.messages import Address, Received
-from planning.errors import InputError
-from planning.site import Site
+from planning.base.errors import InputError
+from planning.site.records import Site
 
 
 class Recorder:

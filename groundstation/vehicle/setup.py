@@ -13,8 +13,8 @@ from pathlib import Path
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address, CommandLong
-from missions.model import Mission
-from planning.json_file import read_toml
+from missions.mission.model import Mission
+from planning.base.json_file import read_toml
 
 DATA_PATH = Path(__file__).parent / "data" / "setup.toml"
 

@@ -10,7 +10,7 @@ from missions.flight.logs.photo_clock import NEARBY_S, PhotoClock
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
-from planning.frames import Vec3
+from planning.geo.frames import Vec3
 
 Value = TypeVar("Value")
 

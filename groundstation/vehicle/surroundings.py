@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.frames import Vec3
+from planning.geo.frames import Vec3
 from planning.plan import Aircraft, FlightRules, Plan
-from planning.site import SiteModel
-from planning.space import FreeSpace, unchecked_space
+from planning.site.free_space import FreeSpace, unchecked_space
+from planning.site.records import SiteModel
 
 Array = NDArray[np.float64]
 

@@ -31,9 +31,8 @@ from missions.flight.record import TakenPhoto
 from missions.mavlink import messages
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.mode_numbers import mode_name
-from planning.frames import Vec3, wrap_heading_deg
-from planning.geodesy.enu import enu_from_geodetic, geodetic_from_enu
-from planning.site import Origin
+from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
+from planning.geo.frames import Origin, Vec3, wrap_heading_deg
 
 MAV_COMP_ID_AUTOPILOT1 = 1
 MAV_TYPE_GCS = 6

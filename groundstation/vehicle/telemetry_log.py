@@ -13,7 +13,7 @@ import struct
 from pathlib import Path
 from typing import BinaryIO
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 RETRY_S = 5.0
 

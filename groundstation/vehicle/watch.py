@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from groundstation.vehicle.modes import MISSION_MODE
 from groundstation.vehicle.state import LINK_LOST_S, Landed, Motion, VehicleState
 from groundstation.vehicle.surroundings import Surroundings
-from planning.findings import Severity
-from planning.frames import Vec3
+from planning.base.findings import Severity
+from planning.geo.frames import Vec3
 
 HOLD_S = 3.0
 """Shortest time for which a warning is shown."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from planning.errors import MissionError
-from planning.json_file import read_toml
+from planning.base.errors import MissionError
+from planning.base.json_file import read_toml
 
 DATA_PATH = Path(__file__).parents[1] / "data" / "dji.toml"
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from missions.dji.wpml import WpmlDocument, parse_wpml
-from missions.safe_files import open_archive, read_limited, read_member
-from planning.errors import MissionError
+from missions.mission.safe_files import open_archive, read_limited, read_member
+from planning.base.errors import MissionError
 
 TEMPLATE, WAYLINES = "template.kml", "waylines.wpml"
 

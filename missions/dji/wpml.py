@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
-from planning.errors import MissionError
-from planning.files import HostileXml, parse_xml
+from planning.base.errors import MissionError
+from planning.base.files import HostileXml, parse_xml
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

@@ -14,12 +14,12 @@ import numpy as np
 
 from missions.flight.outcome import FlightReport
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
-from planning.effects import Decision
-from planning.errors import InputError
-from planning.json_file import expect_format, read_json, to_record, write_atomically
-from planning.plan import Plan
-from planning.plan_file import plan_to_json
-from planning.site import Origin, SiteModel
+from planning.base.effects import Decision
+from planning.base.errors import InputError
+from planning.base.json_file import expect_format, read_json, to_record, write_atomically
+from planning.geo.frames import Origin
+from planning.plan import Plan, plan_to_json
+from planning.site.records import SiteModel
 
 FLIGHT_FORMAT = "reflight-flight/1"
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from missions.flight.lost_reports import is_unheard_between, n_lost, n_lost_after, n_lost_before, n_lost_between
 from missions.flight.outcome import Reason
 from missions.flight.record import FlightRecord, TakenPhoto
-from planning.frames import heading_difference_rad
+from planning.geo.frames import heading_difference_rad
 from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 
 Floats = NDArray[np.float64]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from missions.flight.record import FlightRecord, Track
-from planning.frames import Vec3
+from planning.geo.frames import Vec3
 
 Array = NDArray[np.float64]
 

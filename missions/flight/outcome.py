@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from planning.findings import Finding
-from planning.frames import Vec3
+from planning.base.findings import Finding
+from planning.geo.frames import Vec3
 
 
 class Reason(StrEnum):

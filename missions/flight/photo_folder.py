@@ -16,19 +16,13 @@ from numpy.typing import NDArray
 
 from missions.flight.logs.flights import LogFlights
 from missions.flight.record import FlightRecord, TakenPhoto, Track
-from planning.errors import InputError
-from planning.findings import Finding, Severity
-from planning.photo_files.folder import clock_s, in_order, read_photos
-from planning.photo_files.places import (
-    PhotoHeights,
-    absolute_height_m,
-    photo_places,
-    photos_near,
-    receiver_findings,
-)
-from planning.photo_files.record import PhotoMetadata
-from planning.progress import QUIET, Monitor
-from planning.site import Site
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor
+from planning.photos.folder import clock_s, in_order, read_photos
+from planning.photos.places import PhotoHeights, absolute_height_m, photo_places, photos_near, receiver_findings
+from planning.photos.record import PhotoMetadata
+from planning.site.records import Site
 
 Floats = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from missions.flight.matching import Matching, PhotoRef
 from missions.flight.record import FlightRecord, TakenPhoto
-from planning.frames import wrap_heading_deg
+from planning.geo.frames import wrap_heading_deg
 from planning.plan import Plan, Viewpoint
 
 

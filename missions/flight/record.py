@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.effects import Decision
-from planning.frames import Vec3
+from planning.base.effects import Decision
+from planning.geo.frames import Vec3
 
 Floats = NDArray[np.float64]
 

@@ -20,14 +20,14 @@ from missions.flight.outcome import Ending, FlightReport, SortieOutcome, Summary
 from missions.flight.poses import taken_poses
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.flight.report_rules import DEFAULT_LIMITS, Limits, flight_findings, left_in_air_m
+from planning.base.progress import QUIET, Monitor
 from planning.checks.case import Case
 from planning.checks.measures import pose_of
-from planning.evaluate import Sight, section_counts, sights
-from planning.frames import Vec3, wrap_heading_deg
-from planning.geometry.solids import Solids
+from planning.coverage.evaluate import Sight, section_counts, sights
+from planning.geo.frames import Vec3, wrap_heading_deg
+from planning.geo.solids import Solids
 from planning.plan import Plan, Viewpoint
-from planning.progress import QUIET, Monitor
-from planning.site import SiteModel
+from planning.site.records import SiteModel
 
 Floats = NDArray[np.float64]
 

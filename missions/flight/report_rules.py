@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from missions.flight.lost_reports import counts_by_more, n_lost
 from missions.flight.outcome import Ending, Reason, SortieOutcome, Summary, ViewOutcome
 from missions.flight.record import FlightRecord
+from planning.base.findings import Finding, Severity
 from planning.checks.case import Case, judge
-from planning.findings import Finding, Severity
 
 Floats = NDArray[np.float64]
 

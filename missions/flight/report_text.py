@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from missions.flight.outcome import FlightReport, Reason, SortieOutcome, Summary
-from planning.findings import Severity
+from planning.base.findings import Severity
 
 
 def report_to_json(report: FlightReport) -> dict[str, Any]:

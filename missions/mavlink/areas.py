@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.items import MissionItem, Polygon
-from missions.model import GeoPoint
-from planning.errors import MissionError
-from planning.geodesy.enu import geodetic_from_enu
-from planning.site import Site
+from missions.mission.model import GeoPoint
+from planning.base.errors import MissionError
+from planning.geo.enu import geodetic_from_enu
+from planning.site.records import Site
 
 MIN_CORNERS = 3
 

@@ -7,7 +7,7 @@ from enum import StrEnum
 from functools import cache
 from pathlib import Path
 
-from planning.json_file import read_toml
+from planning.base.json_file import read_toml
 
 DATA_PATH = Path(__file__).parents[1] / "data" / "mavlink.toml"
 

@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.legs import leg_lengths_m
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MavlinkFile, MissionItem
-from planning.findings import Finding, Severity
+from missions.mission.legs import leg_lengths_m
+from planning.base.findings import Finding, Severity
 
 ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
 

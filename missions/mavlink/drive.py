@@ -7,8 +7,8 @@ from typing import Protocol, TypeVar, runtime_checkable
 
 from missions.mavlink.link import Link
 from missions.mavlink.messages import Heartbeat, Message, Received
-from planning.errors import OperationCancelled
-from planning.progress import QUIET, Clock, Monitor
+from planning.base.errors import OperationCancelled
+from planning.base.progress import QUIET, Clock, Monitor
 
 SHORTEST_WAIT_S = 0.02
 """The control step of a simulated vehicle, whose clock stands still in any shorter wait."""

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from missions.mavlink.items import Polygon
-from missions.model import Mission
-from planning.findings import Finding, Severity
-from planning.site import NoFlyZone
+from missions.mission.model import Mission
+from planning.base.findings import Finding, Severity
+from planning.site.records import NoFlyZone
 
 FENCE_CLEARANCE_M = 2.0
 """ArduPilot's default FENCE_MARGIN: nearer than this to a fence the vehicle already brakes."""
@@ -21,7 +21,7 @@ def fence_polygons(mission: Mission, zones: tuple[NoFlyZone, ...]) -> tuple[tupl
     """Polygons of the zones that the mission keeps clear of at every height, and findings on the others."""
     import shapely
 
-    from planning.geodesy.enu import enu_from_geodetic, geodetic_from_enu
+    from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 
     points = [mission.takeoff, *(waypoint.position for waypoint in mission.waypoints)]
     local = enu_from_geodetic(

@@ -21,13 +21,12 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.heights import altitude_amsl_m
-from missions.legs import leg_lengths_m
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.px4_motion import px4_turn_s
-from missions.model import GeoPoint, HeightReference, Mission, Photo
-from planning.findings import Finding
-from planning.frames import wrap_heading_deg
+from missions.mission.legs import leg_lengths_m
+from missions.mission.model import GeoPoint, HeightReference, Mission, Photo, altitude_amsl_m
+from planning.base.findings import Finding
+from planning.geo.frames import wrap_heading_deg
 from planning.plan import ANGLE_DECIMALS
 
 NAN = math.nan

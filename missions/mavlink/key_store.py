@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from missions.mavlink.signing import KEY_BYTES, Signer
-from planning.errors import InputError
-from planning.files import FileLimit, read_given
-from planning.json_file import part_file
+from planning.base.errors import InputError
+from planning.base.files import FileLimit, read_given
+from planning.base.json_file import part_file
 
 SERVICE = "reflight"
 KEY_NAME = "mavlink-signing-key"

@@ -13,29 +13,322 @@ UDP knows no broken link: silence is all that can be noticed there.
 from __future__ import annotations
 
 import errno
+import itertools
 import queue
+import select
+import socket
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Hashable
+from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
-from missions.mavlink.channels import (
-    CONNECT_S,
-    Channel,
-    Chunk,
-    MemoryChannel,
-    SerialChannel,
-    TcpChannel,
-    TcpServerChannel,
-    UdpChannel,
-)
 from missions.mavlink.messages import Address, Message, Received
 from missions.mavlink.signing import Signer
 from missions.mavlink.wire import Counts, Decoder, Encoder
-from planning.errors import InputError, LinkError, LinkTimeout
-from planning.progress import Clock
+from planning.base.errors import InputError, LinkError, LinkTimeout
+from planning.base.progress import Clock
+
+# Bytes to and from the other end: datagrams, TCP, a serial line, or memory. The only place that opens sockets.
+
+CONNECT_S = 5.0
+READ_BYTES = 65536
+SERIAL_WAIT_S = 0.05
+"""Wait for the first byte; fixed, because pyserial sets the whole line up anew where it changes."""
+
+PEER_KEPT_S = 30.0
+"""A UDP sender is answered until it was silent for this long."""
+
+MAX_PEERS = 16
+
+UDP_BUFFER_BYTES = 4 << 20
+"""Datagrams that may wait to be read; the usual 0.2 MB are full within 0.1 s of a fast simulation: photos were lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Bytes that came in; a frame never goes on in bytes of another origin, nor of another datagram."""
+
+    origin: Hashable
+    data: bytes
+    is_datagram: bool = False
+
+
+class Channel(Protocol):
+    """Bytes to and from the other end."""
+
+    def read(self, timeout_s: float) -> Chunk | None:
+        """What came in; None where nothing came in time, or before the time is up."""
+
+    def write(self, data: bytes) -> None:
+        """Send one frame."""
+
+    def heard(self, origin: Hashable) -> None:
+        """Note that this origin speaks MAVLink."""
+
+    def close(self) -> None:
+        """Close it."""
+
+
+@dataclass(slots=True)
+class MemoryChannel:
+    """Bytes through two queues; None in one says that the other end was closed."""
+
+    inbox: queue.SimpleQueue[bytes | None]
+    outbox: queue.SimpleQueue[bytes | None]
+    _is_closed: bool = field(init=False, default=False)
+    _is_reading: bool = field(init=False, default=False)
+
+    def read(self, timeout_s: float) -> Chunk | None:
+        """Next frame."""
+        if self._is_closed:
+            raise LinkError("the link is closed")
+        self._is_reading = True
+        try:
+            data = self.inbox.get(timeout=timeout_s) if timeout_s > 0.0 else self.inbox.get_nowait()
+        except queue.Empty:
+            return None
+        finally:
+            self._is_reading = False
+        if data is None:
+            self._is_closed = True
+            raise LinkError("the other end closed the link")
+        return Chunk("memory", data, is_datagram=True)
+
+    def write(self, data: bytes) -> None:
+        """Hand a frame over."""
+        if self._is_closed:
+            raise LinkError("the link is closed")
+        self.outbox.put(data)
+
+    def heard(self, origin: Hashable) -> None:
+        """Nothing to note: there is one other end."""
+
+    def is_idle(self) -> bool:
+        """Whether all that came was read, and the next is being waited for; from any thread."""
+        return self._is_reading and self.inbox.empty()
+
+    def close(self) -> None:
+        """Tell the other end."""
+        if not self._is_closed:
+            self._is_closed = True
+            self.outbox.put(None)
+
+
+def _ready(sockets: list[socket.socket], timeout_s: float) -> list[socket.socket]:
+    """Those with something to read; raises LinkError where one was closed meanwhile."""
+    try:
+        return select.select(sockets, [], [], timeout_s)[0]
+    except (OSError, ValueError) as error:
+        raise LinkError("the link is closed") from error
+
+
+class UdpChannel:
+    """Datagrams: from anybody, answered to all that speak MAVLink, or from and to one address only."""
+
+    def __init__(self, bind_to: tuple[str, int] | None, send_to: tuple[str, int] | None, clock: Clock) -> None:
+        host, port = bind_to or send_to or ("", 0)
+        family, kind, protocol, _, where = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
+        self._socket = socket.socket(family, kind, protocol)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, UDP_BUFFER_BYTES)
+        self._clock = clock
+        self._is_connected = send_to is not None
+        self._peers: dict[Any, float] = {}
+        try:
+            if self._is_connected:
+                self._socket.connect(where)
+            else:
+                self._socket.bind(where)
+        except OSError:
+            self._socket.close()
+            raise
+
+    @property
+    def port(self) -> int:
+        """Own port."""
+        return int(self._socket.getsockname()[1])
+
+    def read(self, timeout_s: float) -> Chunk | None:
+        """Next datagram."""
+        if not _ready([self._socket], timeout_s):
+            return None
+        try:
+            data, origin = self._socket.recvfrom(READ_BYTES)
+        except (ConnectionRefusedError, ConnectionResetError):
+            # The other end does not listen yet, or not any more: UDP hears that, and can only go on.
+            return None
+        except OSError as error:
+            raise LinkError(f"the UDP link broke: {error.strerror or error}") from error
+        return Chunk(origin, data, is_datagram=True)
+
+    def write(self, data: bytes) -> None:
+        """Send to the address, or to all that were heard of late."""
+        try:
+            if self._is_connected:
+                self._socket.send(data)
+                return
+            oldest_s = self._clock() - PEER_KEPT_S
+            for peer, heard_s in list(self._peers.items()):
+                if heard_s >= oldest_s:
+                    self._socket.sendto(data, peer)
+                else:
+                    del self._peers[peer]
+        except (ConnectionRefusedError, ConnectionResetError):
+            return
+        except OSError as error:
+            raise LinkError(f"the UDP link broke: {error.strerror or error}") from error
+
+    def heard(self, origin: Hashable) -> None:
+        """Answer this one from now on."""
+        if origin in self._peers or len(self._peers) < MAX_PEERS:
+            self._peers[origin] = self._clock()
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._socket.close()
+
+
+class TcpChannel:
+    """One TCP connection to a server."""
+
+    def __init__(self, host: str, port: int) -> None:
+        self._socket = socket.create_connection((host, port), CONNECT_S)
+        self._name = f"{host}:{port}"
+        _prepare(self._socket)
+
+    def read(self, timeout_s: float) -> Chunk | None:
+        """Bytes as they come."""
+        if not _ready([self._socket], timeout_s):
+            return None
+        try:
+            data = self._socket.recv(READ_BYTES)
+        except OSError as error:
+            raise LinkError(f"the TCP link to {self._name} broke: {error.strerror or error}") from error
+        if not data:
+            raise LinkError(f"{self._name} closed the TCP link")
+        return Chunk("tcp", data)
+
+    def write(self, data: bytes) -> None:
+        """Send all of it."""
+        try:
+            self._socket.sendall(data)
+        except OSError as error:
+            raise LinkError(f"the TCP link to {self._name} broke: {error.strerror or error}") from error
+
+    def heard(self, origin: Hashable) -> None:
+        """Nothing to note: there is one other end."""
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._socket.close()
+
+
+class TcpServerChannel:
+    """TCP server: what is written goes to every client; clients come and go."""
+
+    def __init__(self, host: str, port: int) -> None:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+        self._server = socket.create_server((host, port), family=family)
+        self._clients: dict[socket.socket, int] = {}
+        self._numbers = itertools.count()
+
+    @property
+    def port(self) -> int:
+        """Own port."""
+        return int(self._server.getsockname()[1])
+
+    @property
+    def n_clients(self) -> int:
+        """Connections that are open."""
+        return len(self._clients)
+
+    def read(self, timeout_s: float) -> Chunk | None:
+        """Bytes of one client; takes in clients that knock."""
+        for ready in _ready([self._server, *self._clients], timeout_s):
+            if ready is self._server:
+                self._accept()
+                continue
+            try:
+                data = ready.recv(READ_BYTES)
+            except OSError:
+                data = b""
+            if data:
+                return Chunk(self._clients[ready], data)
+            del self._clients[ready]
+            ready.close()
+        return None
+
+    def _accept(self) -> None:
+        # A client may be gone before it is let in.
+        with suppress(OSError):
+            client, _ = self._server.accept()
+            _prepare(client)
+            self._clients[client] = next(self._numbers)
+
+    def write(self, data: bytes) -> None:
+        """Send to every client; one that is gone is dropped with the next `read`."""
+        for client in list(self._clients):
+            try:
+                client.sendall(data)
+            except OSError:
+                with suppress(OSError):
+                    client.shutdown(socket.SHUT_RDWR)
+
+    def heard(self, origin: Hashable) -> None:
+        """Nothing to note: every client is answered."""
+
+    def close(self) -> None:
+        """Close the server and all connections."""
+        for each in (*self._clients, self._server):
+            each.close()
+
+
+def _prepare(connection: socket.socket) -> None:
+    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    # A client that stopped reading must not hold up the sender for ever.
+    connection.settimeout(CONNECT_S)
+
+
+class SerialChannel:
+    """Serial line, through pyserial."""
+
+    def __init__(self, device: str, baud: int) -> None:
+        try:
+            import serial
+        except ImportError as error:
+            raise LinkError("serial links need the package pyserial; install it, or use a UDP or TCP link") from error
+        self._broken: type[Exception] = serial.SerialException
+        self._device = device
+        try:
+            self._port = serial.Serial(device, baud, timeout=SERIAL_WAIT_S, write_timeout=CONNECT_S)
+        except (serial.SerialException, ValueError) as error:
+            raise LinkError(f"the serial line {device} cannot be opened: {error}") from error
+
+    def read(self, timeout_s: float) -> Chunk | None:
+        """Bytes as they come; may come back before the time is up."""
+        try:
+            data = self._port.read(1) if timeout_s > 0.0 else b""
+            data += self._port.read(self._port.in_waiting)
+        except (self._broken, OSError, TypeError) as error:
+            raise LinkError(f"the serial line {self._device} broke: {error}") from error
+        return Chunk("serial", data) if data else None
+
+    def write(self, data: bytes) -> None:
+        """Send all of it."""
+        try:
+            self._port.write(data)
+        except (self._broken, OSError) as error:
+            raise LinkError(f"the serial line {self._device} broke: {error}") from error
+
+    def heard(self, origin: Hashable) -> None:
+        """Nothing to note: there is one other end."""
+
+    def close(self) -> None:
+        """Close the line."""
+        self._port.close()
+
 
 GROUND_STATION = Address(255, 190)
 """What QGroundControl and Mission Planner call themselves; 190 is MAV_COMP_ID_MISSIONPLANNER."""

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from missions.mavlink.autopilots import Autopilot
-from planning.json_file import read_toml
+from planning.base.json_file import read_toml
 
 DATA_PATH = Path(__file__).parents[1] / "data" / "modes.toml"
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-from missions.build import SAME_POINT_M
-from missions.heights import point_at_amsl
-from missions.legs import distance_m
 from missions.mavlink.items import MissionItem
-from missions.model import GeoPoint, ReadWaypoint
-from planning.errors import MissionError
-from planning.findings import Finding, Severity
+from missions.mission.build import SAME_POINT_M
+from missions.mission.legs import distance_m
+from missions.mission.model import GeoPoint, ReadWaypoint, point_at_amsl
+from planning.base.errors import MissionError
+from planning.base.findings import Finding, Severity
 
 ABSOLUTE_FRAMES, RELATIVE_FRAMES, TERRAIN_FRAMES = (0, 5), (3, 6), (10, 11)
 

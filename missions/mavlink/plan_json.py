@@ -8,14 +8,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from missions.heights import altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MavlinkFile, MissionItem, Params, Polygon, RallyPlace
 from missions.mavlink.places import home_of
-from missions.model import GeoPoint, HeightReference
-from planning.errors import InputError, MissionError
-from planning.findings import Finding
-from planning.json_file import read_json
+from missions.mission.model import GeoPoint, HeightReference, altitude_amsl_m
+from planning.base.errors import InputError, MissionError
+from planning.base.findings import Finding
+from planning.base.json_file import read_json
 
 PLAN_VERSION, MISSION_VERSION, FENCE_VERSION, RALLY_VERSION = 1, 2, 2, 2
 

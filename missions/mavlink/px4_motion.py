@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import math
 
-from planning.frames import Vec3
-from planning.timing import MotionLimits
+from planning.geo.frames import Vec3
+from planning.motion.timing import MotionLimits
 
 YAW_ACCELERATION_DEG_S2 = 20.0
 """PX4's default MPC_YAWRAUTO_ACC."""

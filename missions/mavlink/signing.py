@@ -15,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from missions.mavlink.messages import Address, SetupSigning
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 KEY_BYTES = 32
 SIGNATURE_BYTES = 13

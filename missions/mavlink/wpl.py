@@ -11,14 +11,13 @@ from pathlib import Path
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.heights import altitude_amsl_m
 from missions.mavlink.items import MavlinkFile, MissionItem
 from missions.mavlink.places import home_of
-from missions.model import GeoPoint
-from missions.safe_files import MAX_LINES, read_limited
-from planning.errors import MissionError
-from planning.files import check_lines
-from planning.findings import Finding, Severity
+from missions.mission.model import GeoPoint, altitude_amsl_m
+from missions.mission.safe_files import MAX_LINES, read_limited
+from planning.base.errors import MissionError
+from planning.base.files import check_lines
+from planning.base.findings import Finding, Severity
 
 N_COLUMNS = 12
 HOME_IN_LINE_0, NO_HOME = "110", "120"

@@ -9,17 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from missions.mavlink.autopilots import Autopilot, facts
-from missions.simulator.effects.barometer import BarometerDrift, DriftingBarometer
-from missions.simulator.effects.battery import BatterySag, SaggingPack
-from missions.simulator.effects.facts import effect_facts
-from missions.simulator.effects.gimbal import GimbalLag, LaggingGimbal
-from missions.simulator.effects.gnss import GnssNoise, NoisyReceiver, fix_of
-from missions.simulator.effects.link_loss import LinkLoss
-from missions.simulator.effects.multipath import GlassSky, Multipath, ReflectedReceiver
-from missions.simulator.effects.shutter import PhotoTiming
-from missions.simulator.effects.wind import GustyAir, Wind
-from missions.simulator.multirotor import Multirotor
-from missions.simulator.parts import (
+from missions.simulator.airframe.multirotor import Multirotor
+from missions.simulator.airframe.parts import (
     Air,
     ExactReceiver,
     Gimbal,
@@ -30,13 +21,22 @@ from missions.simulator.parts import (
     Receiver,
     SteadyPack,
 )
+from missions.simulator.effects.barometer import BarometerDrift, DriftingBarometer
+from missions.simulator.effects.battery import BatterySag, SaggingPack
+from missions.simulator.effects.facts import effect_facts
+from missions.simulator.effects.gimbal import GimbalLag, LaggingGimbal
+from missions.simulator.effects.gnss import GnssNoise, NoisyReceiver, fix_of
+from missions.simulator.effects.link_loss import LinkLoss
+from missions.simulator.effects.multipath import GlassSky, Multipath, ReflectedReceiver
+from missions.simulator.effects.shutter import PhotoTiming
+from missions.simulator.effects.wind import GustyAir, Wind
 from missions.simulator.scene import Conditions, FlightScene, flight_scene
-from planning.effects import Decision, Effect, Wish, decide
-from planning.errors import InputError
-from planning.frames import Vec3
+from planning.base.effects import Decision, Effect, Wish, decide
+from planning.base.errors import InputError
+from planning.geo.frames import Vec3
+from planning.motion.timing import motion_limits
 from planning.plan import FlightRules, Plan, Sortie
-from planning.site import SiteModel
-from planning.timing import motion_limits
+from planning.site.records import SiteModel
 
 EFFECTS: tuple[Effect[FlightScene], ...] = (
     Wind(),

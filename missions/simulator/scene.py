@@ -9,11 +9,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.frames import Vec3
-from planning.geometry.bvh import build_bvh, nearest_d2
+from planning.geo.bvh import build_bvh, nearest_d2
+from planning.geo.frames import Vec3
+from planning.motion.timing import photo_stop_s
 from planning.plan import Aircraft, Camera, FlightRules, Plan, Sortie, viewpoint_arrays
-from planning.site import SiteModel, panel_corners, panel_triangles, require_panels
-from planning.timing import photo_stop_s
+from planning.site.records import SiteModel, panel_corners, panel_triangles, require_panels
 
 Floats = NDArray[np.float64]
 

@@ -18,8 +18,8 @@ from missions.mavlink.link import GROUND_STATION, FrameObserver, Link
 from missions.mavlink.messages import Address, Message, Received
 from missions.mavlink.wire import Encoder
 from missions.simulator.vehicle import SimulatedVehicle
-from planning.errors import LinkError
-from planning.progress import Clock, Stop, never
+from planning.base.errors import LinkError
+from planning.base.progress import Clock, Stop, never
 
 MAX_SPEEDUP = 50.0
 LISTEN_S = 0.005

@@ -29,27 +29,26 @@ from missions.mavlink.messages import (
     Statustext,
     Timesync,
 )
-from missions.simulator.actions import Actions
-from missions.simulator.airframe import Airframe, Pose
-from missions.simulator.ardupilot_scheduler import ArduPilotScheduler
-from missions.simulator.camera import CameraControl
-from missions.simulator.commands import Commands
-from missions.simulator.failsafe import Failsafe
-from missions.simulator.gimbal import GimbalControl
-from missions.simulator.guidance import DEG, Guidance
-from missions.simulator.instruments import Instruments
-from missions.simulator.manoeuvres import CM, Manoeuvres
-from missions.simulator.mission_store import MissionStores, TransferMessage
-from missions.simulator.modes import FlightDeck, FlightModes
-from missions.simulator.parameters import ParameterTable
-from missions.simulator.place import Place
-from missions.simulator.profiles import vehicle_profile
-from missions.simulator.px4_scheduler import Px4Scheduler
-from missions.simulator.returning import Returning
-from missions.simulator.scheduler import Cockpit, MissionState, Scheduler
-from missions.simulator.telemetry import Telemetry
-from planning.frames import Vec3
-from planning.site import Origin
+from missions.simulator.airframe.state import Airframe, Pose
+from missions.simulator.autopilot.actions import Actions
+from missions.simulator.autopilot.ardupilot_scheduler import ArduPilotScheduler
+from missions.simulator.autopilot.camera import CameraControl
+from missions.simulator.autopilot.commands import Commands
+from missions.simulator.autopilot.failsafe import Failsafe
+from missions.simulator.autopilot.gimbal import GimbalControl
+from missions.simulator.autopilot.guidance import DEG, Guidance
+from missions.simulator.autopilot.instruments import Instruments
+from missions.simulator.autopilot.manoeuvres import CM, Manoeuvres
+from missions.simulator.autopilot.mission_store import MissionStores, TransferMessage
+from missions.simulator.autopilot.modes import FlightDeck, FlightModes
+from missions.simulator.autopilot.parameters import ParameterTable
+from missions.simulator.autopilot.place import Place
+from missions.simulator.autopilot.profiles import vehicle_profile
+from missions.simulator.autopilot.px4_scheduler import Px4Scheduler
+from missions.simulator.autopilot.returning import Returning
+from missions.simulator.autopilot.scheduler import Cockpit, MissionState, Scheduler
+from missions.simulator.autopilot.telemetry import Telemetry
+from planning.geo.frames import Origin, Vec3
 
 CONTROL_STEP_S = 0.02
 """How often the autopilot decides. ArduPilot's distance trigger was measured at 5.03 to 5.10 m for 5 m at 5 m/s: it

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missions.simulator.trajectory import plan_trajectory
+from missions.simulator.airframe.trajectory import plan_trajectory
 
 
 def compile_kernels() -> None:

@@ -6,13 +6,13 @@ not samples. The plan's own numbers (coverage, lengths, durations) are computed 
 
 from __future__ import annotations
 
+from planning.base.findings import Finding
+from planning.base.progress import QUIET, Monitor
 from planning.checks.case import Case
 from planning.checks.flight_rules import FLIGHT_RULES
 from planning.checks.geometry_rules import GEOMETRY_RULES
-from planning.findings import Finding
 from planning.plan import Plan
-from planning.progress import QUIET, Monitor
-from planning.site import SiteModel
+from planning.site.records import SiteModel
 
 RULES = (*GEOMETRY_RULES, *FLIGHT_RULES)
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.findings import Finding, Severity
 from planning.checks.measures import Measures, TimedFlight, flight_key, measure
 from planning.coverage.model import CoverageModel
-from planning.findings import Finding, Severity
 from planning.plan import Plan, Sortie
-from planning.prepare import coverage_model, decide_occlusion
-from planning.site import SiteModel
-from planning.space import FreeSpace, unchecked_space
+from planning.site.free_space import FreeSpace, unchecked_space
+from planning.site.records import SiteModel
+from planning.viewpoints.prepare import coverage_model, decide_occlusion
 
 Array = NDArray[np.float64]
 

@@ -8,16 +8,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from planning.base.errors import InfeasibleError
+from planning.base.findings import Finding, Severity
 from planning.checks.case import Array, Case, Rule, judge
 from planning.checks.measures import pose_of
-from planning.errors import InfeasibleError
-from planning.evaluate import nearest_views_m
-from planning.findings import Finding, Severity
+from planning.coverage.evaluate import nearest_views_m
+from planning.motion.sortie_timing import SAME_PLACE_M, photo_vertices
+from planning.motion.timing import motion_limits, photo_stop_s
 from planning.plan import Sortie, Viewpoint
-from planning.rally import RETURN_TOLERANCE_M, return_height
-from planning.site_file import is_planned_on
-from planning.sortie_timing import SAME_PLACE_M, photo_vertices
-from planning.timing import motion_limits, photo_stop_s
+from planning.routing.rally import RETURN_TOLERANCE_M, return_height
+from planning.site.file import is_planned_on
 
 LENGTH_TOLERANCE = 0.01
 DURATION_TOLERANCE = 0.05

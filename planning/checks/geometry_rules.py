@@ -7,13 +7,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from planning.base.findings import Finding, Severity
 from planning.checks.case import ROUNDING_M, Case, Rule, judge
 from planning.checks.measures import Gaps, legs_of
-from planning.findings import Finding, Severity
+from planning.motion.sortie_timing import SAME_PLACE_M, beside_column
 from planning.plan import Sortie, viewpoint_arrays
-from planning.rally import rally_findings
-from planning.site import MIN_HEIGHT_ABOVE_GROUND_M
-from planning.sortie_timing import SAME_PLACE_M, beside_column
+from planning.routing.rally import rally_findings
+from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
 
 MAX_ALTITUDE_M = 120.0
 """Height above ground that most civil aviation rules allow without a permit (EASA open category, FAA part 107)."""

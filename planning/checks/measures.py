@@ -14,17 +14,17 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.errors import InfeasibleError
+from planning.coverage.evaluate import Sight, section_counts, sights
 from planning.coverage.model import CoverageModel
-from planning.errors import InfeasibleError
-from planning.evaluate import Sight, section_counts, sights
-from planning.frames import Vec3
-from planning.geometry.solids import Solids
+from planning.geo.frames import Vec3
+from planning.geo.solids import Solids
+from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.motion.speed_profile import corner_saving_s
+from planning.motion.timing import FlightPath, MotionLimits, motion_limits, stopping_times_s
 from planning.plan import Plan, Sortie, Viewpoint
-from planning.rally import ReturnWay, ways_home
-from planning.sortie_timing import sortie_flight_path, stopping_duration_s
-from planning.space import FreeSpace
-from planning.speed_profile import corner_saving_s
-from planning.timing import FlightPath, MotionLimits, motion_limits, stopping_times_s
+from planning.routing.rally import ReturnWay, ways_home
+from planning.site.free_space import FreeSpace
 
 Array = NDArray[np.float64]
 Key = TypeVar("Key")
@@ -86,7 +86,7 @@ class Measures:
     solid_gaps, no_fly_gaps
         To panels, building and obstacles; to no-fly volumes.
     ways_home
-        Of an aircraft that returns from anywhere on a leg, at `planning.rally.return_height`.
+        Of an aircraft that returns from anywhere on a leg, at `planning.routing.rally.return_height`.
     flights
         By path and photos; None where the path is none or misses a viewpoint. Empty in wind that allows no flight.
     """

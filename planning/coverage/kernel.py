@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import kernel
+from planning.base.jit import kernel
 
 N_VIEW_ROWS = 11
 WIDTHS = (2, 8)

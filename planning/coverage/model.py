@@ -2,32 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.jit import chunks, run_chunks
 from planning.coverage import kernel
-from planning.coverage.sections import (
-    NOT_SEEN,
-    PanelFrames,
-    SectionGrid,
-    in_picture,
-    sections_of,
-    sections_seen,
-)
-from planning.frames import camera_axes
-from planning.jit import chunks, run_chunks
+from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid, in_picture, sections_of, sections_seen
+from planning.geo.frames import camera_axes
+from planning.geo.line_of_sight import OCCLUSION_OFFSET_M, LineOfSight
 from planning.plan import Camera, ViewpointArrays
 from planning.request import Precision
-
-LineOfSight = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
-"""(from, to), both shape (k, 3) ENU metres, to shape (k,): True where the straight line between them is free."""
-
-OCCLUSION_OFFSET_M = 0.15
-"""Lines of sight end this far in front of the centroid, so that the pane's own frame does not hide it (contract)."""
 
 VIEWS_PER_CHUNK = 2048
 PAIRS_PER_CHUNK = 4_000_000

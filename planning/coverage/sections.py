@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.frames import camera_axes
+from planning.geo.frames import camera_axes
 from planning.plan import Camera, ViewpointArrays, check_section_step
 
 Array = NDArray[np.float64]

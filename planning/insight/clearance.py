@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.geometry.distance import point_triangle_d2
-from planning.geometry.solids import Solids
+from planning.base.jit import kernel
+from planning.geo.distance import point_triangle_d2
+from planning.geo.solids import Solids
 from planning.insight.things import Things, nearest_things, nearest_triangles
-from planning.jit import kernel
 from planning.plan import Sortie
-from planning.space import FreeSpace
+from planning.site.free_space import FreeSpace
 
 Array = NDArray[np.float64]
 

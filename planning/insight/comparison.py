@@ -16,18 +16,18 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor
 from planning.checks import check_plan
 from planning.coverage.model import exact_sections
-from planning.findings import Finding, Severity
+from planning.coverage.reach_kernel import UNREACHABLE
 from planning.insight.clearance import route_clearance
 from planning.insight.sampling import PanelSampling, panel_sampling
 from planning.insight.sections import section_counts
 from planning.insight.things import things_of
 from planning.plan import Constraints, Plan, viewpoint_arrays
-from planning.prepare import Prepared
-from planning.progress import QUIET, Monitor
-from planning.reach_kernel import UNREACHABLE
-from planning.site import SiteModel
+from planning.site.records import SiteModel
+from planning.viewpoints.prepare import Prepared
 
 MAX_DEPTH = 4
 """Sections are counted that are covered at least twice, and so on up to this often."""

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.geometry.bvh import nearest_d2, segment_is_free
-from planning.geometry.solids import _is_inside
-from planning.jit import kernel
-from planning.reach_kernel import ANGLE_MARGIN, Bodies, Limits
+from planning.base.jit import kernel
+from planning.coverage.reach_kernel import ANGLE_MARGIN, Bodies, Limits
+from planning.geo.bvh import nearest_d2, segment_is_free
+from planning.geo.solids import _is_inside
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.jit import kernel
 from planning.coverage.sections import NOT_SEEN, PanelFrames
-from planning.jit import kernel
 from planning.plan import Camera
 
 Array = NDArray[np.float64]

@@ -8,15 +8,15 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import exact_sections
+from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid
 from planning.insight.reasons import SectionReasons
 from planning.insight.sampling import PanelSampling, panel_sampling
 from planning.plan import Camera, Constraints, Plan, viewpoint_arrays
-from planning.prepare import Prepared
-from planning.progress import QUIET, Monitor
-from planning.reach_kernel import REACHABLE, UNREACHABLE
-from planning.site import SiteModel
+from planning.site.records import SiteModel
+from planning.viewpoints.prepare import Prepared
 
 
 class SectionState(IntEnum):

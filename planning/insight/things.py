@@ -8,12 +8,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.geometry.bvh import MAX_DEPTH, Bvh, nearest_d2, segment_d2, segment_hits
-from planning.geometry.distance import point_segment_d2, segment_hits_triangle, segment_triangle_d2
-from planning.geometry.solids import MAX_HITS, Solids
-from planning.jit import chunks, kernel, run_chunks
-from planning.site import SiteModel
-from planning.space import FreeSpace
+from planning.base.jit import chunks, kernel, run_chunks
+from planning.geo.bvh import MAX_DEPTH, Bvh, nearest_d2, segment_d2, segment_hits
+from planning.geo.distance import point_segment_d2, segment_hits_triangle, segment_triangle_d2
+from planning.geo.solids import MAX_HITS, Solids
+from planning.site.free_space import FreeSpace
+from planning.site.records import SiteModel
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -76,7 +76,7 @@ def things_of(site_model: SiteModel, space: FreeSpace) -> Things:
         *(Thing("obstacle", obstacle.id) for obstacle in site.obstacles),
         *(Thing("no-fly", zone.id) for zone in zones),
     )
-    # In the order in which `planning.space.unchecked_space` joins them.
+    # In the order in which `planning.site.free_space.unchecked_space` joins them.
     meshes = (site_model.building, *site_model.obstacles)
     sizes = np.array([2] * m + [len(mesh.triangles) for mesh in meshes])
     solid_owner = np.repeat(np.arange(len(sizes)), sizes)

@@ -7,18 +7,222 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable
-from dataclasses import replace
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.frames import Vec3, wrap_heading_deg
-from planning.plan import ANGLE_DECIMALS, POSITION_DECIMALS, Plan, Sortie, Viewpoint
-from planning.positions import aimed_views
-from planning.revision.insertion import with_stop
+from planning.base.errors import InfeasibleError, InputError
+from planning.checks.measures import TimedFlight, flight_key
+from planning.coverage.positions import aimed_views
+from planning.geo.frames import Vec3, heading_difference_rad, wrap_heading_deg
+from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.motion.timing import (
+    UNKNOWN_TURN_RAD,
+    MotionLimits,
+    leg_times_s,
+    motion_limits,
+    photo_stop_s,
+    turn_times_s,
+)
+from planning.plan import ANGLE_DECIMALS, POSITION_DECIMALS, Plan, Sortie, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.revision.revision import Revision, with_route
-from planning.revision.route import redrawn
+from planning.revision.route import AT_HOME, cuts, neighbours, place_of, redrawn
+from planning.revision.ways import Ways
+from planning.routing.roadmap import Roadmap, leg_length
+from planning.site.free_space import LEG_MARGIN_M
+
+# Where a new viewpoint goes: into a sortie with room, at the place where it costs least time.
+
+Array = NDArray[np.float64]
+
+MAX_LOOKED_AT = 64
+"""Cheapest places that are looked at; the first of them to which clear legs lead is nearly always among the first 3."""
+
+MAX_AROUND = 3
+"""Places with a leg around something that are drawn, at about 10 ms each, before one with clear legs is taken."""
+
+FIT_S = 0.01
+"""Durations are stated to hundredths of a second."""
+
+
+class _Gap(NamedTuple):
+    """A place in a sortie, after so many stops, and the time (or length) that a stop there adds to its legs."""
+
+    added: float
+    sortie: int
+    place: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Costs:
+    """Seconds of legs and turns; metres, and no turns, where the wind allows no flight."""
+
+    plan: Plan
+    limits: MotionLimits | None
+
+    @classmethod
+    def of(cls, plan: Plan) -> _Costs:
+        try:
+            return cls(plan, motion_limits(plan.aircraft, plan.rules))
+        except InfeasibleError:
+            return cls(plan, None)
+
+    def legs(self, vectors_enu_m: Array) -> Array:
+        """Of straight legs, shape (n, 3), to shape (n,)."""
+        return leg_length(vectors_enu_m) if self.limits is None else leg_times_s(vectors_enu_m, self.limits)
+
+    def turns(self, heading_change_rad: Array, pitch_change_rad: Array) -> Array:
+        """Of turns, shape (n,)."""
+        if self.limits is None:
+            return np.zeros(len(heading_change_rad))
+        return turn_times_s(heading_change_rad, pitch_change_rad, self.limits)
+
+    def together(self, legs: Array, turns: Array) -> Array:
+        """Of legs with the turns that belong to them."""
+        return np.maximum(legs, turns) if self.plan.rules.turn_in_flight else legs + turns
+
+    def room_s(self, sortie: Sortie, flight: TimedFlight | None) -> float:
+        """Time that a sortie can take more; without a bound where the wind allows no flight."""
+        if self.limits is None:
+            return np.inf
+        now_s = sortie.duration_s if flight is None else flight.stopping_s
+        return self.usable_s() - now_s - photo_stop_s(self.plan.aircraft, self.plan.rules)
+
+    def usable_s(self) -> float:
+        """Longest duration of a sortie."""
+        return self.plan.aircraft.endurance_s * (1.0 - self.plan.rules.battery_reserve)
+
+
+def with_stop(revision: Revision, new: Viewpoint) -> tuple[Sortie, ...]:
+    """The plan's sorties with a new viewpoint in one of them, or in one of its own where none has room."""
+    plan, before = revision.plan, {viewpoint.id: viewpoint for viewpoint in revision.plan.viewpoints}
+    after = {**before, new.id: new}
+    costs = _Costs.of(plan)
+    gaps = sorted(_gaps(revision, before, new, costs))
+    full: set[int] = set()
+    while gap := _cheapest([gap for gap in gaps if gap.sortie not in full], revision.ways, plan, after, new, costs):
+        old = plan.sorties[gap.sortie]
+        ids = (*old.viewpoint_ids[: gap.place], new.id, *old.viewpoint_ids[gap.place :])
+        changed = redrawn(old, before, ids, after, revision.ways)
+        if _fits(changed, after, costs):
+            return (*plan.sorties[: gap.sortie], changed, *plan.sorties[gap.sortie + 1 :])
+        full.add(gap.sortie)
+    return (*plan.sorties, redrawn(Sortie((), (), 0.0, 0.0), before, (new.id,), after, revision.ways))
+
+
+def _fits(sortie: Sortie, by_id: Mapping[str, Viewpoint], costs: _Costs) -> bool:
+    """Whether battery and aircraft allow a sortie as it is drawn."""
+    aircraft, rules = costs.plan.aircraft, costs.plan.rules
+    if len(sortie.path_enu_m) - 2 > aircraft.max_waypoints:
+        return False
+    timed = None if costs.limits is None else sortie_flight_path(sortie, by_id, aircraft, rules)
+    return timed is None or stopping_duration_s(timed[0], aircraft, rules) <= costs.usable_s() + FIT_S
+
+
+def _gaps(revision: Revision, before: Mapping[str, Viewpoint], new: Viewpoint, costs: _Costs) -> Iterator[_Gap]:
+    """All places in sorties that have room, with straight legs to and from the new stop."""
+    plan, flights = revision.plan, revision.case.measures.flights
+    added = viewpoint_arrays((new,))
+    home = _home_legs(revision.ways.roadmap, added.positions_enu_m[0], costs)
+    for number, sortie in enumerate(plan.sorties):
+        if len(sortie.path_enu_m) - 1 > plan.aircraft.max_waypoints:
+            continue
+        views = viewpoint_arrays(tuple(before[viewpoint_id] for viewpoint_id in sortie.viewpoint_ids))
+        more = _added(views, added, home, _present_legs(sortie, before, views, costs), costs)
+        room = costs.room_s(sortie, flights.get(flight_key(sortie, before))) + FIT_S
+        yield from (_Gap(float(more[place]), number, place) for place in np.flatnonzero(more <= room).tolist())
+
+
+def _home_legs(roadmap: Roadmap, place_enu_m: Array, costs: _Costs) -> tuple[float, float]:
+    """Cost of flying from home to a place and back, up or down the column above home and straight on."""
+    home, column = roadmap.space.home_enu_m, roadmap.nodes_enu_m[: roadmap.n_column]
+    out = costs.legs(column - home) + costs.legs(place_enu_m - column)
+    back = costs.legs(column - place_enu_m) + costs.legs(home - column)
+    return float(out.min()), float(back.min())
+
+
+def _present_legs(sortie: Sortie, by_id: Mapping[str, Viewpoint], views: ViewpointArrays, costs: _Costs) -> Array:
+    """Cost of the legs between neighbours, from home to home, shape (m + 1,), as they are drawn."""
+    at = cuts(sortie, by_id)
+    if at is None:  # its path misses a viewpoint and will be drawn anew
+        return np.concatenate([np.zeros(1), costs.legs(np.diff(views.positions_enu_m, axis=0)), np.zeros(1)])
+    legs = costs.legs(np.diff(np.array(sortie.path_enu_m, np.float64), axis=0))
+    return np.diff(np.concatenate([[0.0], np.cumsum(legs)])[at])
+
+
+def _added(
+    views: ViewpointArrays, new: ViewpointArrays, home: tuple[float, float], present: Array, costs: _Costs
+) -> Array:
+    """What a new stop adds at each place of a sortie, shape (m + 1,)."""
+    to_new = np.concatenate([[home[0]], costs.legs(new.positions_enu_m - views.positions_enu_m)])
+    from_new = np.concatenate([costs.legs(views.positions_enu_m - new.positions_enu_m), [home[1]]])
+    turns = costs.turns(heading_difference_rad(views.heading_rad, new.heading_rad), views.pitch_rad - new.pitch_rad)
+    between = costs.turns(
+        heading_difference_rad(views.heading_rad[:-1], views.heading_rad[1:]), np.diff(views.pitch_rad)
+    )
+    unknown = np.array([UNKNOWN_TURN_RAD])
+    first, nothing = costs.turns(unknown, new.pitch_rad), np.zeros(1)
+    present_turns = nothing
+    if len(views.heading_rad):
+        present_turns = np.concatenate([costs.turns(unknown, views.pitch_rad[:1]), between, nothing])
+    return (
+        costs.together(to_new, np.concatenate([first, turns]))
+        + costs.together(from_new, np.concatenate([turns, nothing]))
+        - costs.together(present, present_turns)
+    )
+
+
+def _cheapest(
+    gaps: Sequence[_Gap],
+    ways: Ways,
+    plan: Plan,
+    by_id: Mapping[str, Viewpoint],
+    new: Viewpoint,
+    costs: _Costs,
+) -> _Gap | None:
+    """The gap that costs least with its legs as they will be flown; None where there is none.
+
+    Straight legs are the shortest, so the first gap in order with clear ones is not beaten by any after it.
+    """
+    looked_at = gaps[:MAX_LOOKED_AT]
+    if not looked_at:
+        return None
+    space, position = ways.roadmap.space, np.array(new.position_enu_m)
+    if not space.is_allowed(position[None], LEG_MARGIN_M)[0]:
+        return looked_at[0]
+    best, least, n_around = looked_at[0], np.inf, 0
+    pairs = [neighbours(plan.sorties[gap.sortie].viewpoint_ids)[gap.place] for gap in looked_at]
+    ends = np.array([[place_of(stop, by_id) or position for stop in pair] for pair in pairs], np.float64)
+    clear = space.legs_clear(ends.reshape(-1, 3), np.broadcast_to(position, (2 * len(ends), 3))).reshape(-1, 2)
+    for gap, pair, is_clear in zip(looked_at, pairs, clear[:, 0] & clear[:, 1], strict=True):
+        if gap.added >= least:
+            break
+        if is_clear and AT_HOME not in pair:
+            return gap
+        if n_around < MAX_AROUND:
+            n_around += 1
+            more = gap.added + _detour(pair, ways, by_id, new, costs)
+            best, least = (gap, more) if more < least else (best, least)
+    return best
+
+
+def _detour(pair: tuple[str, str], ways: Ways, by_id: Mapping[str, Viewpoint], new: Viewpoint, costs: _Costs) -> float:
+    """What the ways to and from a new stop cost more than straight ones."""
+    drawn = ways.between(
+        [(place_of(pair[0], by_id), new.position_enu_m), (new.position_enu_m, place_of(pair[1], by_id))]
+    )
+    flown = sum(float(costs.legs(np.diff(np.array(way), axis=0)).sum()) for way in drawn)
+    home = _home_legs(ways.roadmap, np.array(new.position_enu_m), costs)
+    straight = 0.0
+    for stop, sign, from_home in zip(pair, (1.0, -1.0), home, strict=True):
+        place = place_of(stop, by_id)
+        straight += (
+            from_home if place is None else float(costs.legs(sign * np.subtract(new.position_enu_m, place)[None])[0])
+        )
+    return flown - straight
 
 
 def move(

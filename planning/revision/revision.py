@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.findings import Finding
 from planning.checks import check_case
 from planning.checks.case import Case
 from planning.checks.measures import flight_key, legs_of, pose_of
-from planning.evaluate import coverage_of_sights
-from planning.findings import Finding
+from planning.coverage.evaluate import coverage_of_sights
 from planning.plan import Plan, Sortie, Viewpoint
-from planning.prepare import Prepared, settled
 from planning.revision.ways import Ways
+from planning.viewpoints.prepare import Prepared, settled
 
 LENGTH_DECIMALS, DURATION_DECIMALS = 3, 2
 """Of stated lengths (m) and durations (s), as the planner writes them."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 
-from planning.frames import Vec3
+from planning.geo.frames import Vec3
+from planning.motion.sortie_timing import photo_vertices
 from planning.plan import Sortie, Viewpoint
 from planning.revision.ways import HOME, Place, Ways
-from planning.sortie_timing import photo_vertices
 
 Viewpoints = Mapping[str, Viewpoint]
 """By identifier."""

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from planning.errors import InfeasibleError
-from planning.frames import Vec3
+from planning.base.errors import InfeasibleError
+from planning.geo.frames import Vec3
+from planning.motion.timing import motion_limits, round_trip_metric
 from planning.plan import POSITION_DECIMALS, Aircraft, FlightRules
 from planning.routing.legs import joined_nodes, pull_tight
 from planning.routing.roadmap import LegMetric, Roadmap, leg_length
-from planning.space import LEG_MARGIN_M
-from planning.timing import motion_limits, round_trip_metric
+from planning.site.free_space import LEG_MARGIN_M
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.progress import QUIET, Monitor, Stop, Trace, never
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import insertion
 from planning.routing.gains import CoverageGain
 from planning.routing.tour import check_costs

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import kernel
+from planning.base.jit import kernel
 
 MAX_POINTS = 12
 """Time and memory double with every point more; 12 points take about 10 ms and 0.4 MB."""

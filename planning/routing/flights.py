@@ -8,14 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InfeasibleError
-from planning.plan import Aircraft, FlightRules, ViewpointArrays
-from planning.progress import QUIET, Monitor, Stop, Trace, never
-from planning.routing.legs import LegTable, build_leg_table
-from planning.routing.roadmap import Roadmap
-from planning.routing.sorties import Sorties, plan_sorties
-from planning.sortie_timing import stopping_duration_s
-from planning.timing import (
+from planning.base.errors import InfeasibleError
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+from planning.motion.sortie_timing import stopping_duration_s
+from planning.motion.timing import (
     flight_path,
     motion_limits,
     photo_stop_s,
@@ -23,6 +19,10 @@ from planning.timing import (
     usable_battery_s,
     with_turns_s,
 )
+from planning.plan import Aircraft, FlightRules, ViewpointArrays
+from planning.routing.legs import LegTable, build_leg_table
+from planning.routing.roadmap import Roadmap
+from planning.routing.sorties import Sorties, plan_sorties
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import inline, kernel
+from planning.base.jit import inline, kernel
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -16,9 +16,9 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
-from planning.errors import InfeasibleError
-from planning.jit import chunks
-from planning.progress import QUIET, Monitor, Stop, never
+from planning.base.errors import InfeasibleError
+from planning.base.jit import chunks
+from planning.base.progress import QUIET, Monitor, Stop, never
 from planning.routing.roadmap import MOST_NEIGHBOURS, LegMetric, Roadmap, unique_pairs
 
 Array = NDArray[np.float64]

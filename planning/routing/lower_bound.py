@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import inline, kernel
-from planning.progress import QUIET, Monitor, Stop, Trace, never
+from planning.base.jit import inline, kernel
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing.slices import slices
 
 Floats = NDArray[np.float64]

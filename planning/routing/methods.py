@@ -10,8 +10,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InfeasibleError
-from planning.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
+from planning.base.errors import InfeasibleError
+from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
 from planning.routing.tour import improve_tour, nearest_neighbour, tour_bound, tour_length
 
 Floats = NDArray[np.float64]

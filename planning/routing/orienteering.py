@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.progress import QUIET, Monitor, Stop, Trace, never
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import insertion, tour
 from planning.routing.gains import CoverageGain
 from planning.routing.sorties import FIT, Sorties

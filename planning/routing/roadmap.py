@@ -16,8 +16,8 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from planning.positions import sobol
-from planning.space import SAFETY_MARGIN_M, FreeSpace
+from planning.coverage.positions import sobol
+from planning.site.free_space import SAFETY_MARGIN_M, FreeSpace
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from planning.progress import Clock
+from planning.base.progress import Clock
 
 SLICE_S = 0.05
 """Aimed-at length of a slice: half of what a user notices after pressing "stop"."""

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InfeasibleError
-from planning.jit import kernel
-from planning.progress import QUIET, Monitor, Stop, Trace, never
+from planning.base.errors import InfeasibleError
+from planning.base.jit import kernel
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import exact_tour, insertion, string_removal, tour
 from planning.routing.lower_bound import held_karp_bound
 from planning.routing.slices import slices

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import inline, kernel
+from planning.base.jit import inline, kernel
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -11,9 +11,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InfeasibleError
-from planning.jit import chunks, run_chunks
-from planning.progress import QUIET, Monitor, Stop, Trace, never
+from planning.base.errors import InfeasibleError
+from planning.base.jit import chunks, run_chunks
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.routing import exact_tour, lower_bound, three_opt
 from planning.routing.slices import slices
 

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.files import MIB, FileLimit, check_lines, read_given
+from planning.base.errors import InputError
+from planning.base.files import MIB, FileLimit, check_lines, read_given
 
 Array = NDArray[np.float64]
 

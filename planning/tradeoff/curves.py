@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from planning.progress import QualityPoint
+from planning.base.progress import QualityPoint
 
 BUDGETS_S = (1.0, 3.0, 10.0, 30.0, 60.0)
 """Times for which the best run is named."""

@@ -16,18 +16,18 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import get_args
 
-from planning.errors import InfeasibleError, InputError
-from planning.evaluate import coverage_counts
-from planning.methods import method_named
+from planning.base.errors import InfeasibleError, InputError
+from planning.base.progress import QUIET, Monitor, QualityPoint, Trace
+from planning.coverage.evaluate import coverage_counts
 from planning.plan import Constraints, HistoryPoint
 from planning.planner import Planned, plan_flight
-from planning.prepare import coverage_model
-from planning.progress import QUIET, Monitor, QualityPoint, Trace
 from planning.request import LARGEST_SEED, GreedyParameters, PlanRequest, Precision
-from planning.scenes import SCENES
-from planning.site import SiteModel
-from planning.space import free_space
+from planning.site.bundled import SCENES
+from planning.site.free_space import free_space
+from planning.site.records import SiteModel
 from planning.tradeoff.curves import Curve, Noise, falling, mean_curve
+from planning.viewpoints.methods import method_named
+from planning.viewpoints.prepare import coverage_model
 
 COVERAGE_GAPS = (0.1, 0.05, 0.01, 0.001)
 """Shares of 90, 95, 99 and 99.9 % of the bound: when were they reached?"""

@@ -16,16 +16,16 @@ from typing import get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
+from planning.base.errors import InputError
+from planning.base.progress import QUIET, Monitor, QualityPoint, TimeLimit
 from planning.plan import Plan, viewpoint_arrays
-from planning.progress import QUIET, Monitor, QualityPoint, TimeLimit
 from planning.routing.flights import flight_times
 from planning.routing.methods import TourMethod, solve_tour, tour_curves
 from planning.routing.roadmap import build_roadmap
 from planning.routing.tour import tour_length
 from planning.routing.tsplib import read_instance, read_tour, tour_order
-from planning.site import SiteModel
-from planning.space import free_space
+from planning.site.free_space import free_space
+from planning.site.records import SiteModel
 from planning.tradeoff.curves import Curve, Noise, falling
 
 TOUR_METHODS: tuple[TourMethod, ...] = get_args(TourMethod)

@@ -1,8 +1,9 @@
 """How well a model's poses are known: the inverse of the bundle adjustment's normal equations, points eliminated.
 
-Unknowns are, for every photo, its position and a small rotation as in `reconstruction.cameras.Pose`; for every camera
-its focal length; for every point its place. Observations are the image points, and the photos' measured positions and
-angles, which fix where the model lies. COLMAP's own covariances leave the latter out or hold them in another scale.
+Unknowns are, for every photo, its position and a small rotation as in `reconstruction.base.cameras.Pose`; for every
+camera its focal length; for every point its place. Observations are the image points, and the photos' measured
+positions and angles, which fix where the model lies. COLMAP's own covariances leave the latter out or hold them in
+another scale.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from planning.progress import QUIET, Monitor
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from planning.base.progress import QUIET, Monitor
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.block_inverse import inverse_blocks
 from reconstruction.colmap.camera_models import intrinsics_of
 from reconstruction.colmap.georeference import angle_information, position_covariance

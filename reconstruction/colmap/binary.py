@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.colmap.camera_models import N_PARAMETERS, NAMES, NUMBERS, OTHERS, refuse
 from reconstruction.colmap.record import NO_POINT, NO_POINTS, ColmapCamera, ColmapImage, ColmapPoints
 

@@ -16,7 +16,7 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from planning.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from planning.errors import InputError
-from reconstruction.cameras import Intrinsics
+from planning.base.errors import InputError
+from reconstruction.base.cameras import Intrinsics
 from reconstruction.colmap.record import Array, ColmapCamera
 
 NUMBERS = {

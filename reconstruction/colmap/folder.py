@@ -12,9 +12,9 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from planning.errors import InputError
-from planning.files import MIB, FileLimit, check_lines, read_given
-from planning.json_file import write_atomically
+from planning.base.errors import InputError
+from planning.base.files import MIB, FileLimit, check_lines, read_given
+from planning.base.json_file import write_atomically
 from reconstruction.colmap import binary, text
 from reconstruction.colmap.camera_models import check_camera
 from reconstruction.colmap.record import NO_POINTS, ColmapCamera, ColmapImage, ColmapModel, ColmapPoints

@@ -12,9 +12,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.findings import Finding, Severity
-from reconstruction.cameras import Pose, PosedPhoto
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.colmap.camera_models import camera_of, intrinsics_of
 from reconstruction.colmap.record import ColmapCamera, ColmapImage, ColmapModel, quaternion_of
 from reconstruction.colmap.similarity import Similarity, are_on_a_line, fit_robustly

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError, ReconstructionError
-from planning.jit import n_threads
-from planning.progress import Monitor
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from planning.base.errors import InputError, ReconstructionError
+from planning.base.jit import n_threads
+from planning.base.progress import Monitor
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.camera_models import camera_of
 from reconstruction.colmap.georeference import position_covariance
 

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.findings import Finding, Severity
-from planning.progress import QUIET, Monitor
-from reconstruction.cameras import PosedPhoto
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.accuracy import pose_covariances
 from reconstruction.colmap.block_inverse import TooLargeError
 from reconstruction.colmap.folder import read_model

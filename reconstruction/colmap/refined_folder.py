@@ -15,10 +15,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.findings import Finding
-from planning.json_file import expect_format, part_folder, read_json, to_record, write_atomically
-from reconstruction.cameras import PosedPhoto
+from planning.base.errors import InputError
+from planning.base.findings import Finding
+from planning.base.json_file import expect_format, part_folder, read_json, to_record, write_atomically
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import posed_photos
 from reconstruction.colmap.pycolmap_run import RefineParameters

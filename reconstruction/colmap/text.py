@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.colmap.record import NO_POINT, NO_POINTS, ColmapCamera, ColmapImage, ColmapPoints
 
 UNSIGNED_NO_POINT = str(2**64 - 1)

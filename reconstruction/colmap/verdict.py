@@ -15,8 +15,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.findings import Finding, Severity
-from reconstruction.cameras import PosedPhoto
+from planning.base.findings import Finding, Severity
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.georeference import position_covariance
 
 Array = NDArray[np.float64]

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.effects import Assessment
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from planning.base.effects import Assessment
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.panel_images import IN_FRONT_M, facing
-from reconstruction.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 

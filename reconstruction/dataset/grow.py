@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.site import Facade
+from planning.site.records import Facade
 from reconstruction.dataset.refined_mesh import drawn_in
 
 Array = NDArray[np.float64]

@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.panel_images import draw_panels, facing, without_hidden
-from reconstruction.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import kernel
-from reconstruction.cameras import PosedPhoto
-from reconstruction.ray_casting import RayCaster
+from planning.base.jit import kernel
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 Index = NDArray[np.uint16]

@@ -7,9 +7,9 @@ import threading
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.mesh import TriangleMesh
-from reconstruction.cameras import PosedPhoto
-from reconstruction.ray_casting import RayCaster
+from planning.geo.mesh import TriangleMesh
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 

@@ -17,16 +17,17 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.effects import Decision, Wish, decide
-from planning.errors import InputError
-from planning.files import read_given
-from planning.findings import Finding, Severity
-from planning.folders import is_empty
-from planning.jit import n_threads
-from planning.mesh import join, write_mesh
-from planning.progress import QUIET, Monitor
-from planning.site import SiteModel, panel_corners, require_panels
-from reconstruction.cameras import PosedPhoto
+from planning.base.effects import Decision, Wish, decide
+from planning.base.errors import InputError
+from planning.base.files import read_given
+from planning.base.findings import Finding, Severity
+from planning.base.folders import is_empty
+from planning.base.jit import n_threads
+from planning.base.progress import QUIET, Monitor
+from planning.geo.mesh import join, write_mesh
+from planning.site.records import SiteModel, panel_corners, require_panels
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.effects import HiddenPanels, LensDistortion, PanelsInPhotos
 from reconstruction.dataset.grow import grown_corners
 from reconstruction.dataset.layers import Scene, draw_layers, normals_to_16_bit, straightened
@@ -34,7 +35,6 @@ from reconstruction.dataset.points import ColouredPoints, start_points
 from reconstruction.dataset.records import write_records
 from reconstruction.dataset.refined_mesh import RefineParameters, refine_mesh
 from reconstruction.photos.decode import PICTURE_FILE, decoded
-from reconstruction.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 

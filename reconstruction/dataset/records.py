@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.effects import Decision
-from planning.json_file import write_atomically
-from planning.site import Site
-from reconstruction.cameras import PosedPhoto
+from planning.base.effects import Decision
+from planning.base.json_file import write_atomically
+from planning.site.records import Site
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import write_model
 from reconstruction.colmap.georeference import model_of
 from reconstruction.colmap.record import ColmapPoints

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.mesh import TriangleMesh
-from planning.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor
+from planning.geo.mesh import TriangleMesh
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -15,12 +15,12 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from planning.progress import QUIET, Monitor
-from reconstruction.modelling.model import SceneModel
+from planning.base.progress import QUIET, Monitor
+from reconstruction.light.ray_table import RayTable
+from reconstruction.light.shading import display_from_linear, schlick, shade
 from reconstruction.objects.gs_scene import GsComponent, GsScene
-from reconstruction.reflections.ray_table import RayTable
-from reconstruction.reflections.shading import display_from_linear, schlick, shade
-from reconstruction.splatting.harmonic_colour import display_colours, fitted_harmonics, light_of_display
+from reconstruction.splats.harmonic_colour import display_colours, fitted_harmonics, light_of_display
+from reconstruction.training.model.joint_model import SceneModel
 
 N_DIRECTIONS = 96
 """From which a pane is looked at: six for each harmonic."""

@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.geodesy.enu import geodetic_from_enu
-from planning.geodesy.geoid import amsl_from_ellipsoid_m
-from planning.json_file import write_atomically
-from planning.progress import QUIET, Monitor
-from planning.site import Origin
+from planning.base.errors import InputError
+from planning.base.json_file import write_atomically
+from planning.base.progress import QUIET, Monitor
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin
+from planning.geo.geoid import amsl_from_ellipsoid_m
 from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, Value, attributes_of, plain
 from reconstruction.objects.gs_scene import GsComponent, GsScene
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of
 from reconstruction.objects.gs_scene import GsComponent, GsScene
 

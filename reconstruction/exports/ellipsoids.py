@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reconstruction.objects.gs_scene import GsComponent, GsGaussian
-from reconstruction.splatting.ply import ODD
+from reconstruction.splats.ply import ODD
 
 Array = NDArray[np.float32]
 

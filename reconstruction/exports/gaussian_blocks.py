@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.progress import Monitor
+from planning.base.errors import InputError
+from planning.base.progress import Monitor
 from reconstruction.exports.component_parts import ellipsoid_blocks
 from reconstruction.exports.ellipsoids import Ellipsoids
 from reconstruction.exports.turned_axes import Axes, turned
 from reconstruction.objects.gs_scene import GsScene
-from reconstruction.splatting.raster import FLAT, RasterSettings
+from reconstruction.splats.rasterising.raster_types import FLAT, RasterSettings
 
 SMALLEST_M = 1e-30
 """A size of 0 has no logarithm."""

@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.exports.whole_files import whole_file
 
 FLOAT, UINT8, UINT16, UINT32 = 5126, 5121, 5123, 5125

@@ -14,8 +14,8 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any, Literal
 
-from planning.frames import Vec3
-from planning.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor
+from planning.geo.frames import Vec3
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import PRESETS, Compression
 from reconstruction.exports.glb import GlbBuffer, write_glb
@@ -29,15 +29,8 @@ from reconstruction.exports.gltf_meshes import (
     put_gaussians,
     put_panels,
 )
-from reconstruction.exports.gltf_tables import (
-    NO_ATTRIBUTES,
-    Attributes,
-    PanelTable,
-    attributes_of,
-    panel_table,
-    plain,
-)
-from reconstruction.exports.spz import spz_of
+from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, PanelTable, attributes_of, panel_table, plain
+from reconstruction.exports.spz.writing import spz_of
 from reconstruction.objects.gs_scene import GsComponent, GsScene
 
 FORMAT = "reflight-gltf/1"

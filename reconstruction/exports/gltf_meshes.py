@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.frames import Vec3
-from planning.progress import Monitor
+from planning.base.progress import Monitor
+from planning.geo.frames import Vec3
 from reconstruction.exports.component_parts import element_numbers, ellipsoid_blocks, light_of
 from reconstruction.exports.ellipsoids import Ellipsoids
 from reconstruction.exports.glb import FLOAT, INDICES, UINT8, UINT16, UINT32, GlbBuffer, Put, limits_of

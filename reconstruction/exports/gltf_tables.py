@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.exports.glb import GlbBuffer
 from reconstruction.objects.gs_scene import GsElement, GsScene
 

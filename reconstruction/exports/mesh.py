@@ -14,21 +14,145 @@ from typing import Any
 
 import cv2
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.progress import QUIET, Monitor
+from planning.base.errors import InputError
+from planning.base.progress import QUIET, Monitor
+from planning.site.importing.polygons import area_vector
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.gaussian_blocks import raster_of
 from reconstruction.exports.glb import FLOAT, INDICES, UINT16, VERTICES, GlbBuffer, limits_of, write_glb
 from reconstruction.exports.gltf import component_extras, frame_of, scene_extras
 from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, attributes_of, plain
-from reconstruction.exports.mesh_atlas import Atlas, pack
-from reconstruction.exports.mesh_views import PanelView, panel_view
-from reconstruction.modelling.model import SceneModel
-from reconstruction.modelling.render import render_view
 from reconstruction.objects.gs_scene import GsComponent, GsElement, GsScene
-from reconstruction.splatting.raster import RasterSettings
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.splats.rasterising.views import View
+from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.model.render import render_view
+
+# Many small pictures on few large ones: shelves from the highest to the lowest.
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a picture lies: its upper left pixel on a page."""
+
+    page: int
+    x_px: int
+    y_px: int
+
+
+@dataclass(frozen=True, slots=True)
+class Atlas:
+    """Places in the order of the pictures, and the sizes of the pages, width and height."""
+
+    places: tuple[Place, ...]
+    pages: tuple[tuple[int, int], ...]
+
+
+def pack(sizes: Sequence[tuple[int, int]], page_px: int) -> Atlas:
+    """Place pictures of given widths and heights on square pages of a side, cut to what is used of them.
+
+    Raises
+    ------
+    ValueError
+        A picture is larger than a page.
+    """
+    if any(max(size) > page_px or min(size) < 1 for size in sizes):
+        raise ValueError(f"sizes: expected 1 to {page_px} pixels each way")
+    places: list[Place | None] = [None] * len(sizes)
+    used: list[tuple[int, int]] = []
+    page, x, y, shelf = -1, 0, page_px, 0
+    for number in sorted(range(len(sizes)), key=lambda number: (-sizes[number][1], -sizes[number][0], number)):
+        width, height = sizes[number]
+        if page >= 0 and x + width > page_px:
+            x, y, shelf = 0, y + shelf, height
+        if y + height > page_px:
+            page, x, y, shelf = page + 1, 0, 0, height
+            used.append((0, 0))
+        places[number] = Place(page, x, y)
+        used[page] = (max(used[page][0], x + width), max(used[page][1], y + height))
+        x += width
+    return Atlas(tuple(place for place in places if place is not None), tuple(used))
+
+
+# Straight-on views of panels: pictures that cover them as a texture does.
+
+Array = NDArray[np.float64]
+
+AWAY = 20.0
+"""Distance of the camera, as a multiple of a panel's size: rays to its corners are within 2 degrees of its normal."""
+
+EDGE_PX = 2
+"""Around a panel, of what is there: textures are smoothed across their pixels."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PanelView:
+    """How a panel is looked at.
+
+    Parameters
+    ----------
+    view
+        Of a camera straight in front, whose picture has `EDGE_PX` more on all sides than the panel.
+    distance_m
+        Of the camera from the panel's plane.
+    corners_px
+        Of the panel in the picture, shape (4, 2): x to the right, y down.
+    """
+
+    view: View
+    distance_m: float
+    corners_px: Array
+
+
+def panel_view(corners_m: Array, px_per_m: float) -> PanelView:
+    """View of a panel that is `px_per_m` fine at least.
+
+    Parameters
+    ----------
+    corners_m
+        In the model's frame, counter-clockwise seen from outside, the lower left one first, shape (4, 3).
+
+    Raises
+    ------
+    ValueError
+        The panel has no area.
+    """
+    normal, right = area_vector(corners_m), corners_m[1] - corners_m[0]
+    area = float(np.linalg.norm(normal))
+    if not area > 0.0:
+        raise ValueError("corners_m: expected a panel with an area")
+    normal = normal / area
+    right = right - (right @ normal) * normal
+    right = right / np.linalg.norm(right)
+    up = np.cross(normal, right)
+    flat = (corners_m - corners_m[0]) @ np.stack([right, up], axis=1)
+    low, size_m = flat.min(axis=0), np.ptp(flat, axis=0)
+    size_px = np.maximum(1, np.ceil(size_m * px_per_m - 1e-6))
+    distance_m = AWAY * float(size_m.max())
+    middle = corners_m[0] + (low + 0.5 * size_m) @ np.stack([right, up])
+    # What lies off the plane of the first corner: panels may be warped by centimetres.
+    middle = middle + ((corners_m.mean(axis=0) - middle) @ normal) * normal
+    world = np.eye(4)
+    world[:3, :3] = np.stack([right, -up, -normal])
+    world[:3, 3] = -world[:3, :3] @ (middle + distance_m * normal)
+    focal_px = distance_m * size_px / size_m
+    width_px, height_px = (int(size) + 2 * EDGE_PX for size in size_px)
+    view = View(
+        width_px,
+        height_px,
+        float(focal_px[0]),
+        float(focal_px[1]),
+        0.5 * width_px,
+        0.5 * height_px,
+        torch.tensor(world),
+    )
+    share = (flat - low) / size_m
+    corners_px = EDGE_PX + np.column_stack([share[:, 0], 1.0 - share[:, 1]]) * size_px
+    return PanelView(view, distance_m, corners_px)
+
 
 TRIANGLES = 4
 

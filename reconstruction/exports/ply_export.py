@@ -1,6 +1,6 @@
 """PLY files for viewers: Gaussians in the columns, the order and the axes that other programs expect.
 
-`reconstruction.splatting.ply` writes models in our own axes and with what only we can render; these are for showing.
+`reconstruction.splats.ply` writes models in our own axes and with what only we can render; these are for showing.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene
 from reconstruction.exports.compression import LEAST_SEEN, Compressed
 from reconstruction.exports.ellipsoids import Ellipsoids
@@ -26,9 +26,9 @@ from reconstruction.exports.gaussian_blocks import (
 )
 from reconstruction.exports.turned_axes import Axes
 from reconstruction.objects.gs_scene import GsScene
-from reconstruction.splatting.ply import MEAN_COLOUR, NORMAL, PANEL, PLACE, ROTATION, SIZES, Kind, render_mode
-from reconstruction.splatting.ply_file import write_blocks
-from reconstruction.splatting.raster import FLAT
+from reconstruction.splats.ply import MEAN_COLOUR, NORMAL, PANEL, PLACE, ROTATION, SIZES, Kind, render_mode
+from reconstruction.splats.ply_file import write_blocks
+from reconstruction.splats.rasterising.raster_types import FLAT
 
 MOST_SHARE = 1.0 - 1e-7
 """Opacity of 1 has no logit."""

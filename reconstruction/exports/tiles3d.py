@@ -12,21 +12,22 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import torch
+from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.files import sha256_given
-from planning.folders import make_folder
-from planning.json_file import new_file_beside, write_together
-from planning.progress import QUIET, Monitor
-from planning.site import Origin
-from reconstruction.exports.coarser_parts import coarser_part
-from reconstruction.exports.component_parts import check_scene
+from planning.base.errors import InputError
+from planning.base.files import sha256_given
+from planning.base.folders import make_folder
+from planning.base.json_file import new_file_beside, write_together
+from planning.base.progress import QUIET, Monitor
+from planning.geo.frames import Origin
+from reconstruction.exports.component_parts import check_scene, ellipsoid_blocks, extents_m
 from reconstruction.exports.compression import PRESETS, Compression
 from reconstruction.exports.glb import write_glb
 from reconstruction.exports.gltf import (
@@ -40,15 +41,175 @@ from reconstruction.exports.gltf import (
 )
 from reconstruction.exports.gltf_meshes import SPLATTING, SPZ
 from reconstruction.exports.gltf_tables import NO_ATTRIBUTES, Attributes, PanelTable, panel_table, plain
-from reconstruction.exports.tiles3d_tree import (
-    Box,
-    Branch,
-    box_of_gaussians,
-    box_of_panels,
-    branches_of,
-    part_of_branch,
-)
-from reconstruction.objects.gs_scene import GsComponent, GsScene
+from reconstruction.objects.gs_scene import GsComponent, GsGaussian, GsScene
+from reconstruction.splats.merged_splats import splats_of_detail
+from reconstruction.splats.splats import NO_PANEL, Splats
+
+# How a component's Gaussians are shared among tiles: halves, by space, until each has few enough.
+#
+# Panels stay whole. Tiles that are shared out have merged Gaussians of their own (`coarser_parts`): some of a
+# building's
+# would look like one with holes.
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Box:
+    """Axis-aligned, ENU metres, shapes (3,)."""
+
+    low: Array
+    high: Array
+
+    @property
+    def diagonal_m(self) -> float:
+        """From corner to corner."""
+        return float(np.linalg.norm(self.high - self.low))
+
+    def with_others(self, *others: Box) -> Box:
+        """The smallest box around it and others."""
+        boxes = (self, *others)
+        return Box(np.min([box.low for box in boxes], axis=0), np.max([box.high for box in boxes], axis=0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Branch:
+    """Gaussians that lie together: those of `part`, or those of two branches.
+
+    Parameters
+    ----------
+    items
+        Numbers of elements of a facade, or rows of the background, ascending.
+    """
+
+    items: NDArray[np.int64]
+    halves: tuple[Branch, ...]
+
+
+def branches_of(component: GsComponent, at_most: int) -> Branch:
+    """A tree whose leaves have `at_most` Gaussians, or a single panel."""
+    if component.kind == "facade":
+        places = np.array([np.mean(element.corners_enu_m, axis=0) for element in component.elements]).reshape(-1, 3)
+        weights = np.array([element.n_gaussians for element in component.elements], np.int64)
+        items = np.flatnonzero(weights)
+    else:
+        places = component.gaussians.values["means"]
+        weights = np.ones(len(places), np.int64)
+        items = np.arange(len(places))
+    return _branch(items, places, weights, at_most)
+
+
+def _branch(items: NDArray[np.int64], places: NDArray[np.floating], weights: NDArray[np.int64], at_most: int) -> Branch:
+    if len(items) < 2 or weights[items].sum() <= at_most:
+        return Branch(items, ())
+    within = places[items]
+    axis = int(np.argmax(np.ptp(within, axis=0)))
+    order = items[np.argsort(within[:, axis], kind="stable")]
+    so_far = np.cumsum(weights[order])
+    cut = int(np.clip(np.searchsorted(so_far, so_far[-1] / 2) + 1, 1, len(order) - 1))
+    halves = (np.sort(order[:cut]), np.sort(order[cut:]))
+    return Branch(items, tuple(_branch(half, places, weights, at_most) for half in halves))
+
+
+def part_of_branch(component: GsComponent, branch: Branch) -> GsComponent:
+    """A component of a branch's Gaussians alone: a copy."""
+    if component.kind == "background":
+        elements, rows = (), branch.items
+    else:
+        chosen = [component.elements[number] for number in branch.items]
+        stops = np.cumsum([element.n_gaussians for element in chosen]).tolist()
+        elements = tuple(
+            replace(element, start=stop - element.n_gaussians, stop=stop)
+            for element, stop in zip(chosen, stops, strict=True)
+        )
+        rows = np.concatenate([branch.items[:0], *(np.arange(element.start, element.stop) for element in chosen)])
+    table = component.gaussians
+    values = {name: value[rows] for name, value in table.values.items()}
+    gaussians = GsGaussian(values, table.places[rows])
+    return GsComponent(component.global_id, component.name, component.kind, elements, gaussians)
+
+
+def box_of_gaussians(component: GsComponent, scene: GsScene) -> Box:
+    """Around all that is drawn of a component's Gaussians, one at least."""
+    origin = np.array(scene.origin_enu_m)
+    boxes = list(_boxes(component))
+    around = boxes[0].with_others(*boxes[1:])
+    return Box(around.low + origin, around.high + origin)
+
+
+def box_of_panels(component: GsComponent) -> Box:
+    """Around the panels of a component, one at least."""
+    corners = np.array([element.corners_enu_m for element in component.elements], np.float64).reshape(-1, 3)
+    return Box(corners.min(axis=0), corners.max(axis=0))
+
+
+def _boxes(component: GsComponent) -> Iterator[Box]:
+    for _, block in ellipsoid_blocks(component):
+        means, extents = block.means_m.astype(np.float64), extents_m(block)
+        yield Box((means - extents).min(axis=0), (means + extents).max(axis=0))
+
+
+# Parts of a component with fewer Gaussians, each in the place of some that lie together: for pictures from afar.
+
+NO_PLACE = -1
+"""Of merged Gaussians, which are not in the model."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CoarserPart:
+    """Of a component.
+
+    Parameters
+    ----------
+    side_m
+        Of the cubes in which Gaussians were merged: what is finer is lost.
+    """
+
+    component: GsComponent
+    side_m: float
+
+
+def coarser_part(parts: Sequence[GsComponent], at_most: int) -> CoarserPart | None:
+    """Parts of one component in one, with its Gaussians merged until `at_most` are left; panels stay apart.
+
+    None where so few would not do: panels that are too many, or too few Gaussians to begin with.
+
+    Parameters
+    ----------
+    parts
+        One at least; none has an element of another.
+    """
+    elements = [element for part in parts for element in part.elements]
+    tables = [part.gaussians.values for part in parts]
+    values = {name: torch.from_numpy(np.concatenate([table[name] for table in tables])) for name in tables[0]}
+    owners = np.full(sum(len(part.gaussians) for part in parts), NO_PANEL, np.int64)
+    stops = np.cumsum([element.n_gaussians for element in elements], dtype=np.int64)
+    if elements:
+        # Facades have no Gaussians but those of elements.
+        owners[:] = np.repeat(np.arange(len(elements)), np.diff(stops, prepend=0))
+    detail = splats_of_detail(Splats(values, torch.from_numpy(owners)))
+    found = detail.tree.finest_cut(at_most)
+    if found is None:
+        return None
+    rows, side_m = found
+    owners = detail.all.panels.numpy()[rows]
+    order = np.argsort(owners, kind="stable")
+    merged = detail.all.some(torch.from_numpy(rows[order]))
+    stops = np.searchsorted(owners[order], np.arange(len(elements)), side="right").tolist()
+    starts = [0, *stops[:-1]] if stops else []
+    table = {name: merged.get_parameter(name).detach().numpy() for name in values}
+    component = GsComponent(
+        parts[0].global_id,
+        parts[0].name,
+        parts[0].kind,
+        tuple(
+            replace(element, start=start, stop=stop)
+            for element, start, stop in zip(elements, starts, stops, strict=True)
+        ),
+        GsGaussian(table, np.full(len(merged), NO_PLACE, np.int32)),
+    )
+    return CoarserPart(component, side_m)
+
 
 EXTRAS = {"format": "reflight-3dtiles/1", "axes": "tiles: x east, y north, z up, metres, in the site's frame"}
 

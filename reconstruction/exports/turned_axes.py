@@ -15,8 +15,8 @@ import torch
 from numpy.typing import NDArray
 
 from reconstruction.exports.ellipsoids import Ellipsoids
-from reconstruction.reflections.harmonics import MAX_DEGREE, harmonics
-from reconstruction.splatting.ply import ODD
+from reconstruction.light.directions.harmonics import MAX_DEGREE, harmonics
+from reconstruction.splats.ply import ODD
 
 Axes = Literal["enu", "y-up", "y-down"]
 """`enu`: x east, y north, z up, as everywhere here. `y-up`: x east, y up, z south (right, up, back), of SPZ, glTF and

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.files import real_path
-from planning.json_file import check_output, part_folder
-from planning.progress import QUIET, Monitor
+from planning.base.errors import InputError
+from planning.base.files import real_path
+from planning.base.json_file import check_output, part_folder
+from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import check_scene, ellipsoid_blocks, extents_m
 from reconstruction.exports.gltf import INVISIBLE
 from reconstruction.exports.gltf_meshes import N_OF_DEGREE

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from planning.errors import InputError
-from planning.files import real_path
-from planning.json_file import check_output, part_file
+from planning.base.errors import InputError
+from planning.base.files import real_path
+from planning.base.json_file import check_output, part_file
 
 
 @contextmanager

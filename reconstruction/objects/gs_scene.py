@@ -16,8 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.frames import Vec3
-from planning.site import Origin
+from planning.geo.frames import Origin, Vec3
 
 Array = NDArray[Any]
 

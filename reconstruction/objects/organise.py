@@ -12,16 +12,15 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from planning.errors import InputError
-from planning.frames import Vec3
-from planning.site import Origin
-from reconstruction.modelling.model import OF_SPLATS
-from reconstruction.modelling.record import ModelRecord, PanelRecord
-from reconstruction.modelling.saved import GAINS, TrainedModel, description_of, tensors_of, trained_of
+from planning.base.errors import InputError
+from planning.geo.frames import Origin, Vec3
 from reconstruction.objects.gs_scene import GsAuxiliary, GsComponent, GsElement, GsGaussian, GsScene
 from reconstruction.records.global_ids import global_id_of, is_global_id
-from reconstruction.splatting.panel_of_splats import panels_by_place
-from reconstruction.splatting.splats import NO_PANEL
+from reconstruction.splats.panel_of_splats import panels_by_place
+from reconstruction.splats.splats import NO_PANEL
+from reconstruction.training.model.joint_model import OF_SPLATS
+from reconstruction.training.model.record import ModelRecord, PanelRecord
+from reconstruction.training.model.saved import GAINS, TrainedModel, description_of, tensors_of, trained_of
 
 BACKGROUND = "background"
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.cameras import PosedPhoto
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.dataset.panel_images import draw_panels
 
 Array = NDArray[np.float64]

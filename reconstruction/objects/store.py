@@ -21,23 +21,14 @@ import numpy as np
 from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save
 
-from planning.errors import InputError
-from planning.files import check_given, open_given
-from planning.folders import make_folder
-from planning.frames import Vec3
-from planning.json_file import expect_format, read_json, to_record, write_atomically
-from planning.progress import QUIET, Monitor
-from planning.site import Origin
-from reconstruction.objects.gs_scene import (
-    Array,
-    GsAuxiliary,
-    GsComponent,
-    GsElement,
-    GsGaussian,
-    GsScene,
-    Kind,
-)
-from reconstruction.tensor_files import TENSORS_FILE
+from planning.base.errors import InputError
+from planning.base.files import check_given, open_given
+from planning.base.folders import make_folder
+from planning.base.json_file import expect_format, read_json, to_record, write_atomically
+from planning.base.progress import QUIET, Monitor
+from planning.geo.frames import Origin, Vec3
+from reconstruction.base.tensor_files import TENSORS_FILE
+from reconstruction.objects.gs_scene import Array, GsAuxiliary, GsComponent, GsElement, GsGaussian, GsScene, Kind
 
 FORMAT = "reflight-gsscene/1"
 DESCRIPTION = "gsscene.json"

@@ -12,14 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.sections import NOT_SEEN, sections_of
-from planning.findings import Finding, Severity
-from planning.mesh import TriangleMesh
+from planning.geo.mesh import TriangleMesh
 from planning.plan import Viewpoint, viewpoint_arrays
-from planning.progress import QUIET, Monitor
-from reconstruction.cameras import PosedPhoto
-from reconstruction.ray_casting import RayCaster
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 
 Array = NDArray[np.float64]
 

@@ -14,10 +14,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.files import MIB, FileLimit, read_given
-from planning.photo_files.jpeg import PHOTO_FILE
-from planning.photo_files.record import PhotoMetadata
+from planning.base.errors import InputError
+from planning.base.files import MIB, FileLimit, read_given
+from planning.photos.jpeg import PHOTO_FILE
+from planning.photos.record import PhotoMetadata
 
 # What is wrong with a picture is said in an error, and once.
 cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)

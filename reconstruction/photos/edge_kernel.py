@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import inline, kernel
+from planning.base.jit import inline, kernel
 
 MARGIN = 4
 """Pixels at the borders that are left out, where smoothing knows no neighbours."""

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from planning.catalogue import profiles
-from planning.findings import Finding, Severity
-from planning.photo_files.record import Dewarp, PhotoMetadata
-from reconstruction.cameras import STRAIGHT, Intrinsics
+from planning.aircraft.catalogue import profiles
+from planning.base.findings import Finding, Severity
+from planning.photos.record import Dewarp, PhotoMetadata
+from reconstruction.base.cameras import STRAIGHT, Intrinsics
 
 
 class CameraKind(StrEnum):

@@ -16,10 +16,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from planning.findings import Finding, Severity
-from planning.photo_files.folder import in_order
-from planning.photo_files.places import (
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.geo.frames import Origin
+from planning.photos.folder import in_order
+from planning.photos.places import (
     Locality,
     PhotoHeights,
     absolute_height_m,
@@ -27,9 +28,8 @@ from planning.photo_files.places import (
     photos_near,
     receiver_findings,
 )
-from planning.photo_files.record import PhotoMetadata
-from planning.site import Origin
-from reconstruction.cameras import Pose, PosedPhoto, cam_from_enu
+from planning.photos.record import PhotoMetadata
+from reconstruction.base.cameras import Pose, PosedPhoto, cam_from_enu
 from reconstruction.photos.lens import CameraKind, Lens, lens_of, of_camera
 
 Array = NDArray[np.float64]

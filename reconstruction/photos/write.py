@@ -1,6 +1,6 @@
 """Rendered photos as JPEG files, with where and how they were taken written into them as DJI's cameras do.
 
-What `planning.photo_files` and `reconstruction.photos.poses` read back is the same to a tenth of a millimetre and of a
+What `planning.photos` and `reconstruction.photos.poses` read back is the same to a tenth of a millimetre and of a
 thousandth of a degree: angles count from the north and the vertical of the photo's own place, as everywhere in photos.
 """
 
@@ -15,13 +15,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.frames import Vec3
-from planning.geodesy.enu import geodetic_from_enu
-from planning.photo_files.exif import Tag
-from planning.photo_files.exif_writing import Content, Ratio, exif_content
-from planning.photo_files.record import RTK_FIXED
-from planning.site import Origin
-from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin, Vec3
+from planning.photos.exif import Tag
+from planning.photos.exif_writing import Content, Ratio, exif_content
+from planning.photos.record import RTK_FIXED
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.photos.lens import MM35_DIAGONAL
 from reconstruction.photos.poses import enu_axes
 

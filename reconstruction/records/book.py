@@ -11,8 +11,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from planning.errors import InputError
-from planning.site import Origin
+from planning.base.errors import InputError
+from planning.geo.frames import Origin
 from reconstruction.records.changes import Changes
 from reconstruction.records.database import BUSY_S, Database, create_database
 from reconstruction.records.entries import KIND_NAMED, KIND_OF, Entry

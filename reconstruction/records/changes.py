@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.records.database import Database
 from reconstruction.records.entries import KIND_OF, Attribute, Defect, Entry, Inspection, Kind
 from reconstruction.records.global_ids import global_id_of, new_global_id

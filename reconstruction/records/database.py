@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.records.schema import APPLICATION_ID, STEPS, check_schema, check_version, migrate, version_of
 
 BUSY_S = 5.0

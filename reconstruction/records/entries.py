@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields
 from typing import Literal
 from urllib.parse import urlsplit
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.records.global_ids import check_global_id
 from reconstruction.records.limits import (
     CURRENCY,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import uuid
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 ALPHABET = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_$"
 """Digits of the base 64 that IFC has of its own (buildingSMART, implementation guide on GUIDs)."""

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from datetime import date
 from pathlib import PurePosixPath, PureWindowsPath
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 MAX_WORDS = 200
 """Characters of names, kinds and persons."""

@@ -9,9 +9,9 @@ from typing import Literal
 
 import numpy as np
 
-from planning.errors import InputError
-from planning.frames import Vec3
-from planning.site import Panel, Site, check_point
+from planning.base.errors import InputError
+from planning.geo.frames import Vec3
+from planning.site.records import Panel, Site, check_point
 from reconstruction.records.global_ids import check_global_id, global_id_of, is_global_id
 from reconstruction.records.limits import check_choice, check_text
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.records.book import RecordBook
 from reconstruction.records.changes import decoded
 from reconstruction.records.entries import (

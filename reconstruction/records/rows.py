@@ -7,8 +7,8 @@ from typing import Any
 
 import msgspec
 
-from planning.errors import InputError
-from planning.json_file import to_record
+from planning.base.errors import InputError
+from planning.base.json_file import to_record
 from reconstruction.records.database import Database
 from reconstruction.records.entries import Attribute, Defect, Entry, Kind
 from reconstruction.records.objects import ObjectRow

@@ -6,7 +6,7 @@ import sqlite3
 from collections.abc import Sequence
 from functools import cache
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 APPLICATION_ID = 0x52464C52
 """`RFLR` in a SQLite file's header: records of ours."""

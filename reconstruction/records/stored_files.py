@@ -10,10 +10,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from planning.errors import InputError
-from planning.files import MIB, FileLimit, read_given, sha256_given
-from planning.folders import make_folder
-from planning.json_file import write_atomically
+from planning.base.errors import InputError
+from planning.base.files import MIB, FileLimit, read_given, sha256_given
+from planning.base.folders import make_folder
+from planning.base.json_file import write_atomically
 from reconstruction.records.book import RecordBook
 from reconstruction.records.entries import check_stored_name
 from reconstruction.records.limits import SHA256

@@ -17,7 +17,7 @@ def pilot(application, worker, tmp_path, monkeypatch, request):
     """Somebody who has just started the program for the first time, on a laptop of 1280 x 720."""
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     monkeypatch.setenv("HOME", str(tmp_path))
-    from groundstation.gui.desk import Desk
+    from groundstation.gui.window.project_controller import Desk
 
     language = getattr(request, "param", Language.ENGLISH)
     desk = Desk(application, worker=worker)

@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from groundstation.services.made_flight import write_made_flight
+from groundstation.services.photos.synthetic_flight import write_made_flight
 from groundstation.services.settings import Language
 from tests.gui.driving import choose, clicked, press
 

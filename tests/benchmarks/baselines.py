@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import CURVED_VIEWS, PLANAR_VIEWS
 

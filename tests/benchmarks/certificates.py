@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from planning.catalogue import profile
-from planning.optimise import cover_kernel as kernel
-from planning.optimise.bounds import dual_bound, exact_optimum
-from planning.optimise.candidates import spread_candidates
-from planning.optimise.improve import Exchange, cover_state
+from planning.aircraft.catalogue import profile
+from planning.base.progress import never
 from planning.plan import Constraints
-from planning.prepare import prepare
-from planning.progress import never
-from planning.scenes import SCENES, panel_grid
-from planning.site import SiteModel
+from planning.site.bundled import SCENES, panel_grid
+from planning.site.records import SiteModel
+from planning.viewpoints import cover_kernel as kernel
+from planning.viewpoints.bounds import dual_bound, exact_optimum
+from planning.viewpoints.candidates import spread_candidates
+from planning.viewpoints.improve import Exchange, cover_state
+from planning.viewpoints.prepare import prepare
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 
 CASES = ((100, 20), (100, 25), (200, 25), (400, 30))

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from planning.scenes import write_scene
+from planning.site.bundled import write_scene
 from tests.benchmarks.harness import SHARED_DATA, Benchmark, Context, Row
 
 ROOT = Path(__file__).resolve().parents[2]

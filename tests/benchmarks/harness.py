@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from planning.jit import n_threads
+from planning.base.jit import n_threads
 
 SHARED_DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 

@@ -13,17 +13,17 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from groundstation.services.scene_photos import photograph_files
-from groundstation.services.scene_views import SceneWish
-from planning.jit import n_threads
-from reconstruction.reflections.config import GridSettings, ReflectionConfig
-from reconstruction.reflections.glass_rays import glass_rays
-from reconstruction.reflections.photo_set import held_out_names, read_photo_set
-from reconstruction.reflections.reflection_mlp import MlpShape
-from reconstruction.reflections.reflective_panels import ModelName
-from reconstruction.reflections.scoring import score_views
-from reconstruction.reflections.training import train_reflections
-from reconstruction.scenes.renderer import RenderSettings
+from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.views import SceneWish
+from planning.base.jit import n_threads
+from reconstruction.light.config import GridSettings, ReflectionConfig
+from reconstruction.light.directions.reflection_mlp import MlpShape
+from reconstruction.light.glass_rays import glass_rays
+from reconstruction.light.photo_set import held_out_names, read_photo_set
+from reconstruction.light.reflective_panels import ModelName
+from reconstruction.light.scoring import score_views
+from reconstruction.light.training import train_reflections
+from reconstruction.scenes.photos.renderer import RenderSettings
 from tests.benchmarks.harness import Row
 
 QUICK_N_VIEWS, QUICK_WIDTH_PX = 12, 64

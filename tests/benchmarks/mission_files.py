@@ -8,17 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from groundstation.services.missions import export_plan
-from missions.formats import read_missions
-from missions.model import FileFormat
-from missions.to_plan import viewpoints_and_sorties
-from planning.frames import wrap_heading_rad
-from planning.plan import ViewpointArrays, viewpoint_arrays
-from planning.plan_file import write_plan
+from groundstation.services.mission.export import export_plan
+from missions.formats.registry import read_missions
+from missions.mission.model import FileFormat
+from missions.mission.to_plan import viewpoints_and_sorties
+from planning.geo.frames import wrap_heading_rad
+from planning.plan import ViewpointArrays, viewpoint_arrays, write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.scenes import write_scene
-from planning.site_file import read_site
+from planning.site.bundled import write_scene
+from planning.site.file import read_site
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.benchmarks.problems import PLANAR_VIEWS
 

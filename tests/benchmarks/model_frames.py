@@ -12,19 +12,19 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from groundstation.services.shown_models import LARGE, QUICK_PX
-from reconstruction.modelling.config import ANTIALIASED
-from reconstruction.modelling.model import SceneModel
-from reconstruction.modelling.render import render_view
-from reconstruction.reflections.config import ReflectionConfig
-from reconstruction.reflections.photo_set import PanelPlanes
-from reconstruction.reflections.reflective_panels import ModelName
-from reconstruction.reflections.training import untrained_panels
-from reconstruction.scores.image_metrics import psnr_db
-from reconstruction.splatting.merged_splats import splats_of_detail
-from reconstruction.splatting.sky import Sky
-from reconstruction.splatting.splats import NO_PANEL, Splats
-from reconstruction.splatting.views import View
+from groundstation.services.reconstruct.shown_models import LARGE, QUICK_PX
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.light.reflective_panels import ModelName
+from reconstruction.light.training import untrained_panels
+from reconstruction.metrics.image_metrics import psnr_db
+from reconstruction.splats.merged_splats import splats_of_detail
+from reconstruction.splats.rasterising.views import View
+from reconstruction.splats.sky import Sky
+from reconstruction.splats.splats import NO_PANEL, Splats
+from reconstruction.training.config import ANTIALIASED
+from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.model.render import render_view
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.reconstruction.objects.made_scene import pane
 

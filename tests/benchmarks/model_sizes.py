@@ -16,31 +16,31 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from groundstation.services.scene_photos import photograph_files
-from groundstation.services.scene_views import SceneWish
+from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.views import SceneWish
 from reconstruction.exports.baked import ALMOST_NO_LOGIT, baked
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.ply_export import write_ply
-from reconstruction.exports.sog import write_sog
-from reconstruction.exports.sog_reading import read_sog
-from reconstruction.exports.spz import write_spz
-from reconstruction.exports.spz_reading import read_spz
-from reconstruction.modelling.config import ANTIALIASED, TrainConfig
-from reconstruction.modelling.model import SceneModel
-from reconstruction.modelling.render import render_view
-from reconstruction.modelling.saved import TrainedModel
-from reconstruction.modelling.score import score_views
-from reconstruction.modelling.train import train_model
+from reconstruction.exports.sog.reading import read_sog
+from reconstruction.exports.sog.writing import write_sog
+from reconstruction.exports.spz.reading import read_spz
+from reconstruction.exports.spz.writing import write_spz
+from reconstruction.light.photo_set import PhotoSet, read_photo_set
+from reconstruction.light.shading import display_from_linear
 from reconstruction.objects.gs_scene import GsGaussian, GsScene
 from reconstruction.objects.organise import organised, put_together
 from reconstruction.objects.picking import Quads, panel_map
-from reconstruction.reflections.photo_set import PhotoSet, read_photo_set
-from reconstruction.reflections.shading import display_from_linear
-from reconstruction.splatting.harmonic_colour import display_colours, light_of_display
-from reconstruction.splatting.ply import ODD, read_splats
-from reconstruction.splatting.rasteriser import rasterise
-from reconstruction.splatting.views import View
+from reconstruction.splats.harmonic_colour import display_colours, light_of_display
+from reconstruction.splats.ply import ODD, read_splats
+from reconstruction.splats.rasterising.rasteriser import rasterise
+from reconstruction.splats.rasterising.views import View
+from reconstruction.training.config import ANTIALIASED, TrainConfig
+from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.model.render import render_view
+from reconstruction.training.model.saved import TrainedModel
+from reconstruction.training.model.score import score_views
+from reconstruction.training.train import train_model
 from tests.benchmarks.harness import Benchmark, Context, Row
 
 N_VIEWS, WIDTH_PX = 60, 256

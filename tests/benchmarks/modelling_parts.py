@@ -16,18 +16,18 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from reconstruction.cameras import Intrinsics
+from reconstruction.base.cameras import Intrinsics
 from reconstruction.colmap.folder import write_model
 from reconstruction.colmap.georeference import model_of
 from reconstruction.dataset.prepare import layer_path
-from reconstruction.kept_memory import freed_memory_kept
-from reconstruction.modelling.decoded_photo import Decoding, decoded_bytes
-from reconstruction.modelling.dssim import dssim, dssim_torch
-from reconstruction.reflections.reflection_mlp import MlpShape, ReflectionMlp
-from reconstruction.splatting.harmonic_colour import display_colours_twin, light_of_display
+from reconstruction.light.directions.reflection_mlp import MlpShape, ReflectionMlp
+from reconstruction.splats.harmonic_colour import display_colours_twin, light_of_display
+from reconstruction.training.allocator import freed_memory_kept
+from reconstruction.training.losses.dssim import dssim, dssim_torch
+from reconstruction.training.photos.decoded_photo import Decoding, decoded_bytes
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.reconstruction.reflections.made_folder import cameras, corners_of
-from tests.reconstruction.splatting.learned_scenes import random_splats
+from tests.reconstruction.light.made_folder import cameras, corners_of
+from tests.reconstruction.splats.learned_scenes import random_splats
 
 SIZES = ((256, 192), (1024, 768))
 MOST_MS = 8.0

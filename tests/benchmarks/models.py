@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from groundstation.services.scene_photos import photograph_files
-from groundstation.services.scene_views import SceneWish
-from reconstruction.modelling.config import LightWish, TrainConfig
-from reconstruction.modelling.score import mean_of, score_views
-from reconstruction.modelling.train import train_model
-from reconstruction.reflections.photo_set import read_photo_set
+from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.views import SceneWish
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.training.config import LightWish, TrainConfig
+from reconstruction.training.model.score import mean_of, score_views
+from reconstruction.training.train import train_model
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 
 N_VIEWS, WIDTH_PX = 60, 128

@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from planning.coverage.model import exact_coverage
+from planning.coverage.reach_kernel import UNREACHABLE
 from planning.plan import Constraints, viewpoint_arrays
 from planning.planner import plan_flight
-from planning.reach_kernel import UNREACHABLE
 from planning.request import PlanRequest
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import prepared
 

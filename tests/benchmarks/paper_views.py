@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from planning.optimise.greedy import greedy
-from planning.optimise.problem import ViewProblem
-from planning.optimise.pso import USUAL_SETTINGS, pso
-from planning.progress import TimeLimit
+from planning.base.progress import TimeLimit
+from planning.viewpoints.greedy import greedy
+from planning.viewpoints.problem import ViewProblem
+from planning.viewpoints.pso import USUAL_SETTINGS, pso
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.benchmarks.problems import CURVED_VIEWS, PLANAR_VIEWS, choose, covered, prepared
 

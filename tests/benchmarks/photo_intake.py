@@ -10,7 +10,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from planning.photo_files.folder import read_photos
+from planning.photos.folder import read_photos
 from reconstruction.photos.decode import Scale, grey_picture
 from reconstruction.photos.quality import DEFAULT_LIMITS, photo_quality
 from tests.benchmarks.fresh_process import run_measured
@@ -22,7 +22,7 @@ SCALES: tuple[Scale, ...] = (1, 2, 4, 8)
 CHECK = """
 import json, sys
 from pathlib import Path
-from planning.photo_files.folder import read_photos
+from planning.photos.folder import read_photos
 from reconstruction.photos.quality import check_quality
 report = check_quality(read_photos(Path(sys.argv[1])).photos)
 print(json.dumps(sum(found is not None for found in report.photos)))

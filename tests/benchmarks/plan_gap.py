@@ -11,13 +11,13 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-from planning.jit import n_threads
-from reconstruction.reflections.config import ReflectionConfig
-from reconstruction.reflections.glass_rays import glass_rays
-from reconstruction.reflections.photo_set import read_photo_set
-from reconstruction.reflections.reflective_panels import ModelName
-from reconstruction.reflections.scoring import score_views
-from reconstruction.reflections.training import train_reflections
+from planning.base.jit import n_threads
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.glass_rays import glass_rays
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.reflective_panels import ModelName
+from reconstruction.light.scoring import score_views
+from reconstruction.light.training import train_reflections
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import QUICK, QUICK_N_VIEWS, QUICK_WIDTH_PX
 from tests.tables.photos import Photos, Planner, photos_in

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from planning.catalogue import profile
-from planning.optimise.greedy import greedy
+from planning.aircraft.catalogue import profile
+from planning.base.progress import TimeLimit
 from planning.plan import FlightRules
-from planning.plan_records import as_written
-from planning.progress import TimeLimit
 from planning.routing import vrp
 from planning.routing.flights import flight_times
 from planning.routing.sorties import SortieProblem, Sorties, plan_sorties, solve_sorties, sortie_durations_s
+from planning.viewpoints.greedy import greedy
+from planning.viewpoints.plan_records import as_written
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.benchmarks.problems import PLANAR_VIEWS, choose, prepared
 

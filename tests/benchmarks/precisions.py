@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from planning.evaluate import coverage_counts
+from planning.coverage.evaluate import coverage_counts
 from planning.plan import viewpoint_arrays
 from planning.planner import Planned, plan_flight
 from planning.request import PlanRequest, Precision
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import prepared
 

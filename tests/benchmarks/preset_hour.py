@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from reconstruction.modelling.presets import HOUR_S, preset
-from reconstruction.modelling.tradeoff import Setting
+from reconstruction.tradeoff.train_tradeoff import Setting
+from reconstruction.training.presets import HOUR_S, preset
 from tests.benchmarks import presets
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import rendered

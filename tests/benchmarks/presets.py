@@ -11,13 +11,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from planning.jit import n_threads
-from planning.progress import QUIET
+from planning.base.jit import n_threads
+from planning.base.progress import QUIET
 from planning.tradeoff.picture import draw
-from reconstruction.modelling.config import TrainConfig
-from reconstruction.modelling.presets import preset
-from reconstruction.modelling.tradeoff import BASE, Setting, Trial, run_settings, settings_of, trial_panels
-from reconstruction.scores.scene_tradeoff import ERROR_AXIS
+from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
+from reconstruction.tradeoff.train_tradeoff import BASE, Setting, Trial, run_settings, settings_of, trial_panels
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.presets import preset
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import rendered
 

@@ -6,13 +6,13 @@ import functools
 
 import numpy as np
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
+from planning.base.progress import QUIET, Stop, Trace, never
 from planning.coverage.model import exact_coverage
-from planning.optimise.problem import Goal, Optimiser, ViewProblem
 from planning.plan import Constraints, ViewpointArrays
-from planning.prepare import Prepared, prepare
-from planning.progress import QUIET, Stop, Trace, never
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
+from planning.viewpoints.prepare import Prepared, prepare
+from planning.viewpoints.problem import Goal, Optimiser, ViewProblem
 
 PLANAR_VIEWS, CURVED_VIEWS = 560, 600
 """The paper's numbers of views for its planar and its curved case (4.2.1); office and library stand for them."""

@@ -12,10 +12,10 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from reconstruction.modelling.config import ANTIALIASED
-from reconstruction.splatting.raster import Raster, RasterSettings
-from reconstruction.splatting.rasteriser import rasterise
-from reconstruction.splatting.views import View
+from reconstruction.splats.rasterising.raster_types import Raster, RasterSettings
+from reconstruction.splats.rasterising.rasteriser import rasterise
+from reconstruction.splats.rasterising.views import View
+from reconstruction.training.config import ANTIALIASED
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.torch_tiles import rasterise_in_torch
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
+from planning.coverage.reachability import MAX_CELLS, find_reachable
 from planning.plan import Constraints
-from planning.prepare import prepare
-from planning.reachability import MAX_CELLS, find_reachable
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
+from planning.viewpoints.prepare import prepare
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.benchmarks.problems import prepared
 

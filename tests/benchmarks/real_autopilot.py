@@ -6,15 +6,15 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from groundstation.services.flying import FlightWish, Flown, fly_plan
-from groundstation.services.flying_sitl import SITL_LINK, sitl
-from missions.build import missions_from_plan
+from groundstation.services.fly.flying import FlightWish, Flown, fly_plan
+from groundstation.services.fly.sitl import SITL_LINK, sitl
 from missions.mavlink.autopilots import Autopilot
+from missions.mission.build import missions_from_plan
 from planning.plan import Plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.scenes import SCENES
-from planning.site import SiteModel
+from planning.site.bundled import SCENES
+from planning.site.records import SiteModel
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
 from tests.services.real_autopilots import SPEEDUP, binary, variable
 

@@ -11,20 +11,12 @@ from typing import Any
 
 import msgspec
 
-from planning.json_file import write_atomically
-from planning.progress import Clock
+from planning.base.json_file import write_atomically
+from planning.base.progress import Clock
 from reconstruction.records.book import FILE, RecordBook, make_book
-from reconstruction.records.csv_import import read_tables
-from reconstruction.records.csv_tables import table_name, write_tables
-from reconstruction.records.entries import (
-    KINDS,
-    Attribute,
-    Defect,
-    Document,
-    Entry,
-    Inspection,
-    Maintenance,
-)
+from reconstruction.records.csv.reading import read_tables
+from reconstruction.records.csv.tables import table_name, write_tables
+from reconstruction.records.entries import KINDS, Attribute, Defect, Document, Entry, Inspection, Maintenance
 from reconstruction.records.global_ids import global_id_of
 from reconstruction.records.objects import ObjectRow
 from reconstruction.records.queries import (

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.colmap.accuracy import pose_covariances
 from reconstruction.colmap.camera_models import camera_of
 from reconstruction.colmap.georeference import angle_between_deg

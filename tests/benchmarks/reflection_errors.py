@@ -13,17 +13,17 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from groundstation.services.scene_photos import photograph_files
-from groundstation.services.scene_views import SceneWish
-from reconstruction.reflections.config import ReflectionConfig
-from reconstruction.reflections.glass_learned import GlassLearned
-from reconstruction.reflections.glass_rays import GlassRays, glass_rays
-from reconstruction.reflections.photo_set import PanelPlanes, PhotoSet, held_out_names, read_photo_set
-from reconstruction.reflections.ray_table import RayTable
-from reconstruction.reflections.reflective_panels import ModelName
-from reconstruction.reflections.training import mean_square_error, train_reflections
-from reconstruction.scenes.renderer import RenderSettings
-from reconstruction.scores.image_metrics import psnr_db
+from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.views import SceneWish
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.glass_learned import GlassLearned
+from reconstruction.light.glass_rays import GlassRays, glass_rays
+from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names, read_photo_set
+from reconstruction.light.ray_table import RayTable
+from reconstruction.light.reflective_panels import ModelName
+from reconstruction.light.training import mean_square_error, train_reflections
+from reconstruction.metrics.image_metrics import psnr_db
+from reconstruction.scenes.photos.renderer import RenderSettings
 from tests.benchmarks.harness import Benchmark, Context, Row
 
 Array = NDArray[np.float64]

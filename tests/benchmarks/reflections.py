@@ -7,11 +7,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from reconstruction.reflections.choose_light import choose_light
-from reconstruction.reflections.config import ReflectionConfig
-from reconstruction.reflections.glass_rays import glass_rays
-from reconstruction.reflections.photo_set import read_photo_set
-from reconstruction.reflections.reflective_panels import ModelName
+from reconstruction.light.choose_light import choose_light
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.glass_rays import glass_rays
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.reflective_panels import ModelName
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import (
     QUICK,

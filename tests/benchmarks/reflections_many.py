@@ -6,8 +6,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from reconstruction.reflections.config import ReflectionConfig
-from reconstruction.reflections.reflection_mlp import MlpShape
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.directions.reflection_mlp import MlpShape
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import (
     QUICK,

@@ -17,8 +17,8 @@ from tests.benchmarks.harness import Benchmark, Outcome, Row
 HEADER = """# Benchmarks
 
 Written by `make benchmark` (`python -m tests.benchmarks`); do not edit by hand. `--only NAME` measures one part anew
-and keeps the others, `--quick` takes two minutes and writes elsewhere. Sites are those of `planning.scenes`; camera and
-aircraft the DJI M3E; 10 m distance, sections of 30 degrees and float32 unless something else is said.
+and keeps the others, `--quick` takes two minutes and writes elsewhere. Sites are those of `planning.site.bundled`;
+camera and aircraft the DJI M3E; 10 m distance, sections of 30 degrees and float32 unless something else is said.
 
 "Load" is the number of processes that wanted to run in the minute before: above 0.5 or so the times are those of a
 shared machine. Coverage is counted by the definition in float64. Shares are shares of the proven bound on what can be

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from planning.checks import check_plan
-from planning.evaluate import coverage
-from planning.frames import Vec3
+from planning.coverage.evaluate import coverage
+from planning.geo.frames import Vec3
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.revision import Revision, add, delete, lock, move, revise
-from planning.scenes import SCENES
-from planning.site import SiteModel
+from planning.site.bundled import SCENES
+from planning.site.records import SiteModel
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.benchmarks.problems import PLANAR_VIEWS
 

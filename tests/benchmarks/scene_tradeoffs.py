@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from planning.catalogue import profile
-from planning.errors import InputError
+from planning.aircraft.catalogue import profile
+from planning.base.errors import InputError
 from planning.tradeoff.picture import draw
-from reconstruction.scenes.bundled import bundled_scene
-from reconstruction.scenes.effects import decide_effects
-from reconstruction.scenes.flight_views import lens_of
-from reconstruction.scenes.mitsuba_plugins import mitsuba
-from reconstruction.scenes.mitsuba_renderer import MitsubaRenderer
-from reconstruction.scenes.renderer import RenderSettings
-from reconstruction.scenes.square_views import square_photos
-from reconstruction.scores.scene_tradeoff import (
+from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.mitsuba.plugins import mitsuba
+from reconstruction.scenes.mitsuba.renderer import MitsubaRenderer
+from reconstruction.scenes.photos.flight_views import lens_of
+from reconstruction.scenes.photos.renderer import RenderSettings
+from reconstruction.scenes.photos.square_views import square_photos
+from reconstruction.scenes.world.bundled import bundled_scene
+from reconstruction.tradeoff.scene_tradeoff import (
     ERROR_AXIS,
     SceneVariants,
     make_truth,

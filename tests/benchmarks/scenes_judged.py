@@ -9,10 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.errors import InputError
-from reconstruction.cameras import PosedPhoto
-from reconstruction.scenes.bundled import SCENES, bundled_scene
-from reconstruction.scenes.effect_names import (
+from planning.base.errors import InputError
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.scenes.effects.names import (
     CURVATURE,
     DOUBLING,
     FRESNEL,
@@ -25,11 +24,12 @@ from reconstruction.scenes.effect_names import (
     SUN_GLARE,
     TILT,
 )
-from reconstruction.scenes.effects import decide_effects
-from reconstruction.scenes.lens_effects import MIDDLE_GREY, grey_levels
-from reconstruction.scenes.mitsuba_renderer import MitsubaRenderer
-from reconstruction.scenes.record import Scene
-from reconstruction.scenes.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.mitsuba.renderer import MitsubaRenderer
+from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, grey_levels
+from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.world.bundled import SCENES, bundled_scene
+from reconstruction.scenes.world.record import Scene
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, stopwatch
 from tests.benchmarks.scenes import facing_photo
 

@@ -10,24 +10,24 @@ from typing import Any
 
 import numpy as np
 
-from planning.progress import QUIET
+from planning.base.progress import QUIET
 from planning.tradeoff.picture import draw
-from reconstruction.made_facades.cases import random_case, wide_camera
-from reconstruction.made_facades.render import make_facade
-from reconstruction.scores.metrics import PhotoScores, SetScores, summarise
-from reconstruction.scores.overlaps import pixel_overlaps
-from reconstruction.scores.pictures import write_picture
-from reconstruction.scores.report import picture
-from reconstruction.scores.run import Method, ScoredAnswer, own_method, score_answer, score_set
-from reconstruction.scores.sets import PhotoSet, ScoredPhoto, annotated_set, made_set
-from reconstruction.scores.tradeoff import (
+from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
+from reconstruction.metrics.overlaps import pixel_overlaps
+from reconstruction.metrics.pictures import write_picture
+from reconstruction.metrics.report import picture
+from reconstruction.metrics.run import Method, ScoredAnswer, own_method, score_answer, score_set
+from reconstruction.metrics.sets import PhotoSet, ScoredPhoto, annotated_set, made_set
+from reconstruction.panels.search.parameters import DETECTORS, SegmentationParameters
+from reconstruction.scenes.facades.cases import random_case, wide_camera
+from reconstruction.scenes.facades.render import make_facade
+from reconstruction.tradeoff.search_tradeoff import (
     MIOU_AXIS,
     SegmentVariants,
     SettingScores,
     run_variants,
     variants_panel,
 )
-from reconstruction.segmentation.parameters import DETECTORS, SegmentationParameters
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 
 SEEDS, FEW_SEEDS, QUICK_SEEDS = 50, 20, 3

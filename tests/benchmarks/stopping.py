@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from reconstruction.modelling.config import TrainConfig, config_of
-from reconstruction.modelling.presets import preset
-from reconstruction.modelling.score import mean_of, score_views
-from reconstruction.modelling.settling import SHARE
-from reconstruction.modelling.stopwatch import Stopwatch
-from reconstruction.modelling.train import train_model
-from reconstruction.modelling.watching import Visit, Watching
-from reconstruction.reflections.photo_set import read_photo_set
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.training.callbacks import Visit, Watching
+from reconstruction.training.config import TrainConfig, config_of
+from reconstruction.training.model.score import mean_of, score_views
+from reconstruction.training.presets import preset
+from reconstruction.training.timer import Stopwatch
+from reconstruction.training.train import train_model
+from reconstruction.training.trainer import SHARE
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.lessons import rendered
 

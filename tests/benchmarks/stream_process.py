@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from reconstruction.modelling.photo_stream import PhotoStream, StreamSettings
-from reconstruction.reflections.photo_set import read_photo_set
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 
 STEP_S = 0.1
 """Between samples, as a training would take."""

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from planning.base.progress import TimeLimit
 from planning.plan import Plan, ViewpointArrays, viewpoint_arrays
 from planning.planner import plan_flight
-from planning.progress import TimeLimit
 from planning.request import PlanRequest
+from planning.revision.top_up import TopUpRequest, top_up
 from planning.routing.flights import draw_flights, flight_times, plan_flights
-from planning.top_up import TopUpRequest, top_up
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import prepared
 

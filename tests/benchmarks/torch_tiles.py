@@ -1,6 +1,6 @@
 """A rasteriser of splats as one writes it in torch: square by square, with gradients by autograd.
 
-The same picture as `reconstruction.splatting.rasterise` draws, as what the compiled one is measured against.
+The same picture as `reconstruction.splats.rasterise` draws, as what the compiled one is measured against.
 """
 
 from __future__ import annotations
@@ -8,10 +8,10 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from reconstruction.splatting.numba_tiles import sort_into_tiles
-from reconstruction.splatting.projection import Projected, project
-from reconstruction.splatting.raster import RasterSettings
-from reconstruction.splatting.views import View
+from reconstruction.splats.rasterising.numba_tiles import sort_into_tiles
+from reconstruction.splats.rasterising.projection import Projected, project
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.splats.rasterising.views import View
 
 TILE_PX = 16
 

@@ -12,14 +12,14 @@ import time
 from datetime import timedelta
 from pathlib import Path
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
 from planning.plan import Viewpoint
-from planning.scenes import tower
-from reconstruction.scenes.build import build_scene
-from reconstruction.scenes.flight_views import Shot, lens_of, posed_photos
-from reconstruction.scenes.photo_folder import photograph
-from reconstruction.scenes.photographers import PhotoJob
-from reconstruction.scenes.renderer import RenderSettings
+from planning.site.bundled import tower
+from reconstruction.scenes.photos.flight_views import Shot, lens_of, posed_photos
+from reconstruction.scenes.photos.photo_folder import photograph
+from reconstruction.scenes.photos.photo_job import PhotoJob
+from reconstruction.scenes.photos.renderer import RenderSettings
+from reconstruction.scenes.world.build import build_scene
 
 
 class Stages:

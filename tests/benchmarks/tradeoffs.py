@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from planning.request import PlanRequest
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
 from planning.tradeoff.curves import seconds_text
 from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, draw
 from planning.tradeoff.plan_report import plan_panels, plan_report, plan_title

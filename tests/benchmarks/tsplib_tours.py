@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
-from planning.progress import TimeLimit, Trace, any_of
+from planning.base.progress import TimeLimit, Trace, any_of
 from planning.routing.methods import TourMethod, find_tour
 from planning.routing.tour import tour_length
 from planning.routing.tsplib import read_instance

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from planning.catalogue import profiles
-from planning.mesh import box_mesh
+from planning.aircraft.catalogue import profiles
+from planning.geo.mesh import box_mesh
 from planning.plan import Camera, Constraints, Coverage, Plan, Sortie, Viewpoint
-from planning.scenes import ORIGIN, panel_grid
-from planning.site import Airspace, Site, SiteModel
+from planning.site.bundled import ORIGIN, panel_grid
+from planning.site.records import Airspace, Site, SiteModel
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
 from tests.gui.screen import start_virtual_screen
 

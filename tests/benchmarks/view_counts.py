@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from planning.optimise.greedy import greedy
-from planning.optimise.problem import Optimiser
-from planning.optimise.pso import pso
-from planning.progress import TimeLimit
+from planning.base.progress import TimeLimit
+from planning.viewpoints.greedy import greedy
+from planning.viewpoints.problem import Optimiser
+from planning.viewpoints.pso import pso
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 from tests.benchmarks.problems import choose, covered, prepared
 

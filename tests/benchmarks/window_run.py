@@ -20,7 +20,7 @@ from typing import Any
 
 import psutil
 
-from groundstation.gui.virtual_screen import has_screen, start_virtual_screen
+from groundstation.gui.screenshots.virtual_screen import has_screen, start_virtual_screen
 
 N_VIEWS, N_EDITS = 560, 40
 BUDGET_S, IDLE_S, N_PLANS = 20.0, 4.0, 3
@@ -59,7 +59,7 @@ def startup(*, eager: bool) -> dict[str, float]:
     application = QApplication(["reflight"])
     if eager:
         importlib.import_module("groundstation.gui.view3d.scene_view")
-    from groundstation.gui.desk import Desk
+    from groundstation.gui.window.project_controller import Desk
 
     desk = Desk(application)
     desk.show()
@@ -100,8 +100,8 @@ def planning() -> dict[str, Any]:
     """Gaps of the window's thread while it idles and while a plan of the office runs; then times of edits by hand."""
     from PySide6.QtWidgets import QApplication
 
-    from groundstation.gui.desk import Desk
-    from groundstation.services.document import Item, ItemKind
+    from groundstation.gui.window.project_controller import Desk
+    from groundstation.services.project.document import Item, ItemKind
     from planning import revision as edits
     from planning.request import PlanRequest
 
@@ -150,8 +150,8 @@ def training(dataset: Path, out: Path) -> dict[str, Any]:
     from a turn of the view to its first picture."""
     from PySide6.QtWidgets import QApplication
 
-    from groundstation.gui.desk import Desk
-    from groundstation.gui.reconstruct.reconstruct_desk import Phase
+    from groundstation.gui.reconstruct.reconstruct_controller import Phase
+    from groundstation.gui.window.project_controller import Desk
 
     application = QApplication(["reflight"])
     desk = Desk(application)

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from groundstation.cli.main import main
-from groundstation.services.planning import plan_site
+from groundstation.services.plan.planning import plan_site
 from planning.request import PlanRequest
-from planning.scenes import write_scene
+from planning.site.bundled import write_scene
 from tests.planning.revision.cases import QUICK
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from planning.scenes import write_scene
+from planning.site.bundled import write_scene
 
 
 def test_a_good_plan_is_ready_to_fly_and_the_next_command_is_told(reflight, pane):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from planning.scenes import write_scene
+from planning.site.bundled import write_scene
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.cli.console import counted, named_like, print_findings, print_next, run_job
-from planning.findings import Finding, Severity
+from planning.base.findings import Finding, Severity
 
 
 def test_equal_findings_are_printed_once_with_their_number_and_the_rest_is_counted(capsys):

@@ -3,9 +3,9 @@
 import pytest
 
 from groundstation.cli.commands.demo import SCENES as OFFERED
-from missions.formats import read_missions
-from planning.plan_file import read_plan
-from planning.scenes import SCENES
+from missions.formats.registry import read_missions
+from planning.plan import read_plan
+from planning.site.bundled import SCENES
 
 
 def test_every_bundled_site_is_offered():

@@ -5,16 +5,15 @@ import shutil
 
 import pytest
 
-from groundstation.services.planning import plan_site
+from groundstation.services.plan.planning import plan_site
 from missions.dji.check import check_dji
 from missions.dji.container import parts_of_kmz
-from missions.formats import read_missions
-from planning.catalogue import profiles
-from planning.findings import is_flyable
-from planning.plan import FlightRules
-from planning.plan_file import read_plan
+from missions.formats.registry import read_missions
+from planning.aircraft.catalogue import profiles
+from planning.base.findings import is_flyable
+from planning.plan import FlightRules, read_plan
 from planning.request import PlanRequest
-from planning.scenes import write_scene
+from planning.site.bundled import write_scene
 from tests.planning.revision.cases import QUICK
 
 ENDINGS = {

@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from groundstation.services.planning import plan_site
+from groundstation.services.plan.planning import plan_site
 from planning.request import PlanRequest
-from planning.scenes import write_scene
+from planning.site.bundled import write_scene
 from tests.planning.revision.cases import QUICK
 
 GIVEN = {
@@ -71,12 +71,12 @@ WRONG = [(command, given) for command, (_, _, taken) in COMMANDS.items() for giv
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     """Folder with one file of each kind; tests must not change it."""
-    from groundstation.services.document import Document
-    from groundstation.services.missions import export_plan
-    from groundstation.services.project import create_project, open_project, save_project
-    from groundstation.services.project_plans import add_plans
-    from missions.model import FileFormat
-    from planning.site_file import read_site
+    from groundstation.services.mission.export import export_plan
+    from groundstation.services.project.document import Document
+    from groundstation.services.project.folder import create_project, open_project, save_project
+    from groundstation.services.project.plans import add_plans
+    from missions.mission.model import FileFormat
+    from planning.site.file import read_site
 
     folder = tmp_path_factory.mktemp("files")
     site = write_scene("single-panel", folder).rename(folder / "site.json")

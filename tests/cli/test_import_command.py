@@ -7,9 +7,9 @@ import zipfile
 import numpy as np
 import pytest
 
-from missions.formats import read_missions
-from planning.plan_file import read_plan
-from planning.site_file import read_site
+from missions.formats.registry import read_missions
+from planning.plan import read_plan
+from planning.site.file import read_site
 
 ENDINGS = {"dji-kmz": ".kmz", "mavlink-plan": ".plan", "mavlink-wpl": ".waypoints", "kml": ".kml", "csv": ".csv"}
 

@@ -12,13 +12,13 @@ import pytest
 from groundstation.cli.main import WindowWish, build_parser, main
 from groundstation.cli.options import new_folder
 from missions.flight.flight_file import flight_of, write_flight
-from planning.errors import InputError, OperationCancelled
-from planning.plan_file import read_plan
+from planning.base.errors import InputError, OperationCancelled
+from planning.plan import read_plan
 from planning.request import LARGEST_SEED
-from planning.scenes import write_scene
-from planning.site_file import read_site
+from planning.site.bundled import write_scene
+from planning.site.file import read_site
 from tests.cli.conftest import ROOT
-from tests.reconstruction.modelling.made_data_set import write_data_set
+from tests.reconstruction.training.made_data_set import write_data_set
 
 
 def test_version_is_told(reflight):
@@ -79,7 +79,7 @@ def failing_with(error, monkeypatch):
     def fail(*_arguments):
         raise error
 
-    monkeypatch.setattr("groundstation.services.planning.check_files", fail)
+    monkeypatch.setattr("groundstation.services.plan.planning.check_files", fail)
 
 
 def outputs(parser, path=()):

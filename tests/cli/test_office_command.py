@@ -6,13 +6,13 @@ import pytest
 
 from missions.dji.check import check_dji
 from missions.dji.container import parts_of_kmz
-from missions.formats import read_missions
+from missions.formats.registry import read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.check import check_items
 from missions.mavlink.plan_json import read_plan_json
 from missions.mavlink.wpl import read_wpl
-from planning.findings import is_flyable
-from planning.plan_file import read_plan
+from planning.base.findings import is_flyable
+from planning.plan import read_plan
 
 MISSIONS = {
     "dji-kmz": (".kmz", "m3e"),

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.services.planning import plan_site
-from planning.plan_file import read_plan
+from groundstation.services.plan.planning import plan_site
+from planning.plan import read_plan
 from planning.request import PlanRequest
-from planning.scenes import write_scene
-from planning.site_file import read_site
+from planning.site.bundled import write_scene
+from planning.site.file import read_site
 from tests.missions.flight.photo_files import Device, write_photos
 from tests.planning.revision.cases import QUICK
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from planning.catalogue import profiles
-from planning.plan_file import read_plan
+from planning.aircraft.catalogue import profiles
+from planning.plan import read_plan
 
 QUICK = ("--time-budget", 1)
 
@@ -245,7 +245,7 @@ def test_an_output_that_cannot_be_written_is_refused_before_the_work(
     shutil.copy(pane / "site.json", tmp_path)
     (tmp_path / "link.json").symlink_to("site.json")
     before = (tmp_path / "site.json").read_bytes()
-    monkeypatch.setattr("groundstation.services.planning.plan_flight", lambda *_: pytest.fail("it was planned"))
+    monkeypatch.setattr("groundstation.services.plan.planning.plan_flight", lambda *_: pytest.fail("it was planned"))
     assert message in reflight("plan", tmp_path / "site.json", "-o", tmp_path / out).error
     assert (tmp_path / "site.json").read_bytes() == before
 

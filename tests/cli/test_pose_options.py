@@ -4,13 +4,13 @@ import sys
 
 import pytest
 
-from planning.photo_files.folder import read_photos
+from planning.photos.folder import read_photos
 from reconstruction.colmap.pycolmap_run import RefineParameters
 from reconstruction.colmap.refined_folder import write_refined
 from reconstruction.photos.poses import pose_photos
 from tests.cli.test_panels_command import AT
 from tests.reconstruction.made_photos import made_photos, write_flight, write_model
-from tests.services.test_photo_poses import refinement
+from tests.services.photos.test_poses import refinement
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def site(flight, reflight):
 @pytest.fixture
 def kept(flight, site):
     """Refined poses, as if they had been computed before."""
-    from planning.site_file import read_site
+    from planning.site.file import read_site
 
     photos = flight / "photos"
     stated = pose_photos(read_photos(photos).photos, read_site(site).site, photos).photos

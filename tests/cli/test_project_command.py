@@ -5,13 +5,13 @@ import shutil
 
 import pytest
 
-from groundstation.services.autosave import Autosave
-from groundstation.services.project import open_project
-from groundstation.services.project_lock import lock_project
+from groundstation.services.project.autosave import Autosave
+from groundstation.services.project.folder import open_project
+from groundstation.services.project.lock import lock_project
 from planning.request import PlanRequest
-from planning.scenes import write_scene
-from tests.services.test_autosave import AtOnce, edited
-from tests.services.test_project import files_of
+from planning.site.bundled import write_scene
+from tests.services.project.test_autosave import AtOnce, edited
+from tests.services.project.test_folder import files_of
 
 
 @pytest.fixture

@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from planning.mesh import write_mesh
-from planning.photo_files.folder import read_photos
-from planning.site_file import read_site
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from planning.geo.mesh import write_mesh
+from planning.photos.folder import read_photos
+from planning.site.file import read_site
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import angle_between_deg
 from reconstruction.colmap.refined_folder import read_refined

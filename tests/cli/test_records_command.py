@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from planning.scenes import write_scene
+from planning.site.bundled import write_scene
 from reconstruction.objects.store import write_scene as write_objects
 from tests.reconstruction.objects.made_scene import made_scene
 

@@ -2,19 +2,19 @@
 
 import pytest
 
-from groundstation.services.flight_report import report_files
+from groundstation.services.fly.report import report_files
 from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.orders import sortie_orders
-from missions.build import missions_from_plan
 from missions.flight.flight_file import read_flight
 from missions.mavlink.autopilots import Autopilot
-from planning.plan_file import read_plan
-from planning.site_file import read_site
+from missions.mission.build import missions_from_plan
+from planning.plan import read_plan
+from planning.site.file import read_site
 from tests.cli.conftest import BAD_CONTENTS
 from tests.missions.flight.flights import flown_as_planned
 from tests.missions.flight.log_writers import dataflash, dataflash_text, tlog, ulog
 from tests.missions.flight.photo_files import Device, write_photos
-from tests.planning.photo_files.photo_writer import save
+from tests.planning.photos.photo_writer import save
 
 LOGS = {"flight.tlog": tlog, "flight.BIN": dataflash, "flight.log": dataflash_text, "flight.ulg": ulog}
 

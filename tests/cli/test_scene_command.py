@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.scene_views import BUNDLED_TEXTS
+from groundstation.services.scenes.views import BUNDLED_TEXTS
 from missions.flight.flight_file import flight_of, write_flight
 from missions.flight.record import FlightRecord, TakenPhoto, Track
-from planning.photo_files.folder import read_photos
-from planning.plan_file import read_plan
-from planning.site_file import read_site
+from planning.photos.folder import read_photos
+from planning.plan import read_plan
+from planning.site.file import read_site
 from reconstruction.photos.poses import pose_photos
-from reconstruction.scenes.bundled import SCENES
-from reconstruction.scenes.effect_names import EFFECTS
+from reconstruction.scenes.effects.names import EFFECTS
+from reconstruction.scenes.world.bundled import SCENES
 
 QUICK = ("--width", 32, "--jobs", 1, "--points", 500)
 

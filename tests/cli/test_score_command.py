@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from groundstation.cli.commands.score import SETS
-from reconstruction.scores.sets import SET_NAMES
+from reconstruction.metrics.sets import SET_NAMES
 
 QUICK = ("--seeds", 2, "--width", 480)
 

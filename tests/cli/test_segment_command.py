@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
-from reconstruction.made_facades.cases import simple_case, wide_camera
-from reconstruction.made_facades.record import Layout
-from reconstruction.made_facades.render import make_facade
+from reconstruction.scenes.facades.cases import simple_case, wide_camera
+from reconstruction.scenes.facades.record import Layout
+from reconstruction.scenes.facades.render import make_facade
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import io
 import pytest
 
 from groundstation.cli.main import main
-from groundstation.services import signing
+from groundstation.services.fly import signing
 from missions.mavlink.key_store import KeyStore
 
 

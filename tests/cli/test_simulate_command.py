@@ -14,10 +14,10 @@ from missions.mavlink.link import VEHICLE, open_link
 from missions.simulator.build import EFFECTS, make_airframe
 from missions.simulator.server import serve
 from missions.simulator.vehicle import SimulatedVehicle
-from planning.errors import InputError
-from planning.plan_file import read_plan
-from planning.progress import StopRequest
-from planning.site_file import read_site
+from planning.base.errors import InputError
+from planning.base.progress import StopRequest
+from planning.plan import read_plan
+from planning.site.file import read_site
 from tests.cli.conftest import BAD_CONTENTS
 from tests.slow import slow
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from planning.mesh import read_mesh
-from planning.scenes import write_scene
-from planning.site_file import read_site
+from planning.geo.mesh import read_mesh
+from planning.site.bundled import write_scene
+from planning.site.file import read_site
 
 GRID = ["--panel-grid", "-18,0,0 18,0,0 -18,0,42", "--rows", 14, "--columns", 20]
 PLACE = ["--origin", "-33.8,151.2,5"]

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import pytest
 
-from groundstation.services.flying import FlightWish, fly_files
-from groundstation.services.planning import plan_site
-from planning.plan_file import read_plan, write_plan
+from groundstation.services.fly.flying import FlightWish, fly_files
+from groundstation.services.plan.planning import plan_site
+from planning.plan import read_plan, write_plan
 from planning.request import PlanRequest
-from planning.scenes import write_scene
-from planning.site_file import read_site, write_site
+from planning.site.bundled import write_scene
+from planning.site.file import read_site, write_site
 from tests.missions.flight.photo_files import write_photos
 from tests.planning.revision.cases import QUICK
 from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
@@ -43,9 +43,9 @@ def bare(tmp_path_factory):
 @pytest.fixture
 def mission(bare, tmp_path):
     """The plan as a mission file."""
-    from missions.encode import encode
-    from missions.formats import write_files
-    from missions.model import FileFormat
+    from missions.formats.encode import encode
+    from missions.formats.registry import write_files
+    from missions.mission.model import FileFormat
 
     plan = read_plan(bare / "office.plan.json")
     write_files(encode(plan, plan.origin, plan.home_enu_m, FileFormat.MAVLINK_PLAN), tmp_path / "m.plan")

@@ -8,13 +8,13 @@ import pytest
 
 from missions.flight.flight_file import flight_of, write_flight
 from missions.flight.record import FlightRecord, TakenPhoto, Track
-from planning.mesh import write_mesh
-from planning.plan_file import read_plan, write_plan
-from planning.site_file import read_site, write_site
+from planning.geo.mesh import write_mesh
+from planning.plan import read_plan, write_plan
+from planning.site.file import read_site, write_site
 from tests.missions.flight.flights import flown_as_planned, never_taken, with_photos
 from tests.missions.flight.log_writers import dataflash
 from tests.planning.plan_cases import kiosk
-from tests.planning.test_top_up import alone
+from tests.planning.revision.test_top_up import alone
 
 
 @pytest.fixture

@@ -6,11 +6,11 @@ import json
 import pytest
 
 from groundstation.cli.main import main
-from planning.plan_file import read_plan, write_plan
+from planning.plan import read_plan, write_plan
 from planning.planner import plan_flight
 from planning.request import GreedyParameters, PlanRequest
-from planning.scenes import write_scene
-from planning.site_file import read_site
+from planning.site.bundled import write_scene
+from planning.site.file import read_site
 
 QUICK = ["--views", "8", "--time-budget", "20", "--candidates", "300"]
 SQUARE = """NAME: square

@@ -7,11 +7,11 @@ import cv2
 import numpy as np
 import pytest
 
-from groundstation.services import model_training
-from groundstation.services.model_objects import scene_of
-from planning.errors import InputError, OperationCancelled
-from reconstruction.modelling.layer_names import LAYERS
-from tests.reconstruction.modelling.made_data_set import write_data_set
+from groundstation.services.model.objects import scene_of
+from groundstation.services.reconstruct import training as model_training
+from planning.base.errors import InputError, OperationCancelled
+from reconstruction.training.names import LAYERS
+from tests.reconstruction.training.made_data_set import write_data_set
 
 SETTINGS = "n_splats = 150\nmax_splats = 200\n"
 

@@ -45,7 +45,7 @@ def _no_dialog_waits(request):
 
 @pytest.fixture(scope="package", autouse=True)
 def _garbage_stays_in_this_thread():
-    """As the running window has it (`groundstation.gui.garbage`): widgets must not be freed on the threads of jobs."""
+    """As in the running window (`groundstation.gui.application.garbage`): no job's thread may free widgets."""
     gc.disable()
     yield
     gc.enable()
@@ -54,7 +54,7 @@ def _garbage_stays_in_this_thread():
 @pytest.fixture(scope="session")
 def worker():
     """The process in which the windows of all tests plan."""
-    from groundstation.services.worker import Worker
+    from groundstation.services.jobs.worker import Worker
 
     worker = Worker()
     yield worker

@@ -16,14 +16,14 @@ from groundstation.gui.camera_preview.photo_overlay import horizon_px
 from groundstation.gui.camera_preview.seen_panels import covered_by_view, nearest_covered, site_sight
 from groundstation.gui.view3d.pinhole import photo_pinhole
 from groundstation.services.units import UnitSystem
-from planning.catalogue import profiles
+from planning.aircraft.catalogue import profiles
 from planning.coverage.model import exact_sections
 from planning.coverage.sections import NOT_SEEN
-from planning.frames import camera_axes, heading_difference_rad
+from planning.geo.frames import camera_axes, heading_difference_rad
 from planning.plan import Constraints, Coverage, FlightRules, Plan, Sortie, Viewpoint, viewpoint_arrays
-from planning.prepare import coverage_model
-from planning.scenes import canyon, office
-from planning.space import free_space
+from planning.site.bundled import canyon, office
+from planning.site.free_space import free_space
+from planning.viewpoints.prepare import coverage_model
 
 PROFILE = profiles()["m3e"]
 CAMERA = PROFILE.camera

@@ -7,10 +7,9 @@ import pytest
 import trimesh
 from PySide6.QtWidgets import QLineEdit, QPushButton
 
-from groundstation.services.document import Document, PlanEntry
-from missions.formats import read_missions
-from planning.plan import FlightRules
-from planning.plan_file import write_plan
+from groundstation.services.project.document import Document, PlanEntry
+from missions.formats.registry import read_missions
+from planning.plan import FlightRules, write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from tests.gui.driving import (
@@ -45,7 +44,7 @@ def shown(application, worker, tmp_path_factory):
     """One window for all of these tests."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
-        from groundstation.gui.desk import Desk
+        from groundstation.gui.window.project_controller import Desk
 
         desk = Desk(application, worker=worker)
         desk.show()
@@ -116,7 +115,7 @@ def open_plan(application, desk):
 
 
 def open_map(application, desk):
-    from groundstation.gui.stage import StagePage
+    from groundstation.gui.shared_view import StagePage
 
     desk.window.stage.show_page(StagePage.MAP)
     turn_until_idle(application, desk)
@@ -280,7 +279,7 @@ def test_the_boxes_of_the_help_menu_go_by_every_way(application, desk):
 @pytest.mark.parametrize("begins_in", ["/", "there"])
 def test_a_path_that_is_typed_is_taken_wherever_the_dialog_begins(application, desk, tmp_path, begins_in):
     """Qt's own dialog takes the folder on the way to it."""
-    from groundstation.gui.questions import Questions, choose_file, choose_files
+    from groundstation.gui.widgets.questions import Questions, choose_file, choose_files
 
     window, folder = desk.window, tmp_path / "on the way"
     folder.mkdir()
@@ -298,7 +297,7 @@ def test_a_path_that_is_typed_is_taken_wherever_the_dialog_begins(application, d
 
 
 def test_a_file_that_is_not_there_is_told_and_another_can_be_named(application, desk, tmp_path):
-    from groundstation.gui.questions import choose_file
+    from groundstation.gui.widgets.questions import choose_file
 
     (tmp_path / "right.json").touch()
 

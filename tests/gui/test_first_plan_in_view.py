@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import pytest
 
-from groundstation.services.document import Document, PlanEntry
-from planning.scenes import SCENES
+from groundstation.services.project.document import Document, PlanEntry
+from planning.site.bundled import SCENES
 from tests.gui.driving import close_desk, turn_until
 from tests.planning.insight.cases import plan, scene
 
 
 @pytest.fixture
 def desk(application, worker, tmp_path, monkeypatch):
-    from groundstation.gui.desk import Desk
+    from groundstation.gui.window.project_controller import Desk
 
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
     desk = Desk(application, worker=worker)

@@ -10,20 +10,20 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.live_choice import ConnectionChoice, LinkKind
-from groundstation.services.reconstruct_choices import TrainChoice
+from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind
+from groundstation.services.reconstruct.choices import TrainChoice
 from groundstation.services.units import UnitSystem
 from missions.dji.write import LinkLoss
-from missions.encode import ExportOptions
+from missions.formats.encode import ExportOptions
 from missions.mavlink.autopilots import Autopilot
-from missions.model import FileFormat, HeightReference
+from missions.mission.model import FileFormat, HeightReference
 from missions.simulator.scene import Conditions
+from planning.geo.frames import Origin
 from planning.plan import Camera, Constraints, FlightRules, Viewpoint
 from planning.request import LARGEST_SEED, GreedyParameters, PlanRequest
-from planning.site import Origin
-from planning.site_import.options import ImportOptions
+from planning.site.importing.options import ImportOptions
 from reconstruction.records.entries import Attribute, Defect, Maintenance
-from reconstruction.scenes.look import Look
+from reconstruction.scenes.world.look import Look
 
 PANEL = "0YvctVUKr0kugbFTf53O9L"
 
@@ -131,7 +131,7 @@ def test_fifty_batteries_sections_of_45_degrees_and_a_long_seed_survive_an_edit(
 )
 @quick
 def test_the_viewpoint_editor_keeps_places_and_angles(application, viewpoint, units):
-    from groundstation.gui.plan.viewpoint_editor import ViewpointEditor
+    from groundstation.gui.plan.viewpoint_page import ViewpointEditor
 
     editor = ViewpointEditor()
     editor.set_camera(Camera("c", 17.3, 13.0, 12.29, 5280, 3956, (-90.0, 35.0)))
@@ -149,7 +149,7 @@ def test_the_viewpoint_editor_keeps_places_and_angles(application, viewpoint, un
 )
 @quick
 def test_the_simulation_keeps_its_conditions(application, wind_m_s, wind_from_deg, fix, latency_s):
-    from groundstation.gui.fly.simulation_page import SimulationPage
+    from groundstation.gui.fly.simulation_controller import SimulationPage
 
     page = SimulationPage()
     conditions = Conditions(wind_m_s, wind_from_deg, fix, photo_latency_s=latency_s)
@@ -180,7 +180,7 @@ def test_the_connection_keeps_its_choice(application, kind, autopilot, speed_up)
 )
 @quick
 def test_the_export_form_keeps_what_the_format_takes(application, file_format, heights, autopilot, link_loss, rth_m):
-    from groundstation.gui.mission.export_form import ExportForm
+    from groundstation.gui.mission.export_dialog import ExportForm
 
     form = ExportForm(METRIC)
     form.setValue(FileFormat.DJI_KMZ, ExportOptions(heights, autopilot, link_loss, rth_m))
@@ -193,7 +193,7 @@ def test_the_export_form_keeps_what_the_format_takes(application, file_format, h
 @given(numbers(0.0, 359.999), numbers(-90.0, 90.0), st.booleans(), numbers(0.0, 1.0))
 @quick
 def test_the_light_keeps_the_place_of_the_sun(application, heading_deg, elevation_deg, near, replaced):
-    from groundstation.gui.camera_preview.light_box import LightBox
+    from groundstation.gui.camera_preview.photo_box import LightBox
 
     look = replace(Look(), sun_heading_deg=heading_deg, sun_elevation_deg=elevation_deg, near=near, replaced=replaced)
     box = LightBox()
@@ -220,8 +220,7 @@ def test_a_place_on_earth_is_kept(application, lat_deg, lon_deg, height_m):
 @given(st.lists(st.tuples(numbers(-1e5, 1e5), numbers(-1e5, 1e5)), min_size=3, max_size=6), st.sampled_from(UnitSystem))
 @quick
 def test_corners_of_polygons_and_extents_are_kept(application, corners, units):
-    from groundstation.gui.site.polygon_box import PolygonBox
-    from groundstation.gui.site.value_boxes import ExtentBox, PointBox
+    from groundstation.gui.widgets.value_boxes import ExtentBox, PointBox, PolygonBox
 
     polygon, point, extent = PolygonBox(units), PointBox(units), ExtentBox(units)
     polygon.setValue(tuple(corners))
@@ -258,7 +257,7 @@ def test_a_grid_of_panels_is_kept(application, n_rows, n_columns, gap_m, toleran
 )
 @quick
 def test_options_of_an_import_are_kept(application, tmp_path_factory, ground_z, margin_m, unit, up, building, order, h):
-    from groundstation.gui.site.import_form import ImportForm
+    from groundstation.gui.site.import_dialog import ImportForm
 
     options = ImportOptions(
         ground_z=ground_z,
@@ -277,7 +276,7 @@ def test_options_of_an_import_are_kept(application, tmp_path_factory, ground_z, 
 @given(numbers(0.1, 1e5) | st.none(), st.sampled_from(["10min", "1h", "overnight"]))
 @quick
 def test_a_training_keeps_its_time(application, minutes, preset):
-    from groundstation.gui.reconstruct.choice_form import ChoiceForm
+    from groundstation.gui.reconstruct.choice_side import ChoiceForm
 
     choice = TrainChoice(preset=preset, minutes=minutes)
     form = ChoiceForm()
@@ -289,7 +288,7 @@ def test_a_training_keeps_its_time(application, minutes, preset):
 @given(numbers(0.0, 1e6), numbers(0.0, 1.0), numbers(0.0, 1.0), st.sampled_from(["crack", "mist"]))
 @quick
 def test_records_keep_their_numbers_when_something_else_is_changed(application, value, u, v, kind):
-    from groundstation.gui.model.record_dialog import RecordDialog
+    from groundstation.gui.model.record_side import RecordDialog
 
     for entry in (
         Attribute(PANEL, "thickness", value, "number", "mm", PANEL),

@@ -9,26 +9,27 @@ import pytest
 from PySide6.QtCore import QDateTime, Qt
 from PySide6.QtTest import QTest
 
-from groundstation.gui.camera_preview.light_box import LightBox
-from groundstation.gui.camera_preview.panel_lines import panel_lines
-from groundstation.gui.stage import Stage, StagePage
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.camera_preview.photo_box import LightBox
+from groundstation.gui.camera_preview.preview import panel_lines
+from groundstation.gui.shared_view import Stage, StagePage
 from groundstation.gui.view3d.pinhole import pinhole_at
-from groundstation.gui.workspace import Workspace
-from groundstation.services import photo_preview
-from groundstation.services.document import Document, Item, ItemKind, PlanEntry
-from groundstation.services.jobs import JobRunner
-from groundstation.services.session import Session
-from groundstation.services.sun import sun_place_deg
+from groundstation.services.jobs.runner import JobRunner
+from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
+from groundstation.services.project.session import Session
+from groundstation.services.scenes import preview as photo_preview
+from groundstation.services.site.sun import sun_place_deg
 from groundstation.services.units import UnitSystem
-from planning.errors import InputError
+from planning.base.errors import InputError
+from planning.geo.frames import Origin
 from planning.plan import Coverage, Plan
-from planning.scenes import office
-from planning.site import Origin, SiteModel
-from reconstruction.scenes.look import Look
+from planning.site.bundled import office
+from planning.site.records import SiteModel
+from reconstruction.scenes.world.look import Look
+from tests.gui.application.test_context import Gate
 from tests.gui.driving import turn_until
 from tests.gui.test_camera_preview import POSES, made_plan
-from tests.gui.test_main_window import QUICK, desk, opened, planned
-from tests.gui.test_workspace import Gate
+from tests.gui.window.test_main_window import QUICK, desk, opened, planned
 
 __all__ = ["desk"]
 
@@ -196,7 +197,7 @@ def test_what_fails_is_told_in_its_place_once_and_tried_again_when_asked(hands, 
         raise InputError("the site has no panels yet: find them")
 
     with monkeypatch.context() as patched:
-        patched.setattr("groundstation.gui.camera_preview.photo_desk.kept_photo", fails)
+        patched.setattr("groundstation.gui.camera_preview.photo_controller.kept_photo", fails)
         hands.preview.box.photo.click()
         turn_until(hands.application, lambda: "could not be rendered" in hands.preview.note())
         hands.until_rest()
@@ -209,7 +210,7 @@ def test_a_photo_that_was_cancelled_stays_away_until_it_is_asked_for(hands, monk
     gate = Gate()
     with monkeypatch.context() as patched:
         patched.setattr(
-            "groundstation.gui.camera_preview.photo_desk.kept_photo",
+            "groundstation.gui.camera_preview.photo_controller.kept_photo",
             lambda _wish, **reporting: gate(reporting["monitor"]),
         )
         hands.preview.box.photo.click()

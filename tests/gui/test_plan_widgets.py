@@ -8,13 +8,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.effects import EffectChoice
+from groundstation.services.plan.effects import EffectChoice
 from groundstation.services.units import UnitSystem
-from planning.catalogue import profile
-from planning.effects import Decision
+from planning.aircraft.catalogue import profile
+from planning.base.effects import Decision
+from planning.base.progress import QualityPoint
 from planning.insight.sections import SectionState
 from planning.plan import Constraints, FlightRules, Viewpoint, usual_gsd_m
-from planning.progress import QualityPoint
 from planning.request import PlanRequest
 
 
@@ -121,7 +121,7 @@ def decision(on, size):
 
 
 def test_effects_say_state_reason_size_and_cost_and_take_a_wish(application):
-    from groundstation.gui.plan.effects_panel import EffectsPanel
+    from groundstation.gui.widgets.effects_panel import EffectsPanel
 
     panel, heard = EffectsPanel(), []
     panel.wishChanged.connect(lambda name, wish: heard.append((name, wish)))
@@ -150,7 +150,7 @@ class Clock:
 
 
 def test_the_chart_tells_quality_bound_and_time_left_while_a_plan_runs(application):
-    from groundstation.gui.plan.quality_chart import QualityChart
+    from groundstation.gui.charts.quality_chart import QualityChart
 
     clock = Clock()
     chart = QualityChart(clock)
@@ -185,9 +185,9 @@ def rows_of(image, colour):
 def test_the_curve_stands_below_its_bound_and_both_where_their_values_are(application, size):
     from PySide6.QtCore import QRectF
 
-    from groundstation.gui.axes import box_of_axes
-    from groundstation.gui.plan.curve_plot import Curve, CurvePlot
-    from groundstation.gui.theme import colours
+    from groundstation.gui.charts.axes import box_of_axes
+    from groundstation.gui.charts.curve_plot import Curve, CurvePlot
+    from groundstation.gui.widgets.theme import colours
 
     plot = CurvePlot("time in s", "covered sections")
     plot.resize(*size)
@@ -202,7 +202,7 @@ def test_the_curve_stands_below_its_bound_and_both_where_their_values_are(applic
 
 
 def test_an_empty_curve_and_a_tiny_widget_are_no_trouble(application):
-    from groundstation.gui.plan.curve_plot import Curve, CurvePlot
+    from groundstation.gui.charts.curve_plot import Curve, CurvePlot
 
     plot = CurvePlot("time in s", "covered sections")
     none = np.zeros(0)
@@ -216,7 +216,7 @@ def test_an_empty_curve_and_a_tiny_widget_are_no_trouble(application):
 def test_of_thousands_of_improvements_only_those_that_can_be_seen_are_drawn(application):
     from PySide6.QtCore import QRectF
 
-    from groundstation.gui.plan.curve_plot import Curve, steps
+    from groundstation.gui.charts.curve_plot import Curve, steps
 
     x = np.linspace(0.1, 9.9, 20_000)
     curve = Curve(x, 1000.0 * x, 10.0, 10_000.0)
@@ -228,14 +228,14 @@ def test_of_thousands_of_improvements_only_those_that_can_be_seen_are_drawn(appl
 
 
 def shown(state, n=0):
-    from groundstation.gui.plan.hemisphere_view import ShownSection
+    from groundstation.gui.charts.hemisphere_view import ShownSection
 
     return ShownSection(state, n, f"{state.name} {n}")
 
 
 @pytest.mark.parametrize("step_deg", [30.0, 15.0, 10.0, 90.0])
 def test_every_section_is_found_where_it_is_painted(application, step_deg):
-    from groundstation.gui.plan.hemisphere_view import HemisphereView
+    from groundstation.gui.charts.hemisphere_view import HemisphereView
     from planning.coverage.sections import SectionGrid
     from planning.insight.hemisphere import section_shapes
 
@@ -252,7 +252,7 @@ def test_every_section_is_found_where_it_is_painted(application, step_deg):
 
 
 def test_states_differ_in_the_picture_and_the_first_sector_lies_to_the_right(application):
-    from groundstation.gui.plan.hemisphere_view import HemisphereView
+    from groundstation.gui.charts.hemisphere_view import HemisphereView
 
     view = HemisphereView()
     view.resize(300, 300)
@@ -270,7 +270,7 @@ def test_states_differ_in_the_picture_and_the_first_sector_lies_to_the_right(app
 
 
 def test_a_viewpoint_is_edited_one_thing_at_a_time(application):
-    from groundstation.gui.plan.viewpoint_editor import ViewpointEditor
+    from groundstation.gui.plan.viewpoint_page import ViewpointEditor
 
     editor, heard = ViewpointEditor(), []
     editor.valueChanged.connect(heard.append)
@@ -290,7 +290,7 @@ def test_a_viewpoint_is_edited_one_thing_at_a_time(application):
 
 
 def test_the_chart_never_draws_a_falling_curve_from_rising_points(application):
-    from groundstation.gui.plan.quality_chart import QualityChart
+    from groundstation.gui.charts.quality_chart import QualityChart
 
     chart = QualityChart(Clock())
     chart.show_history(tuple(QualityPoint(t, v) for t, v in ((0.1, 5.0), (0.2, 9.0), (1.5, 12.0))), 20.0)

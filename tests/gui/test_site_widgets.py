@@ -5,15 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.services.document import Item, ItemKind
-from groundstation.services.item_edits import rename_item
-from groundstation.services.site_edits import add_box, add_rally_point, add_zone, height_above_sea_m, move_home
+from groundstation.services.project.document import Item, ItemKind
+from groundstation.services.site.edits import add_box, add_rally_point, add_zone, height_above_sea_m, move_home
+from groundstation.services.site.item_edits import rename_item
 from groundstation.services.units import UnitSystem
-from planning.findings import Finding, Severity
-from planning.scenes import SCENES
-from planning.site import Origin
-from planning.site_import.options import ImportOptions, PanelGrid
-from planning.site_import.source import BuildingChoice
+from planning.base.findings import Finding, Severity
+from planning.geo.frames import Origin
+from planning.site.bundled import SCENES
+from planning.site.importing.options import ImportOptions, PanelGrid
+from planning.site.importing.source import BuildingChoice
 
 COURT = SCENES["court"]()
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
@@ -30,7 +30,7 @@ def heard(signal):
 def tree_model(application):
     from PySide6.QtTest import QAbstractItemModelTester
 
-    from groundstation.gui.site.site_tree_model import SiteTreeModel
+    from groundstation.gui.site.site_tree import SiteTreeModel
 
     model = SiteTreeModel()
     tester = QAbstractItemModelTester(model, QAbstractItemModelTester.FailureReportingMode.Fatal)
@@ -121,8 +121,7 @@ def test_tree_keeps_selection_and_folding_over_an_edit_and_delete_asks(applicati
 
 @pytest.mark.parametrize("units", [METRIC, IMPERIAL])
 def test_editors_give_back_what_they_were_given_and_tell_only_the_users_edits(application, units):
-    from groundstation.gui.site.polygon_box import PolygonBox
-    from groundstation.gui.site.value_boxes import ExtentBox, PointBox
+    from groundstation.gui.widgets.value_boxes import ExtentBox, PointBox, PolygonBox
 
     point, extent, polygon = PointBox(units), ExtentBox(units), PolygonBox(units)
     cases = [
@@ -143,7 +142,7 @@ def test_editors_give_back_what_they_were_given_and_tell_only_the_users_edits(ap
 
 
 def test_corners_of_a_polygon_are_added_half_way_and_removed_down_to_three(application):
-    from groundstation.gui.site.polygon_box import PolygonBox
+    from groundstation.gui.widgets.value_boxes import PolygonBox
 
     box = PolygonBox(METRIC)
     box.setValue(((0.0, 0.0), (10.0, 0.0), (10.0, 10.0)))
@@ -179,7 +178,7 @@ def test_heights_of_the_origin_follow_each_other_and_impossible_ones_are_told(ap
 
 def test_grid_form_gives_back_its_wish_and_reckons_the_panels_size(application):
     from groundstation.gui.site.grid_form import GridForm, GridWish
-    from planning.site_import.panel_grid import GridField
+    from planning.site.importing.panel_grid import GridField
 
     form = GridForm(METRIC)
     assert form.value() == GridWish()
@@ -199,7 +198,7 @@ def test_grid_form_gives_back_its_wish_and_reckons_the_panels_size(application):
 
 @pytest.mark.parametrize("name", ["a.ifc", "a.gml", "a.json", "a.obj"])
 def test_import_form_gives_back_its_options(application, name):
-    from groundstation.gui.site.import_form import ImportForm
+    from groundstation.gui.site.import_dialog import ImportForm
 
     form = ImportForm(Path(name), METRIC)
     assert form.value() == ImportOptions()
@@ -216,7 +215,7 @@ def test_import_form_gives_back_its_options(application, name):
 
 
 def test_place_of_a_mesh_is_never_guessed(application):
-    from groundstation.gui.site.import_form import ImportForm
+    from groundstation.gui.site.import_dialog import ImportForm
 
     form = ImportForm(Path("tower.obj"), METRIC)
     assert form.value().origin is None

@@ -7,14 +7,14 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from groundstation.gui.stage import StagePage
+from groundstation.gui.shared_view import StagePage
 from groundstation.gui.view3d.layers import Layer
-from groundstation.services.document import Document, Item, ItemKind, PlanEntry
-from groundstation.services.project import open_project
-from planning.findings import Severity
+from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
+from groundstation.services.project.folder import open_project
+from planning.base.findings import Severity
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.scenes import roof
+from planning.site.bundled import roof
 from tests.gui.driving import choose, clicked, close_desk, turn_until, turn_until_idle
 from tests.planning.revision.cases import QUICK
 from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
@@ -36,7 +36,7 @@ class Window:
     """The whole program, and hands to work it."""
 
     def __init__(self, application, worker):
-        from groundstation.gui.desk import Desk
+        from groundstation.gui.window.project_controller import Desk
 
         self.application = application
         self.desk = Desk(application, worker=worker)

@@ -26,13 +26,13 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.inputs import ChoiceBox
-from groundstation.gui.stage import StagePage
-from groundstation.services.document import Document, Item, ItemKind, PlanEntry
-from groundstation.services.live_choice import ConnectionChoice
-from groundstation.services.live_events import Request, ViewState
+from groundstation.gui.shared_view import StagePage
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.services.fly.events import Request, ViewState
+from groundstation.services.fly.link_choice import ConnectionChoice
+from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.settings import Language
-from planning.findings import Severity
+from planning.base.findings import Severity
 from tests.gui.driving import clicked, close_desk, escape, turn_until, turn_until_idle
 from tests.services.live_cases import planned
 
@@ -214,7 +214,7 @@ class Looks:
 )
 def looks(application, worker, tmp_path, monkeypatch, request):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.desk import Desk
+    from groundstation.gui.window.project_controller import Desk
 
     language, scale = request.param
     desk = Desk(application, worker=worker)
@@ -344,7 +344,7 @@ def test_the_import_dialog_can_be_reached(looks, tmp_path):
 
 @pytest.mark.parametrize("scale", [1.0, 1.6])
 def test_tabs_that_have_no_room_are_reached_by_arrows_that_can_be_seen(application, scale):
-    from groundstation.gui.theme import apply_theme
+    from groundstation.gui.widgets.theme import apply_theme
     from groundstation.services.settings import Theme
 
     apply_theme(application, Theme.LIGHT, scale)

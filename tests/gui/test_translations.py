@@ -12,7 +12,7 @@ import pytest
 from PySide6.QtCore import QTranslator
 from PySide6.QtWidgets import QMenu, QWidget
 
-from groundstation.gui.languages import FOLDER
+from groundstation.gui.application.languages import FOLDER
 from groundstation.services.settings import Language
 from tests.gui.driving import close_desk, turn_until
 
@@ -133,7 +133,7 @@ def test_no_widget_gets_a_text_that_is_not_translated(path):
 @pytest.fixture
 def desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.desk import Desk
+    from groundstation.gui.window.project_controller import Desk
 
     desk = Desk(application, worker=worker)
     desk.show()
@@ -168,7 +168,7 @@ def test_no_two_german_entries_of_a_menu_share_a_letter(desk):
 
 
 def test_keys_have_german_names_wherever_they_are_shown(desk):
-    from groundstation.gui.shortcuts import sections
+    from groundstation.gui.window.shortcuts import sections
 
     desk.choose(language=Language.GERMAN)
     told = " ".join(keys for _, rows in sections(desk.window) for keys, _ in rows)

@@ -9,18 +9,18 @@ from PySide6.QtCore import QCoreApplication, QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 
-from groundstation.gui.theme import DARK, FACADES, LIGHT, Theme, apply_theme
 from groundstation.gui.view3d.layers import Drawable, Layer
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, flat
-from groundstation.services.document import Item, ItemKind
+from groundstation.gui.widgets.theme import DARK, FACADES, LIGHT, Theme, apply_theme
+from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem
 from planning.coverage.sections import SectionGrid
-from planning.frames import camera_axes, wrap_heading_deg
+from planning.geo.frames import camera_axes, wrap_heading_deg
 from planning.plan import Viewpoint
-from planning.scenes import canyon, office, roof, tower
-from planning.site_import.importer import import_site
-from planning.site_import.options import ImportOptions
+from planning.site.bundled import canyon, office, roof, tower
+from planning.site.importing.importer import import_site
+from planning.site.importing.options import ImportOptions
 from tests.benchmarks.view3d import large_plan
 
 SIZE = (900, 600)
@@ -693,7 +693,7 @@ def test_a_view_that_shows_all_viewpoints_stays_as_it_is(application, view, plan
 
 
 def test_the_view_is_not_taken_out_of_the_users_hand(application, view, plan):
-    from groundstation.gui.view3d.gestures import Drag
+    from groundstation.gui.view3d.navigator import Drag
     from groundstation.gui.view3d.tools import HomeTool
 
     view.set_site(office())

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.gui.theme import DARK, LIGHT
 from groundstation.gui.view3d.hemispheres import (
     OPEN,
     UNDECIDED,
@@ -25,12 +24,13 @@ from groundstation.gui.view3d.paint import NO_VALUE, ColourScale, ValueKind, fla
 from groundstation.gui.view3d.pinhole import photo_pinhole
 from groundstation.gui.view3d.plan_scene import ends_of_sorties
 from groundstation.gui.view3d.shapes import arrows, frusta
-from planning.catalogue import profiles
+from groundstation.gui.widgets.theme import DARK, LIGHT
+from planning.aircraft.catalogue import profiles
 from planning.coverage.sections import SectionGrid, in_picture, panel_frames, sections_of
-from planning.frames import camera_axes
+from planning.geo.frames import camera_axes
 from planning.plan import ViewpointArrays
-from planning.scenes import office, roof
-from planning.site import panel_corners
+from planning.site.bundled import office, roof
+from planning.site.records import panel_corners
 
 CAMERA = profiles()["m3e"].camera
 angles = st.floats(-180.0, 180.0)

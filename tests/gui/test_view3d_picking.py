@@ -5,19 +5,18 @@ import time
 import numpy as np
 import pytest
 
-from groundstation.gui.theme import LIGHT
-from groundstation.gui.view3d.footprint import footprint
 from groundstation.gui.view3d.layers import Layer
 from groundstation.gui.view3d.orbit import Orbit, facing
-from groundstation.gui.view3d.picking import PickIndex, pick
+from groundstation.gui.view3d.picking import PickIndex, footprint, pick
 from groundstation.gui.view3d.pinhole import photo_pinhole
 from groundstation.gui.view3d.plan_scene import plan_scene
 from groundstation.gui.view3d.shapes import shown_panels
 from groundstation.gui.view3d.site_scene import site_scene
-from groundstation.services.document import Item, ItemKind
-from planning.catalogue import profiles
-from planning.scenes import canyon, court, library, office
-from planning.site import panel_triangles
+from groundstation.gui.widgets.theme import LIGHT
+from groundstation.services.project.document import Item, ItemKind
+from planning.aircraft.catalogue import profiles
+from planning.site.bundled import canyon, court, library, office
+from planning.site.records import panel_triangles
 from tests.benchmarks.view3d import large_plan, large_site
 from tests.slow import slow
 
@@ -87,7 +86,7 @@ def test_hidden_layers_are_not_picked_and_a_miss_is_none():
 def test_a_no_fly_volume_is_picked_only_where_nothing_but_the_building_is_behind_it():
     from dataclasses import replace
 
-    from planning.site import NoFlyZone
+    from planning.site.records import NoFlyZone
 
     model = office()
     zone = NoFlyZone("road", ((-30.0, -30.0), (30.0, -30.0), (30.0, -20.0), (-30.0, -20.0)), 0.0, 60.0)

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.gui.theme import LIGHT
 from groundstation.gui.view3d.drawing_tools import BoxState, BoxTool, PolygonTool, RectangleState, RectangleTool
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.picking import PickIndex
 from groundstation.gui.view3d.site_scene import site_scene
 from groundstation.gui.view3d.tools import Hint, HomeTool, Key, Pointer, PointTool
 from groundstation.gui.view3d.viewpoint_tool import DragState, ViewpointTool
-from planning.frames import camera_axes
-from planning.scenes import library, office
+from groundstation.gui.widgets.theme import LIGHT
+from planning.geo.frames import camera_axes
+from planning.site.bundled import library, office
 
 VIEW = Orbit((0.0, 0.0, 20.0), 180.0, 20.0, -25.0).pinhole(1280, 720)
 

@@ -15,11 +15,12 @@ from tests.hostile.inputs import complete_workspace, make_workspace
 ROOT = Path(__file__).resolve().parents[2]
 
 LOADED = (
-    "planning.planner", "planning.site_import.importer", "planning.mesh", "missions.formats",
-    "missions.flight.logs.read", "groundstation.services.project", "groundstation.services.planning",
-    "groundstation.services.model_training", "groundstation.services.model_export", "cv2", "trimesh", "scipy.sparse",
-    "reconstruction.modelling.saved", "reconstruction.records.book", "reconstruction.scores.lpips_weights",
-    "groundstation.services.recovery",
+    "planning.planner", "planning.site.importing.importer", "planning.geo.mesh", "missions.formats.registry",
+    "missions.flight.logs.read", "groundstation.services.project.folder", "groundstation.services.plan.planning",
+    "groundstation.services.reconstruct.training", "groundstation.services.model.export", "cv2", "trimesh",
+    "scipy.sparse",
+    "reconstruction.training.model.saved", "reconstruction.records.book", "reconstruction.metrics.lpips_weights",
+    "groundstation.services.project.recovery",
 )  # fmt: skip
 """Modules that take long to load, or whose memory is not the file's."""
 

@@ -27,7 +27,7 @@ LONGEST_S = 60.0
 def _run(job: dict[str, Any]) -> int:
     """Do a job in this process, as the command line would; returns its exit status."""
     from groundstation.cli.main import EXIT_FAILED, main
-    from planning.errors import GroundStationError, shortened
+    from planning.base.errors import GroundStationError, shortened
 
     if "command" in job:
         return main(job["command"], lambda _: 99)

@@ -140,12 +140,12 @@ def written() -> list[Input]:
         _input("settings", "toml", "config/settings.toml", "groundstation.services.settings:read_settings", "config/",
                quick=True),
         _input("flight settings", "toml", "config/flight.toml",
-               "groundstation.services.live_settings:read_flight_settings", "config/", quick=True),
+               "groundstation.services.fly.options:read_flight_settings", "config/", quick=True),
         _input("signing key", "text", "config/mavlink-signing-key", f"{HERE}:signer", "config/", quick=True),
         _input("signing time", "text", "config/mavlink-signing-timestamp", f"{HERE}:signer", "config/"),
         _input("map", "binary", "map.mbtiles", f"{HERE}:map_tiles", quick=True),
-        _input("SPZ", "binary", "m.spz", "reconstruction.exports.spz_reading:read_spz"),
-        _input("SOG", "zip", "m.sog", "reconstruction.exports.sog_reading:read_sog"),
+        _input("SPZ", "binary", "m.spz", "reconstruction.exports.spz.reading:read_spz"),
+        _input("SOG", "zip", "m.sog", "reconstruction.exports.sog.reading:read_sog"),
         _input("LPIPS", "binary", "heads.pth", f"{HERE}:lpips"),
         _input("LPIPS as safetensors", "header", "heads.safetensors", f"{HERE}:lpips"),
         _input("TSPLIB", "text", "t.tsp", "route t.tsp --time-budget 0.2", quick=True),
@@ -237,11 +237,11 @@ def _reflight(command: str) -> None:
 def _plans() -> None:
     import trimesh
 
-    from groundstation.services.autosave import Autosave
-    from groundstation.services.planning import plan_site
-    from groundstation.services.project import open_project
+    from groundstation.services.plan.planning import plan_site
+    from groundstation.services.project.autosave import Autosave
+    from groundstation.services.project.folder import open_project
     from planning.request import PlanRequest
-    from planning.scenes import write_scene
+    from planning.site.bundled import write_scene
     from tests.planning.revision.cases import QUICK
     from tests.services.photo_cases import draft_of, site_model
 
@@ -288,10 +288,10 @@ def _changed(document):
 
 
 def _facades(draft, model) -> None:
-    from groundstation.services.document import Document
-    from groundstation.services.photo_desk import with_found_panels
-    from groundstation.services.project import create_project
-    from reconstruction.panels.facades_file import found_facades
+    from groundstation.services.photos.found_panels import with_found_panels
+    from groundstation.services.project.document import Document
+    from groundstation.services.project.folder import create_project
+    from reconstruction.panels.solving.facades_file import found_facades
 
     found = with_found_panels(model, draft)
     create_project(Path("faced"), Document(found, found_facades=found_facades(draft.found, draft.photos)))
@@ -337,8 +337,8 @@ def _models() -> None:
     import torch
     from safetensors.torch import save_file
 
-    from tests.reconstruction.modelling.made_data_set import write_data_set
-    from tests.reconstruction.scores.test_lpips import heads_file, random_weights
+    from tests.reconstruction.metrics.test_lpips import heads_file, random_weights
+    from tests.reconstruction.training.made_data_set import write_data_set
 
     write_data_set(Path("data"), n=8)
     Path("data/scene.json").write_text('{"exposure": 1.0, "captures": {"p00.png": {"exposure": 1.1}}}')
@@ -377,8 +377,8 @@ def _renamed(text: str, start: str, name: str) -> str:
 
 def _checkpoint() -> None:
     """The state of a training that was stopped."""
-    from groundstation.services import model_training
-    from planning.errors import OperationCancelled
+    from groundstation.services.reconstruct import training as model_training
+    from planning.base.errors import OperationCancelled
 
     class Stopping:
         left = 3
@@ -395,8 +395,8 @@ def _checkpoint() -> None:
 
 
 def _settings() -> None:
-    from groundstation.services.kept import write_kept
-    from groundstation.services.live_settings import USUAL
+    from groundstation.services.fly.options import USUAL
+    from groundstation.services.preferences import write_kept
     from groundstation.services.settings import Settings, write_settings
     from missions.mavlink.key_store import KeyStore
 

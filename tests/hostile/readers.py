@@ -7,7 +7,7 @@ from pathlib import Path
 
 def recovery(path: Path) -> None:
     """What the window does about a copy of unsaved work when it starts."""
-    from groundstation.services.recovery import find_recovery, recover
+    from groundstation.services.project.recovery import find_recovery, recover
 
     found = find_recovery(path.parents[1])
     if found is not None:
@@ -16,7 +16,7 @@ def recovery(path: Path) -> None:
 
 def holder(path: Path) -> None:
     """Who has a project open."""
-    from groundstation.services.project_lock import lock_holder
+    from groundstation.services.project.lock import lock_holder
 
     lock_holder(path.parent)
 
@@ -30,8 +30,8 @@ def signer(path: Path) -> None:
 
 def map_tiles(path: Path) -> None:
     """A map file, and a tile of it."""
-    from groundstation.services.map_tiles import MapTiles
-    from groundstation.services.web_mercator import Tile
+    from groundstation.services.map.tiles import MapTiles
+    from groundstation.services.map.web_mercator import Tile
 
     tiles = MapTiles(path)
     tiles.image(Tile(1, 1, 0))
@@ -40,13 +40,13 @@ def map_tiles(path: Path) -> None:
 
 def lpips(path: Path) -> None:
     """Weights for scores."""
-    from reconstruction.scores.lpips_weights import read_lpips_weights
+    from reconstruction.metrics.lpips_weights import read_lpips_weights
 
     read_lpips_weights([path])
 
 
 def coco(path: Path) -> None:
     """Annotated photos."""
-    from reconstruction.scores.annotated import coco_photos
+    from reconstruction.metrics.annotated import coco_photos
 
     list(coco_photos(path.parent))

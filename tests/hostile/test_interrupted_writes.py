@@ -66,8 +66,9 @@ TRAIN = "train data -o out/m --preset smoke --iterations 4 --method 2dgs --setti
 
 def whole_model(folder: Path) -> None:
     """A model that can be read, and splats that are its own."""
-    from reconstruction.modelling.saved import DESCRIPTION, SPLATS, read_model
-    from reconstruction.splatting.ply import read_splats
+    from reconstruction.splats.ply import read_splats
+    from reconstruction.training.model.saved import SPLATS, read_model
+    from reconstruction.training.names import MODEL as DESCRIPTION
 
     if (folder / "out/m" / DESCRIPTION).exists():
         model = read_model(folder / "out/m").model
@@ -93,7 +94,7 @@ def whole_records(folder: Path) -> None:
 
 def whole_project(folder: Path) -> None:
     """A project that opens without a note."""
-    from groundstation.services.project import open_project
+    from groundstation.services.project.folder import open_project
 
     assert [note.code for note in open_project(folder / "project").notes] == []
 

@@ -8,10 +8,9 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from planning.catalogue import profile
-from planning.frames import Vec3
+from planning.aircraft.catalogue import profile
+from planning.geo.frames import Origin, Vec3
 from planning.plan import Constraints, Coverage, FlightRules, Plan, Sortie, Viewpoint
-from planning.site import Origin
 
 HOME: Vec3 = (3.0, -40.0, 1.5)
 HONG_KONG = Origin(22.3372, 114.2636, 62.0)

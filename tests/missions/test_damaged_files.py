@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from missions.encode import ExportOptions, encode
-from missions.formats import read_missions
+from missions.formats.encode import ExportOptions, encode
+from missions.formats.registry import read_missions
 from missions.mavlink.autopilots import Autopilot
-from missions.model import FileFormat
-from missions.to_plan import viewpoints_and_sorties
-from planning.errors import GroundStationError
-from planning.site import Origin
+from missions.mission.model import FileFormat
+from missions.mission.to_plan import viewpoints_and_sorties
+from planning.base.errors import GroundStationError
+from planning.geo.frames import Origin
 from tests.missions.plans import example_plan
 
 VALUES = (

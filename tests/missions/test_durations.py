@@ -11,20 +11,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.build import missions_from_plan
-from missions.encode import encode
-from missions.formats import read_missions
+from missions.formats.encode import encode
+from missions.formats.registry import read_missions
 from missions.mavlink.items import MavlinkFile, MissionItem, plain
 from missions.mavlink.read import read_mavlink
-from missions.model import FileFormat, ReadMission, Stay
-from missions.to_plan import CORNER_SHARE, PlanParts, flown_s, timed_route, viewpoints_and_sorties
-from planning.catalogue import profile
+from missions.mission.build import missions_from_plan
+from missions.mission.model import FileFormat, ReadMission, Stay
+from missions.mission.to_plan import CORNER_SHARE, PlanParts, flown_s, timed_route, viewpoints_and_sorties
+from planning.aircraft.catalogue import profile
 from planning.checks import check_plan
-from planning.plan import FlightRules, Plan
-from planning.plan_file import read_plan, write_plan
-from planning.scenes import SCENES
-from planning.site import Origin
-from planning.timing import MotionLimits, leg_times_s
+from planning.geo.frames import Origin
+from planning.motion.timing import MotionLimits, leg_times_s
+from planning.plan import FlightRules, Plan, read_plan, write_plan
+from planning.site.bundled import SCENES
 from tests.missions.mavlink.test_fly import EAST_100_M, FIRST, HOME, NORTH_100_M, SECOND, TAKEOFF, at, read
 from tests.missions.plans import make_plan
 

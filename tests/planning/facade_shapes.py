@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from planning.frames import Vec3
-from planning.scenes import panel_grid
-from planning.site import Facade, Panel
+from planning.geo.frames import Vec3
+from planning.site.bundled import panel_grid
+from planning.site.records import Facade, Panel
 
 Rectangle = tuple[Vec3, Vec3, Vec3]
 

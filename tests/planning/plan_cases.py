@@ -13,10 +13,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.mesh import box_mesh, empty_mesh
+from planning.geo.mesh import box_mesh, empty_mesh
 from planning.plan import Camera, Plan, Viewpoint
-from planning.scenes import ORIGIN, arc_grid, panel_grid
-from planning.site import Airspace, NoFlyZone, Obstacle, Site, SiteModel, box_geometry
+from planning.site.bundled import ORIGIN, arc_grid, panel_grid
+from planning.site.records import Airspace, NoFlyZone, Obstacle, Site, SiteModel, box_geometry
 
 Floats = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from planning.coverage.model import Elements
-from planning.optimise.budget import CoverGain
+from planning.viewpoints.budget import CoverGain
 
 Floats = NDArray[np.float64]
 

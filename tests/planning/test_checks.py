@@ -10,13 +10,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from planning.base.errors import OperationCancelled
+from planning.base.findings import Finding, Severity, is_flyable
 from planning.checks import RULES, check_plan
-from planning.errors import OperationCancelled
-from planning.findings import Finding, Severity, is_flyable
 from planning.plan import Constraints, FlightRules, Plan, Sortie, Viewpoint, usual_gsd_m
 from planning.planner import plan_flight
 from planning.request import GreedyParameters, PlanRequest
-from planning.site import Airspace, NoFlyZone, Obstacle, SiteModel
+from planning.site.records import Airspace, NoFlyZone, Obstacle, SiteModel
 from tests.planning.plan_cases import kiosk, seen_by_contract
 
 HOME = (0.0, -30.0, 0.0)

@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
 from planning.coverage.model import CoverageModel, codes_all_around, exact_coverage, exact_sections
+from planning.coverage.positions import aimed_views
 from planning.coverage.sections import NOT_SEEN, SectionGrid, panel_frames, sections_of
 from planning.plan import ViewpointArrays
-from planning.positions import aimed_views
-from planning.scenes import SCENES
-from planning.site import panel_corners
+from planning.site.bundled import SCENES
+from planning.site.records import panel_corners
 
 CAMERA = profile("m3e").camera
 STEPS = (90.0, 45.0, 30.0, 22.5, 18.0, 15.0, 10.0, 9.0, 5.0)
@@ -124,7 +124,7 @@ def test_elements_are_the_same_for_any_number_of_threads(monkeypatch):
     views = random_views(frames, 5000)
     model = CoverageModel(frames, CAMERA, SectionGrid(30.0))
     several = model.elements(views)
-    monkeypatch.setattr("planning.jit.n_threads", lambda: 1)
+    monkeypatch.setattr("planning.base.jit.n_threads", lambda: 1)
     one = model.elements(views)
     np.testing.assert_array_equal(several.starts, one.starts)
     np.testing.assert_array_equal(several.items, one.items)

@@ -14,19 +14,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
+from planning.base.errors import InfeasibleError
+from planning.base.findings import is_flyable
 from planning.checks import check_plan
 from planning.coverage.model import CoverageModel, codes_all_around, exact_coverage
 from planning.coverage.sections import SectionGrid, panel_frames
-from planning.errors import InfeasibleError
-from planning.findings import is_flyable
-from planning.frames import Vec3
-from planning.mesh import TriangleMesh, empty_mesh
+from planning.geo.frames import Vec3
+from planning.geo.mesh import TriangleMesh, empty_mesh
 from planning.plan import Constraints, Plan, ViewpointArrays, viewpoint_arrays
 from planning.planner import Planned, plan_flight
 from planning.request import GreedyParameters, PlanRequest
-from planning.scenes import SCENES
-from planning.site import Airspace, Facade, NoFlyZone, Panel, SiteModel, panel_corners
+from planning.site.bundled import SCENES
+from planning.site.records import Airspace, Facade, NoFlyZone, Panel, SiteModel, panel_corners
 from tests.planning.plan_cases import kiosk, seen_by_contract
 
 FEW = GreedyParameters(n_candidates=400, improve=False, certify=False)

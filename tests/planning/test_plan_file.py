@@ -15,11 +15,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.catalogue import profile
-from planning.errors import InputError
-from planning.plan import Constraints, Coverage, FlightRules, HistoryPoint, Plan, Sortie, Viewpoint, viewpoint_arrays
-from planning.plan_file import plan_to_json, read_plan, write_plan
-from planning.site import Origin
+from planning.aircraft.catalogue import profile
+from planning.base.errors import InputError
+from planning.geo.frames import Origin
+from planning.plan import (
+    Constraints,
+    Coverage,
+    FlightRules,
+    HistoryPoint,
+    Plan,
+    Sortie,
+    Viewpoint,
+    plan_to_json,
+    read_plan,
+    viewpoint_arrays,
+    write_plan,
+)
 
 HOME = (0.0, -45.0, 0.0)
 

@@ -14,18 +14,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
+from planning.base.errors import InfeasibleError, InputError, OperationCancelled
+from planning.base.findings import Severity, is_flyable
+from planning.base.progress import StopRequest, Trace
 from planning.checks import check_plan
-from planning.errors import InfeasibleError, InputError, OperationCancelled
-from planning.findings import Severity, is_flyable
-from planning.plan import Constraints, FlightRules, Plan
-from planning.plan_file import plan_to_json, read_plan, write_plan
+from planning.plan import Constraints, FlightRules, Plan, plan_to_json, read_plan, write_plan
 from planning.planner import Planned, plan_flight, share_out_anew
-from planning.prepare import Prepared, prepare
-from planning.progress import StopRequest, Trace
 from planning.request import LARGEST_SEED, GreedyParameters, PlanRequest, Precision
-from planning.scenes import SCENES
-from planning.site import SiteModel
+from planning.site.bundled import SCENES
+from planning.site.records import SiteModel
+from planning.viewpoints.prepare import Prepared, prepare
 from tests.planning.plan_cases import (
     dense_points,
     distances,
@@ -242,7 +241,7 @@ def test_same_seed_gives_the_same_plan_whatever_the_number_of_threads(
     wanted = PlanRequest(constraints=NEAR, greedy=FEW, precision=precision, seed=5, time_budget_s=600.0)
     request = replace(wanted, **goal)  # type: ignore[arg-type]
     first = without_wall_times(plan_flight(kiosk(), request).plan)
-    monkeypatch.setattr("planning.jit.n_threads", lambda: 1)
+    monkeypatch.setattr("planning.base.jit.n_threads", lambda: 1)
     assert without_wall_times(plan_flight(kiosk(), request).plan) == first
     other = plan_flight(kiosk(), replace(request, seed=6)).plan
     assert without_wall_times(other).replace('"seed": 6', '"seed": 5') != first
@@ -253,7 +252,7 @@ def test_improved_plans_repeat_too_when_the_search_ends_by_itself(monkeypatch: p
     request = PlanRequest(n_views=3, greedy=greedy, time_budget_s=600.0)
     model = SCENES["single-panel"]()
     first = plan_flight(model, request)
-    monkeypatch.setattr("planning.jit.n_threads", lambda: 1)
+    monkeypatch.setattr("planning.base.jit.n_threads", lambda: 1)
     assert without_wall_times(plan_flight(model, request).plan) == without_wall_times(first.plan)
     assert first.plan.coverage.covered == 3
 

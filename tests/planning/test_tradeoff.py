@@ -8,16 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError, OperationCancelled
-from planning.evaluate import coverage_counts
+from planning.base.errors import InputError, OperationCancelled
+from planning.base.progress import QualityPoint
+from planning.coverage.evaluate import coverage_counts
 from planning.plan import Constraints
 from planning.planner import plan_flight
-from planning.prepare import coverage_model
-from planning.progress import QualityPoint
 from planning.request import GreedyParameters, PlanRequest
 from planning.routing.tour import tour_length
-from planning.scenes import SCENES
-from planning.space import free_space
+from planning.site.bundled import SCENES
+from planning.site.free_space import free_space
 from planning.tradeoff.curves import Curve, Noise, answers, falling, mean_curve, seconds_text, winner
 from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, Line, Panel, draw
 from planning.tradeoff.plan_report import (
@@ -32,6 +31,7 @@ from planning.tradeoff.plan_report import (
 from planning.tradeoff.plan_runs import FailedRun, Variants, bounds_by_step, name_of, run_plan, settings
 from planning.tradeoff.tour_report import tour_panel, tour_report, tour_rows, tour_summary, tour_title
 from planning.tradeoff.tour_runs import TourCase, plan_case, run_tours, tour_methods, tsplib_case
+from planning.viewpoints.prepare import coverage_model
 
 BASE = PlanRequest(n_views=12, greedy=GreedyParameters(n_candidates=300, improve=False), time_budget_s=20.0)
 NO_NOISE = Noise(0.0)

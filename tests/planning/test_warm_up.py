@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from planning.scenes import write_scene
+from planning.site.bundled import write_scene
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
@@ -19,7 +19,7 @@ from planning.checks import check_plan
 from planning.plan import Constraints, FlightRules
 from planning.planner import plan_flight
 from planning.request import GreedyParameters, PlanRequest
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
 
 fine, coarse = Constraints(section_step_deg=15.0), Constraints(whole_panel=True, max_distance_m=40.0)
 by_area = GreedyParameters(solid_angle_weights=True)

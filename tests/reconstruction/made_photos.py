@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from planning.mesh import TriangleMesh, box_mesh, join, write_mesh
-from planning.site import Origin
-from reconstruction.made_facades.cases import simple_case, wide_camera
-from reconstruction.made_facades.photo_files import write_photos
-from reconstruction.made_facades.record import Disturbances, Layout, MadeFacade
-from reconstruction.made_facades.render import make_facade
-from reconstruction.made_facades.wall import Wall
-from reconstruction.rectify.surface import FacadeSurface
-from tests.reconstruction.rectify.scenes import surface_mesh
+from planning.geo.frames import Origin
+from planning.geo.mesh import TriangleMesh, box_mesh, join, write_mesh
+from reconstruction.panels.rectify.surface import FacadeSurface
+from reconstruction.scenes.facades.cases import simple_case, wide_camera
+from reconstruction.scenes.facades.photo_files import write_photos
+from reconstruction.scenes.facades.record import Disturbances, Layout, MadeFacade
+from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.wall import Wall
+from tests.reconstruction.panels.rectify.scenes import surface_mesh
 
 ORIGIN = Origin(22.3372, 114.2636, 62.0)
 LAYOUT = Layout(n_rows=5, n_columns=9, panel_width_m=1.5, panel_height_m=2.4, widths="alternating")

@@ -11,14 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from planning.geodesy.enu import geodetic_from_enu
-from planning.mesh import TriangleMesh, extrude
-from planning.site import Origin
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin
+from planning.geo.mesh import TriangleMesh, extrude
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import posed_photos
 from reconstruction.colmap.similarity import Similarity
-from tests.planning.photo_files.photo_writer import exif_part, gps_tags, jpeg, packet, save
+from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
 from tests.reconstruction.colmap.models import turned
 
 LEAN_RAD = np.radians(9.5)

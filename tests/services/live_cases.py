@@ -6,10 +6,10 @@ import time
 from dataclasses import replace
 from functools import cache
 
-from groundstation.services.live_connection import Simulation
-from groundstation.services.live_events import FlightChanged, FlightEnded, LinkChanged, LinkState
-from groundstation.services.live_sortie import prepare_sortie
-from planning.errors import LinkError
+from groundstation.services.fly.connection import Simulation
+from groundstation.services.fly.events import FlightChanged, FlightEnded, LinkChanged, LinkState
+from groundstation.services.fly.sortie import prepare_sortie
+from planning.base.errors import LinkError
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from tests.planning.plan_cases import kiosk

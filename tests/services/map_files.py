@@ -10,7 +10,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from groundstation.services.web_mercator import Tile, tile_at, world_from_geodetic
+from groundstation.services.map.web_mercator import Tile, tile_at, world_from_geodetic
 
 
 def colour_of(tile: Tile) -> tuple[int, int, int]:

@@ -8,19 +8,19 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from groundstation.services.photo_desk import PanelDraft
-from planning.effects import Decision
-from planning.mesh import box_mesh
-from planning.site import Airspace, Facade, Panel, Site, SiteModel
-from planning.site_file import site_sha256
-from reconstruction.cameras import PosedPhoto
-from reconstruction.panels.find import FoundPanels
-from reconstruction.panels.solve import solve_facade
-from reconstruction.rectify.fit import SurfaceFit
+from groundstation.services.photos.found_panels import PanelDraft
+from planning.base.effects import Decision
+from planning.geo.mesh import box_mesh
+from planning.site.file import site_sha256
+from planning.site.records import Airspace, Facade, Panel, Site, SiteModel
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.panels.rectify.fit import SurfaceFit
+from reconstruction.panels.solving.find import FoundPanels
+from reconstruction.panels.solving.solve import solve_facade
 from tests.reconstruction.made_photos import ORIGIN, write_flight
-from tests.reconstruction.panels.test_solve import RTK, found_grid, stated
-from tests.reconstruction.rectify.scenes import looking_at
-from tests.reconstruction.rectify.test_surface import surface
+from tests.reconstruction.panels.rectify.scenes import looking_at
+from tests.reconstruction.panels.rectify.test_surface import surface
+from tests.reconstruction.panels.solving.test_solve import RTK, found_grid, stated
 
 FLAT = Decision("facade curvature", False, "scene", "it is flat", 0.0, 1.0, "px", 0.0)
 PLACES = ((0.0, 0.0), (7.0, 2.0), (-6.0, -2.0))

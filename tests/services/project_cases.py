@@ -10,12 +10,12 @@ from dataclasses import replace
 
 from hypothesis import strategies as st
 
-from groundstation.services.document import Document, PlanEntry
-from groundstation.services.project_site import same_site
-from planning.catalogue import profile
+from groundstation.services.project.document import Document, PlanEntry
+from groundstation.services.project.site import same_site
+from planning.aircraft.catalogue import profile
 from planning.plan import Constraints, Coverage, FlightRules, HistoryPoint, Plan, Sortie, Viewpoint
 from planning.request import PlanRequest
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
 from tests.planning.plan_cases import kiosk
 
 SITES = {**{name: SCENES[name]() for name in ("single-panel", "roof", "canyon", "library")}, "kiosk": kiosk()}

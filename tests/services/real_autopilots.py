@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from groundstation.services.flying_sitl import SITL_LINK, sitl
+from groundstation.services.fly.sitl import SITL_LINK, sitl
 from missions.mavlink.autopilots import Autopilot
-from missions.model import GeoPoint
+from missions.mission.model import GeoPoint
 
 SPEEDUP = 10.0
 ENDURANCE_S = 1500.0

@@ -3,10 +3,10 @@
 import pytest
 
 from groundstation.services.demo import demonstrate
-from missions.model import FileFormat
-from planning.errors import InputError, OperationCancelled
-from planning.findings import is_flyable
-from planning.plan_file import read_plan
+from missions.mission.model import FileFormat
+from planning.base.errors import InputError, OperationCancelled
+from planning.base.findings import is_flyable
+from planning.plan import read_plan
 from planning.request import PlanRequest
 from tests.planning.revision.cases import QUICK
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from groundstation.services.photo_panels import site_facade
-from reconstruction.panels.record import SolvedFacade, SolvedPanel
-from tests.reconstruction.rectify.test_surface import surface
+from groundstation.services.photos.panels import site_facade
+from reconstruction.panels.solving.record import SolvedFacade, SolvedPanel
+from tests.reconstruction.panels.rectify.test_surface import surface
 
 coordinates = st.floats(-2.0, 2.0)
 

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.live_battery import FlownBefore, with_charge
-from groundstation.services.live_limit import shared_out, too_long
+from groundstation.services.fly.connection import FlownBefore, with_charge
+from groundstation.services.mission.item_limit import shared_out, too_long
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import photos_that_fit
-from missions.simulator.airframe import Target
+from missions.simulator.airframe.state import Target
 from missions.simulator.build import make_airframe
 from tests.services.live_cases import planned
 

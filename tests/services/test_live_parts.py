@@ -7,19 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.kept import write_kept
-from groundstation.services.live_choice import ConnectionChoice, LinkKind, read_choice
-from groundstation.services.live_coverage import LiveCoverage, matching_view
-from groundstation.services.live_events import LinkState, Request, ViewState
-from groundstation.services.live_readouts import allowed_requests, battery_left_s, link_state
-from groundstation.services.live_settings import FlightSettings, read_flight_settings
-from groundstation.vehicle.run_records import Phase
+from groundstation.services.fly.coverage import LiveCoverage, matching_view
+from groundstation.services.fly.events import LinkState, Request, ViewState
+from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind, read_choice
+from groundstation.services.fly.options import FlightSettings, read_flight_settings
+from groundstation.services.fly.readouts import allowed_requests, battery_left_s, link_state
+from groundstation.services.preferences import write_kept
+from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import Timed, VehicleState
 from missions.flight.matching import DEFAULT_GATES
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
-from planning.errors import InputError
-from planning.evaluate import coverage_counts
+from planning.base.errors import InputError
+from planning.coverage.evaluate import coverage_counts
 from tests.services.live_cases import planned, sortie
 
 phases = st.sampled_from([None, *Phase])

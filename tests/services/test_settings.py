@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.live_choice import ConnectionChoice, read_choice
-from groundstation.services.live_settings import USUAL, read_flight_settings
+from groundstation.services.fly.link_choice import ConnectionChoice, read_choice
+from groundstation.services.fly.options import USUAL, read_flight_settings
 from groundstation.services.settings import (
     MAX_RECENT_PROJECTS,
     Language,
@@ -25,7 +25,7 @@ from groundstation.services.settings import (
     write_settings,
 )
 from groundstation.services.units import UnitSystem
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 texts = st.text(max_size=20)
 

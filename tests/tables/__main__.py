@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from planning.jit import n_threads
-from planning.sweep import sweep
+from planning.base.jit import n_threads
+from planning.base.parallel_map import sweep
 from tests.tables.definitions import Table, tables
 from tests.tables.page import write_page
 from tests.tables.photos import Photos, photos_in, site_file

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from reconstruction.splatting.raster import RasterSettings
+from reconstruction.splats.rasterising.raster_types import RasterSettings
 from tests.tables.scales import Scale
 from tests.tables.trainings import Case
 

@@ -9,20 +9,19 @@ from typing import Literal
 
 import numpy as np
 
-from groundstation.services.flying import FlightWish, fly_files
-from groundstation.services.planning import plan_site
-from groundstation.services.scene_photos import photograph_files
-from groundstation.services.scene_views import SITE_FILE, SceneWish
-from groundstation.services.scene_views import as_written as site_as_written
-from planning.optimise.candidates import spread_candidates
-from planning.optimise.problem import take
-from planning.plan import Constraints, Plan
-from planning.plan_file import write_plan
-from planning.plan_records import as_written, viewpoints_of
+from groundstation.services.fly.flying import FlightWish, fly_files
+from groundstation.services.plan.planning import plan_site
+from groundstation.services.scenes.photos import photograph_files
+from groundstation.services.scenes.views import SITE_FILE, SceneWish
+from groundstation.services.scenes.views import as_written as site_as_written
+from planning.plan import Constraints, Plan, write_plan
 from planning.planner import Planned
 from planning.request import GreedyParameters, PlanRequest
-from reconstruction.scenes.bundled import curved_site, planar_site
-from reconstruction.scenes.photographers import DEFAULT_POINTS
+from planning.viewpoints.candidates import spread_candidates
+from planning.viewpoints.plan_records import as_written, viewpoints_of
+from planning.viewpoints.problem import take
+from reconstruction.scenes.photos.photo_job import DEFAULT_POINTS
+from reconstruction.scenes.world.bundled import curved_site, planar_site
 
 FARTHEST_M = 40.0
 """Of all views: the panels of one that is further away are a few pixels wide at the tables' sizes."""

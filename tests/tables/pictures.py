@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.reflections.photo_set import read_photo_set
+from reconstruction.light.photo_set import read_photo_set
 from tests.tables.definitions import Table
 from tests.tables.scales import Scale
 from tests.tables.trainings import Case, shown_photo

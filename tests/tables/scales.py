@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from reconstruction.modelling.config import TrainConfig
-from reconstruction.modelling.methods import METHODS
-from reconstruction.modelling.presets import preset
-from reconstruction.reflections.config import ReflectionConfig
-from reconstruction.reflections.reflection_mlp import MlpShape
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.directions.reflection_mlp import MlpShape
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.methods.registry import METHODS
+from reconstruction.training.presets import preset
 
 LEAST_STEPS = 1000
 """Of a training that says something of its method."""

@@ -15,17 +15,17 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from reconstruction.cameras import PosedPhoto
-from reconstruction.modelling.config import TrainConfig, config_of
-from reconstruction.modelling.render import png_of, render_view
-from reconstruction.modelling.saved import TrainedModel
-from reconstruction.modelling.score import score_views
-from reconstruction.modelling.stopwatch import Stopwatch
-from reconstruction.modelling.train import train_model
-from reconstruction.reflections.photo_set import PhotoSet, read_photo_set
-from reconstruction.scores.image_metrics import score_picture
-from reconstruction.scores.lpips_weights import read_lpips_weights
-from reconstruction.splatting.views import View
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.light.photo_set import PhotoSet, read_photo_set
+from reconstruction.metrics.image_metrics import score_picture
+from reconstruction.metrics.lpips_weights import read_lpips_weights
+from reconstruction.splats.rasterising.views import View
+from reconstruction.training.config import TrainConfig, config_of
+from reconstruction.training.model.render import png_of, render_view
+from reconstruction.training.model.saved import TrainedModel
+from reconstruction.training.model.score import score_views
+from reconstruction.training.timer import Stopwatch
+from reconstruction.training.train import train_model
 from tests.benchmarks.harness import machine
 from tests.tables.photos import Photos, Planner, photos_in
 from tests.tables.results import Result

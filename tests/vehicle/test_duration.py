@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.flying import FlightWish, fly_plan
+from groundstation.services.fly.flying import FlightWish, fly_plan
 from groundstation.vehicle.duration import timed_by_items
 from groundstation.vehicle.setup import leg_late_s
 from missions.mavlink.autopilots import Autopilot
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
+from planning.motion.timing import leg_times_s, motion_limits
 from planning.plan import FlightRules
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.scenes import single_panel
-from planning.timing import leg_times_s, motion_limits
+from planning.site.bundled import single_panel
 from tests.planning.revision.cases import QUICK
 from tests.slow import slow
 

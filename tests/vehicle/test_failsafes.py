@@ -5,24 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.vehicle.conduct import conduct
 from groundstation.vehicle.failsafes import NAMES, failsafe_checks, return_of
-from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.orders import rally_messages, sortie_orders
-from groundstation.vehicle.parameter_reads import N_ROUNDS, ParameterReads
-from groundstation.vehicle.parameters import ATTEMPT_S
+from groundstation.vehicle.parameters import ATTEMPT_S, N_ROUNDS, ParameterReads
 from groundstation.vehicle.preflight import Verdict
-from groundstation.vehicle.run_records import RunOptions
-from missions.build import missions_from_plan
+from groundstation.vehicle.sortie.conduct import conduct
+from groundstation.vehicle.sortie.flight_run import FlightRun
+from groundstation.vehicle.sortie.run_records import RunOptions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address, MissionItemInt, ParamValue, Received
-from missions.simulator.profiles import vehicle_profile
+from missions.mission.build import missions_from_plan
+from missions.simulator.autopilot.profiles import vehicle_profile
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.site import Obstacle, RallyPoint, box_geometry
+from planning.site.records import Obstacle, RallyPoint, box_geometry
 from tests.planning.plan_cases import kiosk
 from tests.planning.revision.cases import QUICK
-from tests.vehicle.test_flight_run import toy_at_home
+from tests.vehicle.sortie.test_flight_run import toy_at_home
 from tests.vehicle.toy import ToyLink
 
 VEHICLE = Address(1, 1)

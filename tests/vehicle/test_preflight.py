@@ -8,25 +8,17 @@ from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.orders import fence_messages, first_seq, sortie_orders
 from groundstation.vehicle.preflight import OnBoard, Verdict, is_ready, preflight_checks
 from groundstation.vehicle.setup import message_requests, wanted_parameters
-from groundstation.vehicle.state import (
-    BatteryLevel,
-    EstimatorHealth,
-    GnssFix,
-    Motion,
-    Timed,
-    VehicleState,
-    VehicleText,
-)
-from missions.build import missions_from_plan
-from missions.heights import altitude_amsl_m
+from groundstation.vehicle.state import BatteryLevel, EstimatorHealth, GnssFix, Motion, Timed, VehicleState, VehicleText
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
 from missions.mavlink.transfer.wire_items import to_wire
-from planning.errors import MissionError
+from missions.mission.build import missions_from_plan
+from missions.mission.model import altitude_amsl_m
+from planning.base.errors import MissionError
 from planning.insight.flight_profile import LowFlight
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.scenes import single_panel
+from planning.site.bundled import single_panel
 from tests.planning.revision.cases import QUICK
 
 NOW_S = 50.0

@@ -5,15 +5,15 @@ from functools import cache
 
 import pytest
 
-from groundstation.vehicle.conduct import conduct
-from groundstation.vehicle.flight_run import FlightRun
 from groundstation.vehicle.orders import sortie_orders
-from groundstation.vehicle.run_records import RunOptions
-from missions.build import missions_from_plan
+from groundstation.vehicle.sortie.conduct import conduct
+from groundstation.vehicle.sortie.flight_run import FlightRun
+from groundstation.vehicle.sortie.run_records import RunOptions
 from missions.flight.lost_reports import n_lost
 from missions.flight.matching import match_flight
 from missions.flight.outcome import Reason
 from missions.mavlink.autopilots import Autopilot
+from missions.mission.build import missions_from_plan
 from missions.simulator.build import make_airframe
 from missions.simulator.effects.link_loss import LossyLink
 from missions.simulator.server import DirectLink

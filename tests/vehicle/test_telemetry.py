@@ -33,8 +33,8 @@ from missions.mavlink.messages import (
     Wind,
     WindCov,
 )
-from planning.geodesy.enu import geodetic_from_enu
-from planning.site import Origin
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin
 
 ORIGIN = Origin(22.3372, 114.2636, 62.0)
 HOME = (10.0, -20.0, 1.5)

@@ -9,7 +9,7 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega
 
 from groundstation.vehicle.telemetry_log import RETRY_S, TelemetryLog, new_log_path
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 NOON_S = 1_800_000_000.25
 

@@ -24,10 +24,10 @@ from groundstation.vehicle.watch import HOLD_S, PHOTO_LATE_S, Watch, WatchRules,
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
-from planning.findings import Severity
+from planning.base.findings import Severity
 from planning.plan import Aircraft, FlightRules
-from planning.scenes import single_panel
-from planning.space import unchecked_space
+from planning.site.bundled import single_panel
+from planning.site.free_space import unchecked_space
 
 AIRCRAFT = Aircraft("test", 1000.0, 10.0, max_acceleration_m_s2=2.5, max_wind_m_s=10.0, max_descent_m_s=2.0)
 RULES = FlightRules(battery_reserve=0.25, takeoff_landing_s=30.0)

@@ -31,7 +31,7 @@ from missions.mavlink.messages import (
     SysStatus,
 )
 from missions.mavlink.mode_numbers import mode_numbers
-from planning.errors import LinkError
+from planning.base.errors import LinkError
 
 ACCEPTED, FAILED = 0, 4
 GROUND = Address(255, 190)

@@ -37,15 +37,15 @@ def run(options: argparse.Namespace) -> int:
     from datetime import date
 
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.brief_html import brief_html, brief_pictures, sources_in_page
-    from groundstation.services.flight_brief import flight_brief
-    from groundstation.services.given_files import read_given_plan, read_given_site
-    from groundstation.services.jobs import JobContext
-    from groundstation.services.preflight import preflight
-    from groundstation.services.readiness import Readiness
+    from groundstation.services.jobs.runner import JobContext
+    from groundstation.services.mission.brief import flight_brief
+    from groundstation.services.mission.brief_html import brief_html, brief_pictures, sources_in_page
+    from groundstation.services.mission.preflight import preflight
+    from groundstation.services.mission.readiness import Readiness
+    from groundstation.services.project.input_files import read_given_plan, read_given_site
     from groundstation.services.units import UnitSystem
-    from planning.errors import InputError
-    from planning.json_file import check_output, write_atomically
+    from planning.base.errors import InputError
+    from planning.base.json_file import check_output, write_atomically
 
     if options.out.suffix.lower() not in SUFFIXES:
         raise InputError(

@@ -26,9 +26,9 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Check and print; returns the exit status."""
     from groundstation.cli.console import MARKS, named_like, print_json, print_next, run_job, verdict_text
-    from groundstation.services.planning import check_files, finding_summary
-    from groundstation.services.readiness import readiness_of
-    from planning.findings import is_flyable
+    from groundstation.services.mission.readiness import readiness_of
+    from groundstation.services.plan.planning import check_files, finding_summary
+    from planning.base.findings import is_flyable
 
     day = flight_day(options)
     findings = run_job("check", lambda context: check_files(options.plan, options.site, day, context))

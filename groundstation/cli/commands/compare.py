@@ -38,7 +38,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.comparison import compare_files, comparison_summary
+    from groundstation.services.plan.comparison import compare_files, comparison_summary
 
     paths = [options.first, *options.others]
     comparison = run_job("compare", lambda context: compare_files(paths, options.site, context))
@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
 
 def table_lines(comparison: Comparison) -> list[str]:
     """The table as text, a column a plan."""
-    from groundstation.services.comparison import marked_as_best
+    from groundstation.services.plan.comparison import marked_as_best
 
     constraints = comparison.constraints
     lines = [["", *comparison.names]]

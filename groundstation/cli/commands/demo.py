@@ -32,9 +32,9 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.cli.commands.plan import print_summary
     from groundstation.cli.console import print_findings, print_json, run_job, verdict_text
     from groundstation.services.demo import demonstrate
-    from groundstation.services.planning import planned_summary
+    from groundstation.services.plan.planning import planned_summary
     from missions.flight.report_text import report_text
-    from planning.findings import Severity, is_flyable
+    from planning.base.findings import Severity, is_flyable
 
     started = time.perf_counter()
     made = run_job("demo", lambda context: demonstrate(options.out, options.scene, monitor=context))

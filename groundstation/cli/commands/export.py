@@ -94,7 +94,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _export_model(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.model_export import ModelExport, ModelFormat, export_model
+    from groundstation.services.model.export import ModelExport, ModelFormat, export_model
 
     wanted = ModelExport(
         ModelFormat(options.format),
@@ -117,14 +117,14 @@ def _export_model(options: argparse.Namespace) -> int:
 
 def _export_plan(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_findings, print_json
-    from groundstation.services.missions import export_plan
-    from groundstation.services.planning import finding_summary
+    from groundstation.services.mission.export import export_plan
+    from groundstation.services.plan.planning import finding_summary
     from missions.dji.write import LinkLoss
-    from missions.encode import ExportOptions
+    from missions.formats.encode import ExportOptions
     from missions.mavlink.autopilots import Autopilot
-    from missions.model import FileFormat, HeightReference
-    from planning.errors import InputError
-    from planning.findings import Severity
+    from missions.mission.model import FileFormat, HeightReference
+    from planning.base.errors import InputError
+    from planning.base.findings import Severity
 
     height_m = options.return_height
     if height_m is not None and not 0.0 < height_m <= MAX_RETURN_HEIGHT_M:

@@ -39,8 +39,8 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Import and print; returns the exit status."""
     from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job
-    from groundstation.services.missions import import_missions
-    from groundstation.services.planning import finding_summary
+    from groundstation.services.mission.export import import_missions
+    from groundstation.services.plan.planning import finding_summary
     from planning.plan import Constraints
 
     with in_words_of_options():

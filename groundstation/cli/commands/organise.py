@@ -35,7 +35,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Organise and print; returns the exit status."""
     from groundstation.cli.console import counted, print_json, run_job
-    from groundstation.services.model_objects import organise_files
+    from groundstation.services.model.objects import organise_files
 
     done = run_job("organise", lambda context: organise_files(options.model, options.out, options.site, context))
     if options.json:

@@ -13,7 +13,7 @@ from groundstation.cli.options import json_file
 from groundstation.cli.pose_options import add_pose_arguments, print_refined, refine_wish
 
 if TYPE_CHECKING:
-    from groundstation.services.photo_panels import PanelSearch
+    from groundstation.services.photos.panels import PanelSearch
 
 EPILOG = """The photos' own positions and angles place them; a COLMAP model of the same photos places them better:
 one that is there already (--colmap), or one made of them now (--refine). A
@@ -71,8 +71,8 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_findings, print_json, print_next, run_job
     from groundstation.cli.options import in_words_of_options
     from groundstation.cli.segmentation_options import parameters_of
-    from groundstation.services.photo_panels import find_panel_files, panel_search_summary
-    from reconstruction.panels.find import FindParameters
+    from groundstation.services.photos.panels import find_panel_files, panel_search_summary
+    from reconstruction.panels.solving.find import FindParameters
 
     with in_words_of_options():
         parameters = FindParameters(
@@ -110,7 +110,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _print_search(search: PanelSearch, out: Path) -> None:
     from groundstation.cli.console import counted
-    from groundstation.services.photo_panels import panel_search_summary
+    from groundstation.services.photos.panels import panel_search_summary
 
     summary = panel_search_summary(search)
     print(f"{out}: {counted(summary['panels'], 'panel')} on {counted(len(summary['facades']), 'facade')}")

@@ -44,7 +44,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Read, check, print; returns the exit status."""
     from groundstation.cli.console import counted, named_like, print_findings, print_json, print_next, run_job
-    from groundstation.services.photo_intake import intake_summary, take_in
+    from groundstation.services.photos.intake import intake_summary, take_in
     from groundstation.services.units import per_cent
     from reconstruction.photos.quality import QualityLimits
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.options import add_profile_argument, in_words_of_options, json_file, number
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
     from planning.planner import Planned
@@ -144,7 +144,7 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
 
 def _max_distance_m(options: argparse.Namespace) -> float | None:
     """The nearer of `--max-distance` and the distance at which `--max-gsd` is reached."""
-    from planning.catalogue import profile
+    from planning.aircraft.catalogue import profile
 
     if options.max_gsd is None:
         return options.max_distance  # type: ignore[no-any-return]
@@ -163,7 +163,7 @@ def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
     started = time.perf_counter()  # Loading what planning needs is part of the time budget.
     from groundstation.cli.console import print_findings, print_json, print_next, run_job
-    from groundstation.services.planning import locked_viewpoints, plan_site, planned_summary
+    from groundstation.services.plan.planning import locked_viewpoints, plan_site, planned_summary
 
     request = request_of(options)
     if options.keep is not None:

@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     """Prepare, write, print; returns the exit status."""
     from groundstation.cli.console import counted, print_findings, print_json, run_job
     from groundstation.cli.options import in_words_of_options
-    from groundstation.services.photo_dataset import prepare_files, prepared_summary
+    from groundstation.services.photos.dataset import prepare_files, prepared_summary
     from reconstruction.dataset.prepare import PrepareParameters
 
     with in_words_of_options():

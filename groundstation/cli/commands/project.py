@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from groundstation.services.project import OpenedProject
+    from groundstation.services.project.folder import OpenedProject
 
 EPILOG = """examples:
   project new my-building --site office.site.json --name 'My building'
@@ -47,10 +47,10 @@ def _add_action(actions: Any, name: str, run: Any, text: str) -> argparse.Argume
 def run_new(options: argparse.Namespace) -> int:
     """Make a project; returns the exit status."""
     from groundstation.cli.console import print_next
-    from groundstation.services.document import Document
-    from groundstation.services.given_files import read_given_site
-    from groundstation.services.project import create_project, open_project
-    from groundstation.services.project_facades import facades_beside
+    from groundstation.services.project.document import Document
+    from groundstation.services.project.facades import facades_beside
+    from groundstation.services.project.folder import create_project, open_project
+    from groundstation.services.project.input_files import read_given_site
 
     document = Document(read_given_site(options.site), found_facades=facades_beside(options.site))
     create_project(options.folder, document, name=options.name, site_source=options.site)
@@ -63,10 +63,10 @@ def run_new(options: argparse.Namespace) -> int:
 def run_show(options: argparse.Namespace) -> int:
     """Show a project; returns the exit status."""
     from groundstation.cli.console import print_findings, print_json, print_next
-    from groundstation.services.planning import finding_summary
-    from groundstation.services.project import open_project
-    from groundstation.services.project_migration import VERSION
-    from groundstation.services.recovery import find_recovery
+    from groundstation.services.plan.planning import finding_summary
+    from groundstation.services.project.folder import open_project
+    from groundstation.services.project.migration import VERSION
+    from groundstation.services.project.recovery import find_recovery
 
     project = open_project(_folder_of_project(options.folder))
     recovery = find_recovery(project.folder)
@@ -88,9 +88,9 @@ def run_show(options: argparse.Namespace) -> int:
 def run_add(options: argparse.Namespace) -> int:
     """Add plans to a project; returns the exit status."""
     from groundstation.cli.console import counted, print_findings, print_next
-    from groundstation.services.project import open_project, save_project
-    from groundstation.services.project_lock import lock_project
-    from groundstation.services.project_plans import add_plans
+    from groundstation.services.project.folder import open_project, save_project
+    from groundstation.services.project.lock import lock_project
+    from groundstation.services.project.plans import add_plans
 
     with lock_project(_folder_of_project(options.folder)) as lock:
         project = open_project(lock.folder)
@@ -105,9 +105,9 @@ def run_add(options: argparse.Namespace) -> int:
 def run_migrate(options: argparse.Namespace) -> int:
     """Save a project in the present format; returns the exit status."""
     from groundstation.cli.console import print_findings
-    from groundstation.services.project import open_project, save_project
-    from groundstation.services.project_lock import lock_project
-    from groundstation.services.project_migration import FORMAT, VERSION
+    from groundstation.services.project.folder import open_project, save_project
+    from groundstation.services.project.lock import lock_project
+    from groundstation.services.project.migration import FORMAT, VERSION
 
     with lock_project(_folder_of_project(options.folder)) as lock:
         project = open_project(lock.folder)
@@ -123,8 +123,8 @@ def run_migrate(options: argparse.Namespace) -> int:
 
 def _folder_of_project(path: Path) -> Path:
     """Folder of a project that can be read: nothing else gets a lock file."""
-    from groundstation.services.given_files import FileKind, expecting
-    from groundstation.services.project_file import project_folder, read_index
+    from groundstation.services.project.input_files import FileKind, expecting
+    from groundstation.services.project.project_file import project_folder, read_index
 
     with expecting(FileKind.PROJECT, path):
         folder = project_folder(path)

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.lists import count
-from planning.errors import InputError
-from planning.folders import FILE_ENDING
+from planning.base.errors import InputError
+from planning.base.folders import FILE_ENDING
 
 EPILOG = """examples:
   records tower.gsscene make
@@ -107,7 +107,7 @@ def _add_files(actions: Any) -> None:
 def run_make(options: argparse.Namespace) -> int:
     """Make the records of a site; returns the exit status."""
     from groundstation.cli.console import print_json, print_next
-    from groundstation.services.facility_records import make_records, records_path
+    from groundstation.services.model.facility_records import make_records, records_path
 
     done = make_records(options.folder, options.objects, options.who)
     if options.json:
@@ -125,7 +125,7 @@ def run_make(options: argparse.Namespace) -> int:
 def run_list(options: argparse.Namespace) -> int:
     """List objects; returns the exit status."""
     from groundstation.cli.console import counted, print_json
-    from groundstation.services.facility_records import filter_value, object_lines, open_records
+    from groundstation.services.model.facility_records import filter_value, object_lines, open_records
     from reconstruction.records.queries import ObjectFilter
 
     attribute, equals, value = (options.attribute or "").partition("=")
@@ -154,7 +154,7 @@ def run_list(options: argparse.Namespace) -> int:
 def run_show(options: argparse.Namespace) -> int:
     """Show one object; returns the exit status."""
     from groundstation.cli.console import print_json
-    from groundstation.services.facility_records import object_content, open_records
+    from groundstation.services.model.facility_records import object_content, open_records
 
     with open_records(options.folder) as book:
         content = object_content(book, options.object)
@@ -174,7 +174,7 @@ def run_show(options: argparse.Namespace) -> int:
 def run_search(options: argparse.Namespace) -> int:
     """Search texts; returns the exit status."""
     from groundstation.cli.console import counted, print_json
-    from groundstation.services.facility_records import open_records
+    from groundstation.services.model.facility_records import open_records
     from reconstruction.records.queries import search
 
     with open_records(options.folder) as book:
@@ -194,7 +194,7 @@ def run_history(options: argparse.Namespace) -> int:
     from dataclasses import asdict
 
     from groundstation.cli.console import print_json
-    from groundstation.services.facility_records import open_records
+    from groundstation.services.model.facility_records import open_records
     from reconstruction.records.queries import history
 
     with open_records(options.folder) as book:
@@ -211,7 +211,7 @@ def run_history(options: argparse.Namespace) -> int:
 
 def run_check(options: argparse.Namespace) -> int:
     """Look for damage; returns the exit status."""
-    from groundstation.services.facility_records import open_records, records_path
+    from groundstation.services.model.facility_records import open_records, records_path
 
     with open_records(options.folder) as book:
         book.check()
@@ -220,7 +220,7 @@ def run_check(options: argparse.Namespace) -> int:
 
 def run_set(options: argparse.Namespace) -> int:
     """Set attributes; returns the exit status."""
-    from groundstation.services.facility_records import open_records, put_attributes
+    from groundstation.services.model.facility_records import open_records, put_attributes
 
     with open_records(options.folder, True, options.who) as book:
         n_changed = put_attributes(book, options.object, _fields(options.values))
@@ -229,7 +229,7 @@ def run_set(options: argparse.Namespace) -> int:
 
 def run_add(options: argparse.Namespace) -> int:
     """Add an entry; returns the exit status."""
-    from groundstation.services.facility_records import open_records, put_fields
+    from groundstation.services.model.facility_records import open_records, put_fields
 
     with open_records(options.folder, True, options.who) as book:
         entry = put_fields(book, options.object, options.kind, _fields(options.values))
@@ -238,7 +238,7 @@ def run_add(options: argparse.Namespace) -> int:
 
 def run_remove(options: argparse.Namespace) -> int:
     """Take an entry out; returns the exit status."""
-    from groundstation.services.facility_records import open_records
+    from groundstation.services.model.facility_records import open_records
     from reconstruction.records.entries import KIND_NAMED
 
     if options.kind not in KIND_NAMED:
@@ -250,7 +250,7 @@ def run_remove(options: argparse.Namespace) -> int:
 
 def run_undo(options: argparse.Namespace) -> int:
     """Take the last changes back; returns the exit status."""
-    from groundstation.services.facility_records import open_records
+    from groundstation.services.model.facility_records import open_records
 
     with open_records(options.folder, True, options.who) as book:
         what = book.undo()
@@ -260,7 +260,7 @@ def run_undo(options: argparse.Namespace) -> int:
 def run_import(options: argparse.Namespace) -> int:
     """Take records over; returns the exit status."""
     from groundstation.cli.console import run_job
-    from groundstation.services.facility_records import import_records, open_records
+    from groundstation.services.model.facility_records import import_records, open_records
 
     with open_records(options.folder, True, options.who) as book:
         done = run_job("import", lambda job: import_records(book, options.path, options.kind, options.all_sets, job))
@@ -271,7 +271,7 @@ def run_import(options: argparse.Namespace) -> int:
 def run_export(options: argparse.Namespace) -> int:
     """Write files; returns the exit status."""
     from groundstation.cli.console import run_job
-    from groundstation.services.facility_records import export_ifc, export_tables, open_records
+    from groundstation.services.model.facility_records import export_ifc, export_tables, open_records
 
     is_ifc = options.out.suffix.lower() == ".ifc"
     if not is_ifc:

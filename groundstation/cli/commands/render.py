@@ -8,8 +8,8 @@ from typing import Any
 
 from groundstation.cli.lists import count, words
 from groundstation.cli.options import new_folder
-from planning.errors import InputError
-from reconstruction.modelling.layer_names import LAYERS
+from planning.base.errors import InputError
+from reconstruction.training.names import LAYERS
 
 LAYER_LINES = "\n".join(f"  {name:<13} {text}" for name, text in LAYERS.items())
 
@@ -48,7 +48,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Render and print; returns the exit status."""
     from groundstation.cli.console import counted, print_json, run_job
-    from groundstation.services.model_rendering import RenderWish, render_files
+    from groundstation.services.model.rendering import RenderWish, render_files
 
     unknown = next((name for name in options.layers if name not in LAYERS), None)
     if unknown is not None:

@@ -48,9 +48,9 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Read, solve, print."""
     begin = time.perf_counter()
-    from groundstation.services.given_files import FileKind, expecting
-    from planning.errors import InputError
-    from planning.progress import TimeLimit, Trace
+    from groundstation.services.project.input_files import FileKind, expecting
+    from planning.base.errors import InputError
+    from planning.base.progress import TimeLimit, Trace
     from planning.routing.methods import solve_tour
     from planning.routing.tour import nearest_neighbour, tour_length
     from planning.routing.tsplib import read_instance

@@ -14,11 +14,11 @@ from groundstation.cli.options import (
     new_folder,
     number,
 )
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.scene_photos import RenderedScene
-    from groundstation.services.scene_views import SceneWish
+    from groundstation.services.scenes.photos import RenderedScene
+    from groundstation.services.scenes.views import SceneWish
 
 DEFAULT_RAYS = 64
 
@@ -91,7 +91,7 @@ def add_parser(subparsers: Any) -> None:
 def run_list(options: argparse.Namespace) -> int:
     """Print the bundled scenes; returns the exit status."""
     from groundstation.cli.console import print_json
-    from groundstation.services.scene_views import BUNDLED_TEXTS
+    from groundstation.services.scenes.views import BUNDLED_TEXTS
 
     if options.json:
         print_json({"scenes": BUNDLED_TEXTS})
@@ -104,7 +104,7 @@ def run_list(options: argparse.Namespace) -> int:
 def run_render(options: argparse.Namespace) -> int:
     """Render, write and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.scene_photos import photograph_files, rendered_summary
+    from groundstation.services.scenes.photos import photograph_files, rendered_summary
 
     wish = _wish(options)
     if options.jobs is not None and options.jobs < 1:
@@ -123,9 +123,9 @@ def run_render(options: argparse.Namespace) -> int:
 
 
 def _wish(options: argparse.Namespace) -> SceneWish:
-    from groundstation.services.scene_views import SceneWish
-    from reconstruction.scenes.effect_names import EFFECTS
-    from reconstruction.scenes.renderer import RenderSettings
+    from groundstation.services.scenes.views import SceneWish
+    from reconstruction.scenes.effects.names import EFFECTS
+    from reconstruction.scenes.photos.renderer import RenderSettings
 
     wishes = effect_wishes(options.effects, EFFECTS)
     if options.rays is not None and options.renderer != "mitsuba":

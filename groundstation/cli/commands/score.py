@@ -13,8 +13,8 @@ from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.options import new_folder
 
 if TYPE_CHECKING:
-    from groundstation.services.segmentation import ScoreRequest
-    from reconstruction.scores.metrics import SetScores, Spread
+    from groundstation.services.photos.segmentation import ScoreRequest
+    from reconstruction.metrics.metrics import SetScores, Spread
 
 SETS = ("made-planar", "made-curved", "made-irregular", "cmp", "ecp", "offices", "folder")
 
@@ -110,8 +110,8 @@ def request_of(options: argparse.Namespace) -> ScoreRequest:
         A value is out of range, or a settings file cannot be read.
     """
     from groundstation.cli.segmentation_options import parameters_of
-    from groundstation.services.segmentation import ScoreRequest
-    from planning.errors import InputError
+    from groundstation.services.photos.segmentation import ScoreRequest
+    from planning.base.errors import InputError
 
     if options.seeds < 1:
         raise InputError(f"--seeds: expected 1 or more, got {options.seeds}")
@@ -136,8 +136,8 @@ def request_of(options: argparse.Namespace) -> ScoreRequest:
 def run_segmentation(options: argparse.Namespace) -> int:
     """Score and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.segmentation import save_photos, score_segmentation
-    from reconstruction.scores.report import summary
+    from groundstation.services.photos.segmentation import save_photos, score_segmentation
+    from reconstruction.metrics.report import summary
 
     request = replace(request_of(options), masks=options.masks)
     if options.save_photos is not None:

@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
     """Find, write, print; returns the exit status."""
     from groundstation.cli.console import counted, print_json, run_job
     from groundstation.cli.segmentation_options import parameters_of
-    from groundstation.services.segmentation import segment_file, segmented_summary
+    from groundstation.services.photos.segmentation import segment_file, segmented_summary
 
     parameters = parameters_of(options)
     done = run_job(

@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import Any
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 EPILOG = """A vehicle with a key takes orders from whoever knows it, and from nobody else. The key lies in the system's
 key store where the package keyring is installed, else in a file that only you may read; never in a project.
@@ -36,7 +36,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from groundstation.services import signing
+    from groundstation.services.fly import signing
 
     if (options.url is None) == (options.action in ("give", "withdraw")):
         raise InputError("give and withdraw want the url of a link; set, status and forget want none")

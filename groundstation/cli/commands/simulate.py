@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.options import checked_seed, json_file, number
 from groundstation.cli.options import effect_wishes as wishes_of_effects
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.flying import FlightWish, Flown
+    from groundstation.services.fly.flying import FlightWish, Flown
     from missions.simulator.scene import FixKind
-    from planning.effects import Wish
-    from planning.progress import Monitor
+    from planning.base.effects import Wish
+    from planning.base.progress import Monitor
 
 EPILOG = """effects:
   --effects auto             what the scene calls for (default)
@@ -94,14 +94,14 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _fly(options: argparse.Namespace, monitor: Monitor) -> Flown:
-    from groundstation.services.flying import fly_files
+    from groundstation.services.fly.flying import fly_files
 
     if options.sitl is None:
         between = _battery_change if sys.stdin is not None and sys.stdin.isatty() else None
         return fly_files(options.plan, options.site, options.out, _wish(options), monitor=monitor, between=between)
-    from groundstation.services.flying_sitl import SITL_LINK, sitl
-    from groundstation.services.given_files import read_given_plan, read_given_site
-    from missions.build import missions_from_plan
+    from groundstation.services.fly.sitl import SITL_LINK, sitl
+    from groundstation.services.project.input_files import read_given_plan, read_given_site
+    from missions.mission.build import missions_from_plan
 
     site, plan = read_given_site(options.site).site, read_given_plan(options.plan)
     first = missions_from_plan(plan, site.origin, site.home_enu_m)[0]
@@ -118,8 +118,8 @@ def _battery_change(number: int) -> None:
 
 
 def _wish(options: argparse.Namespace) -> FlightWish:
-    from groundstation.services.flying import SIMULATED, FlightWish
-    from groundstation.services.signing import link_signer
+    from groundstation.services.fly.flying import SIMULATED, FlightWish
+    from groundstation.services.fly.signing import link_signer
     from missions.mavlink.autopilots import Autopilot
     from missions.simulator.scene import Conditions
 
@@ -138,7 +138,7 @@ def _wish(options: argparse.Namespace) -> FlightWish:
         raise InputError("--signed: is for --link URL; the simulation in this program has no link to listen to")
     wind_m_s = options.wind
     if wind_m_s is None:
-        from groundstation.services.given_files import read_given_plan
+        from groundstation.services.project.input_files import read_given_plan
 
         wind_m_s = read_given_plan(options.plan).rules.wind_m_s
     return FlightWish(

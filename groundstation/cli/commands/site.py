@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.options import json_file, number
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from planning.site import Site
-    from planning.site_import.options import ImportOptions, PanelGrid
+    from planning.site.importing.options import ImportOptions, PanelGrid
+    from planning.site.records import Site
 
 Number3 = tuple[float, float, float]
 
@@ -129,11 +129,11 @@ def _triple(text: str) -> tuple[Number3, Number3, Number3]:
 def run(options: argparse.Namespace) -> int:
     """Import a site; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.given_files import FileKind, expecting
-    from groundstation.services.project_file import check_not_index
-    from planning.json_file import check_output
-    from planning.site_import.importer import import_site
-    from planning.site_import.output import write_imported_site
+    from groundstation.services.project.input_files import FileKind, expecting
+    from groundstation.services.project.project_file import check_not_index
+    from planning.base.json_file import check_output
+    from planning.site.importing.importer import import_site
+    from planning.site.importing.output import write_imported_site
 
     check_not_index(options.out)
     check_output(options.out, [options.file])
@@ -204,8 +204,8 @@ def import_options(options: argparse.Namespace) -> ImportOptions:
     InputError
         The origin is no place on earth.
     """
-    from planning.site import Origin
-    from planning.site_import.options import ImportOptions
+    from planning.geo.frames import Origin
+    from planning.site.importing.options import ImportOptions
 
     try:
         origin = None if options.origin is None else Origin(*options.origin)
@@ -232,7 +232,7 @@ def import_options(options: argparse.Namespace) -> ImportOptions:
 
 def _grids(options: argparse.Namespace) -> tuple[PanelGrid, ...]:
     """One grid for each --panel-grid, with its own rows and columns or those that all share."""
-    from planning.site_import.options import PanelGrid
+    from planning.site.importing.options import PanelGrid
 
     corners = options.panel_grid or []
     counts = []

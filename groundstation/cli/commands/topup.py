@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.options import checked_seed, in_words_of_options, json_file, number
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from planning.top_up import TopUp
+    from planning.revision.top_up import TopUp
 
 EPILOG = """What was seen is decided by the poses of the photos, not by the views that they were meant to be. The plan
 that is written is checked, exported and flown like any other.
@@ -67,8 +67,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _top_up(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_findings, print_json, print_next, run_job
-    from groundstation.services.top_up import top_up_files, top_up_summary
-    from planning.top_up import Target, TopUpRequest
+    from groundstation.services.plan.top_up import top_up_files, top_up_summary
+    from planning.revision.top_up import Target, TopUpRequest
 
     with in_words_of_options():
         request = TopUpRequest(
@@ -129,7 +129,7 @@ def _print_top_up(found: TopUp, out: Path, is_left: bool) -> None:
 
 def _resume(options: argparse.Namespace) -> int:
     from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job
-    from groundstation.services.top_up import resume_files, resumed_summary
+    from groundstation.services.plan.top_up import resume_files, resumed_summary
 
     if options.batteries is not None:
         raise InputError("--batteries: is not for --resume, which fits one battery")

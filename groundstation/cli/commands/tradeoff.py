@@ -15,7 +15,7 @@ from groundstation.cli.commands.score import request_of as score_request_of
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.lists import above_zero, count, counts, numbers, wholes, words
 from groundstation.cli.options import checked_seed, new_folder
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 if TYPE_CHECKING:
     from planning.tradeoff.curves import Answers
@@ -194,7 +194,7 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
 def run_plan(options: argparse.Namespace) -> int:
     """Compare planning settings and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.tradeoff import plan_tradeoff
+    from groundstation.services.plan.tradeoff import plan_tradeoff
     from planning.tradeoff.plan_report import plan_summary
 
     variants = _variants(options)
@@ -291,7 +291,7 @@ def _print_answers(found: Answers, text: Callable[[float], str], goal: Callable[
 def run_route(options: argparse.Namespace) -> int:
     """Compare routing methods and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.tradeoff import route_tradeoff
+    from groundstation.services.plan.tradeoff import route_tradeoff
     from planning.tradeoff.tour_report import tour_summary
     from planning.tradeoff.tour_runs import tour_methods
 
@@ -334,8 +334,8 @@ def _print_tour(report: TourReport) -> None:
 def run_segment(options: argparse.Namespace) -> int:
     """Compare settings of the search for panels and print; returns the exit status."""
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.segmentation import segment_tradeoff
-    from reconstruction.scores.tradeoff import SegmentVariants, variant_rows
+    from groundstation.services.photos.segmentation import segment_tradeoff
+    from reconstruction.tradeoff.search_tradeoff import SegmentVariants, variant_rows
 
     try:
         variants = SegmentVariants(

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.lists import above_zero, count
 from groundstation.cli.options import new_folder
-from planning.errors import InputError, OperationCancelled
-from reconstruction.modelling.methods import DEFAULT_METHOD, METHODS
-from reconstruction.modelling.preset_names import LIGHTS, PRESETS
+from planning.base.errors import InputError, OperationCancelled
+from reconstruction.training.methods.registry import DEFAULT_METHOD, METHODS
+from reconstruction.training.names import LIGHTS, PRESETS
 
 if TYPE_CHECKING:
-    from groundstation.services.model_training import TrainedFiles, TrainWish
+    from groundstation.services.reconstruct.training import TrainedFiles, TrainWish
 
 METHOD_LINES = "\n".join(f"  {name:<30} {method.title}" for name, method in METHODS.items())
 PRESET_LINES = "\n".join(f"  {name:<11} {text}" for name, text in PRESETS.items())
@@ -31,7 +31,7 @@ direction as in the paper (mlp), as a scene that mirrored rays march through (ra
 splats at all (harmonics). auto looks at the photos and says why.
 
 Part of the views is held out for 'score'. Ctrl-C keeps the state: the same command with --resume goes on. --settings
-is a TOML file with any setting of reconstruction/modelling/config.py, such as
+is a TOML file with any setting of reconstruction/training/config.py, such as
   max_splats = 50000
   [losses]
   normal_prior = 0.5
@@ -81,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
     """Train and print; returns the exit status."""
     begun_s = time.perf_counter()
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.model_training import preview_to, train_files, train_summary
+    from groundstation.services.reconstruct.training import preview_to, train_files, train_summary
 
     wish = wish_of(options)
     given = [name for name in SETTINGS if getattr(options, name) is not None]
@@ -120,7 +120,7 @@ def run(options: argparse.Namespace) -> int:
 def wish_of(options: argparse.Namespace) -> TrainWish:
     """What the options ask for."""
     from groundstation.cli.options import checked_seed
-    from groundstation.services.model_training import DEFAULT_PRESET, TrainWish
+    from groundstation.services.reconstruct.training import DEFAULT_PRESET, TrainWish
 
     return TrainWish(
         options.preset or DEFAULT_PRESET,

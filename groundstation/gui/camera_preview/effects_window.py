@@ -5,11 +5,11 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDialog, QHeaderView, QLabel, QVBoxLayout, QWidget
 
-from groundstation.gui.own_words import own_words
-from groundstation.gui.plan.table_view import Column, RowModel, table_of
-from groundstation.services.photo_preview import LEFT_OUT, SeenPhoto
+from groundstation.gui.application.translate import own_words
+from groundstation.gui.widgets.table_view import Column, RowModel, table_of
+from groundstation.services.scenes.preview import LEFT_OUT, SeenPhoto
 from groundstation.services.units import UnitSystem
-from planning.effects import Decision
+from planning.base.effects import Decision
 
 
 class EffectsWindow(QDialog):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.frames import wrap_heading_rad
+from planning.geo.frames import wrap_heading_rad
 from planning.insight.flight_profile import FlightProfile, sortie_profile
 from planning.plan import FlightRules, Plan, Sortie, viewpoint_arrays
 

@@ -2,11 +2,175 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, Qt, Signal
-from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QButtonGroup, QCheckBox, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from dataclasses import replace
 
-from groundstation.gui.camera_preview.light_box import LightBox
+from PySide6.QtCore import QDate, QDateTime, QEvent, QLocale, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QCheckBox,
+    QDateTimeEdit,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from groundstation.gui.widgets.inputs import ChoiceBox, NumberBox, calm
+from groundstation.services.site.sun import sun_place_deg
+from planning.geo.frames import Origin
+from reconstruction.scenes.world.look import Look
+
+# Editor of a scene's light: where the sun stands, or when, and whether anything stands around the building.
+
+DATES = QDate(1980, 1, 1), QDate(2100, 12, 31)
+"""Every system knows its time zone then, and the sun's place is as good as it is said to be."""
+
+
+class LightBox(QWidget):
+    """Edits a `Look`; what it has no box for stays as it was.
+
+    Signals
+    -------
+    valueChanged(Look)
+        The user chose another light.
+    """
+
+    valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._value = Look()
+        self._origin: Origin | None = None
+        self._by = ChoiceBox()
+        self._by.addItems([self.tr("Sun by direction"), self.tr("Sun by date and time")])
+        self._by.setToolTip(self.tr("Say where the sun stands, or when the photo is taken"))
+        self._heading = NumberBox(0.0, 360.0, 5.0, "°", 0)
+        self._heading.setWrapping(True)
+        self._heading.setAccessibleName(self.tr("Heading of the sun"))
+        self._heading.setToolTip(self.tr("Where the sun stands, clockwise from north"))
+        self._elevation = NumberBox(-20.0, 90.0, 5.0, "°", 0)
+        self._elevation.setAccessibleName(self.tr("Elevation of the sun"))
+        self._elevation.setToolTip(self.tr("How high the sun stands above the horizon"))
+        self._when = QDateTimeEdit(QDateTime.currentDateTime())
+        calm(self._when)
+        self._when.setDisplayFormat("yyyy-MM-dd HH:mm")
+        self._when.setLocale(QLocale.c())
+        self._when.setDateRange(*DATES)
+        self._when.setCalendarPopup(True)
+        self._when.setAccessibleName(self.tr("Date and time"))
+        self._when.setToolTip(self.tr("By this computer's clock and time zone"))
+        self._near = QCheckBox(self.tr("Made-up street"))
+        self._near.setToolTip(
+            self.tr(
+                "Buildings opposite, trees, cars and people, drawn at random; without them the building stands alone"
+            )
+        )
+        self._words = QLabel()
+        self._words.setProperty("role", "muted")
+        self._words.setWordWrap(True)
+        self._lay_out()
+        self.setValue(self._value)
+        for signal in (self._by.currentIndexChanged, self._when.dateTimeChanged, self._near.toggled):
+            signal.connect(self._edited)
+        for box in (self._heading, self._elevation):
+            box.valueChanged.connect(self._edited)
+        self._show_kind()
+
+    def _lay_out(self) -> None:
+        row = QHBoxLayout()
+        row.setSpacing(4)
+        for box in (self._heading, self._elevation):
+            row.addWidget(box, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        layout.addWidget(self._by)
+        layout.addLayout(row)
+        for widget in (self._when, self._words, self._near):
+            layout.addWidget(widget)
+
+    def value(self) -> Look:
+        """The light."""
+        return self._value
+
+    def setValue(self, look: Look) -> None:  # noqa: N802
+        """Show another light; the sun is then said by its direction."""
+        self._value = look
+        with QSignalBlocker(self._by):
+            self._by.setCurrentIndex(0)
+        self._show_sun(look.sun_heading_deg, look.sun_elevation_deg)
+        with QSignalBlocker(self._near):
+            self._near.setChecked(look.near)
+        self._show_kind()
+
+    def set_time(self, when: QDateTime) -> None:
+        """Show the sun as it stands at a time of this computer's clock."""
+        with QSignalBlocker(self):
+            self._by.setCurrentIndex(1)
+            self._when.setDateTime(when)
+
+    def set_origin(self, origin: Origin | None) -> None:
+        """Where on earth the sun is looked for; a sun that was said by time moves with it."""
+        if origin == self._origin:
+            return
+        self._origin = origin
+        if self._is_by_time():
+            self._edited()
+
+    def _is_by_time(self) -> bool:
+        return self._by.currentIndex() == 1
+
+    def _edited(self, *_: object) -> None:
+        heading_deg, elevation_deg = self._sun_deg()
+        if self._is_by_time():
+            self._show_sun(heading_deg, elevation_deg)
+        found = replace(
+            self._value,
+            sun_heading_deg=heading_deg,
+            sun_elevation_deg=elevation_deg,
+            near=self._near.isChecked(),
+        )
+        changed, self._value = found != self._value, found
+        self._show_kind()
+        if changed:
+            self.valueChanged.emit(found)
+
+    def _sun_deg(self) -> tuple[float, float]:
+        """Heading and elevation as the user says them; the boxes round what comes from a time."""
+        if not self._is_by_time():
+            return self._heading.value(), self._elevation.value()
+        if self._origin is None:
+            return self._value.sun_heading_deg, self._value.sun_elevation_deg
+        at = self._when.dateTime().toPython().astimezone()  # type: ignore[attr-defined]
+        heading_deg, elevation_deg = sun_place_deg(self._origin.lat_deg, self._origin.lon_deg, at)
+        return heading_deg % 360.0, elevation_deg
+
+    def _show_sun(self, heading_deg: float, elevation_deg: float) -> None:
+        for box, degrees in ((self._heading, heading_deg % 360.0), (self._elevation, elevation_deg)):
+            with QSignalBlocker(box):
+                box.setValue(degrees)
+
+    def _show_kind(self) -> None:
+        by_time = self._is_by_time()
+        for box in (self._heading, self._elevation):
+            box.setVisible(not by_time)
+        self._when.setVisible(by_time)
+        heading_deg, elevation_deg = self._value.sun_heading_deg, self._value.sun_elevation_deg
+        if by_time and self._origin is None:
+            words = self.tr("Open a site first: the sun is looked for above it.")
+        elif elevation_deg <= 0.0:
+            words = self.tr("Sun at {0:.0f}°, {1:.0f}°: below the horizon. No shadows, but a bright sky.").format(
+                heading_deg, elevation_deg
+            )
+        elif by_time:
+            words = self.tr("Sun at {0:.0f}°, {1:.0f}° high.").format(heading_deg, elevation_deg)
+        else:
+            words = ""
+        self._words.setText(words)
+        self._words.setVisible(bool(words))
+
 
 WIDTH_PX = 210
 """Pictures are 4 : 3 and the room for them is wide: at 1280 x 720 this takes nothing from them."""

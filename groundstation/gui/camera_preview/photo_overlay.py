@@ -11,8 +11,8 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QImage, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.theme import colours
 from groundstation.gui.view3d.pinhole import Pinhole
+from groundstation.gui.widgets.theme import colours
 
 CROSS_PX = 14.0
 FLASH_OPACITY = 150

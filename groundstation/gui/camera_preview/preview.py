@@ -2,42 +2,202 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QElapsedTimer, QEvent, Qt, QTimer, Signal
-from PySide6.QtGui import QHideEvent, QImage, QShortcut, QShowEvent
+from PySide6.QtCore import QCoreApplication, QElapsedTimer, QEvent, QRect, Qt, QTimer, Signal
+from PySide6.QtGui import QHideEvent, QImage, QResizeEvent, QShortcut, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
+from groundstation.gui.application.translate import own_words
 from groundstation.gui.camera_preview.flight import CameraFlight, CameraPose, camera_flight
-from groundstation.gui.camera_preview.panel_lines import panel_lines
 from groundstation.gui.camera_preview.photo_box import PhotoBox
-from groundstation.gui.camera_preview.photo_figures import figures, place_text
-from groundstation.gui.camera_preview.photo_frame import PhotoFrame
-from groundstation.gui.camera_preview.photo_overlay import Lines
-from groundstation.gui.camera_preview.photo_scene import (
-    BACKDROP,
-    COVERED_PX,
-    PANEL_OUTLINE,
-    covered_outlines,
-    panel_colours,
-    panel_faces,
-    panel_outlines,
+from groundstation.gui.camera_preview.photo_overlay import Lines, PhotoOverlay
+from groundstation.gui.camera_preview.seen_panels import (
+    NearestPanel,
+    SiteSight,
+    covered_by_view,
+    nearest_covered,
+    site_sight,
 )
-from groundstation.gui.camera_preview.seen_panels import SiteSight, covered_by_view, site_sight
-from groundstation.gui.inputs import ChoiceBox, calm
-from groundstation.gui.own_words import own_words
-from groundstation.gui.scrolling import scrolled
-from groundstation.gui.theme import colours
 from groundstation.gui.view3d.canvas import Canvas, image_array
 from groundstation.gui.view3d.layers import Drawable, Layer
+from groundstation.gui.view3d.paint import flat, rgba, shaded
 from groundstation.gui.view3d.pinhole import Pinhole, photo_pinhole
+from groundstation.gui.view3d.shapes import outlines, quads
 from groundstation.gui.view3d.site_scene import SiteScene, site_scene
-from groundstation.services.units import UnitSystem, minutes_text
-from planning.errors import InfeasibleError
+from groundstation.gui.widgets.inputs import ChoiceBox, calm
+from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.gui.widgets.theme import Colours, colours
+from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit
+from planning.base.errors import InfeasibleError
+from planning.coverage.sections import PanelFrames
+from planning.geo.frames import heading_difference_rad
 from planning.plan import Camera, Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
-from planning.site import SiteModel
+from planning.site.records import SiteModel
+
+# The figures on the camera preview: what the photo covers, and how it sees the nearest panel.
+
+
+def figures(
+    sight: SiteSight,
+    panel_ids: tuple[str, ...],
+    plan: Plan,
+    view: Pinhole,
+    covered: NDArray[np.bool_],
+    place: str,
+    units: UnitSystem,
+) -> str:
+    """What a view covers, `covered` of shape (m,), under what its `place` is called."""
+    nearest = nearest_covered(sight, plan, view.eye_enu_m, covered)
+    if nearest is None:
+        return QCoreApplication.translate("CameraPreview", "{0}: covers no panel").format(place)
+    return QCoreApplication.translate("CameraPreview", "{0}: covers {1} panels\n{2}").format(
+        place, int(covered.sum()), _nearest_text(nearest, panel_ids[nearest.panel], view, units)
+    )
+
+
+def place_text(viewpoint: Viewpoint | None, pose: CameraPose | None) -> str:
+    """Where a pose is, by the viewpoint that was photographed last."""
+    if viewpoint is None:
+        return QCoreApplication.translate("CameraPreview", "before the first photo")
+    if pose is not None and _is_at(pose, viewpoint):
+        return viewpoint.id
+    return QCoreApplication.translate("CameraPreview", "on the way from {0}").format(viewpoint.id)
+
+
+def _nearest_text(nearest: NearestPanel, panel_id: str, view: Pinhole, units: UnitSystem) -> str:
+    length, sampling = length_unit(units), sampling_unit(units)
+    width, height = (2.0 * half * nearest.distance_m for half in (view.half_width, view.half_height))
+    return QCoreApplication.translate(
+        "CameraPreview",
+        "nearest panel {0}: {1} away, {2} per pixel, seen at {3:.0f}° from its normal\n"
+        "picture at this distance: {4} x {5}",
+    ).format(
+        panel_id,
+        length.text(nearest.distance_m),
+        sampling.text(nearest.sampling_m),
+        nearest.incidence_deg,
+        length.text(width),
+        length.text(height),
+    )
+
+
+def _is_at(pose: CameraPose, viewpoint: Viewpoint) -> bool:
+    """Whether a pose is that of a viewpoint, to a centimetre and a tenth of a degree."""
+    away_m = float(np.linalg.norm(pose.position_enu_m - np.array(viewpoint.position_enu_m)))
+    turned = heading_difference_rad(pose.heading_rad, math.radians(viewpoint.heading_deg))
+    tilted = pose.pitch_rad - math.radians(viewpoint.gimbal_pitch_deg)
+    return away_m < 0.01 and max(abs(float(turned)), abs(tilted)) < math.radians(0.1)
+
+
+# Outlines of panels as lines in a picture.
+
+Array = NDArray[np.float64]
+
+NEAREST_M = 0.05
+"""Depth at which lines that run past the camera are cut off."""
+
+
+def panel_lines(corners_enu_m: Array, view: Pinhole) -> Array:
+    """Edges of panels, corners of shape (m, 4, 3), in a view: x and y of both ends, pixels, shape (n, 4).
+
+    What is behind the camera is cut off; n is at most 4 m.
+    """
+    starts = corners_enu_m.reshape(-1, 3) - view.eye_enu_m
+    ends = np.roll(corners_enu_m, -1, axis=1).reshape(-1, 3) - view.eye_enu_m
+    depths = np.stack([starts @ view.forward, ends @ view.forward])
+    is_before = (depths > NEAREST_M).any(axis=0)
+    starts, ends, depths = starts[is_before], ends[is_before], depths[:, is_before]
+    # Share of the way from start to end at which the depth is the nearest one.
+    change = depths[1] - depths[0]
+    cut = np.divide(NEAREST_M - depths[0], change, out=np.zeros_like(change), where=change != 0.0)[:, None]
+    along = ends - starts
+    first = np.where(depths[0][:, None] < NEAREST_M, starts + cut * along, starts)
+    last = np.where(depths[1][:, None] < NEAREST_M, starts + cut * along, ends)
+    pixels = [view.project(points + view.eye_enu_m)[0] for points in (first, last)]
+    return np.concatenate(pixels, axis=1)
+
+
+# A picture in the aspect ratio of the photo, as large as there is room for.
+
+
+class PhotoFrame(QWidget):
+    """Canvas and overlay in the middle, bars beside or above them.
+
+    Signals
+    -------
+    fitted()
+        The picture has another size.
+    """
+
+    fitted = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setMinimumSize(160, 120)
+        self.canvas = Canvas(self)
+        self.overlay = PhotoOverlay(self)
+        self._aspect = 4.0 / 3.0
+
+    def set_aspect(self, aspect: float) -> None:
+        """Width / height of the photo."""
+        if aspect != self._aspect:
+            self._aspect = aspect
+            self._fit()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Keep the aspect ratio."""
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        width = min(self.width(), int(self.height() * self._aspect))
+        height = max(1, round(width / self._aspect))
+        place = QRect((self.width() - width) // 2, (self.height() - height) // 2, max(1, width), height)
+        self.canvas.setGeometry(place)
+        self.overlay.setGeometry(place)
+        self.overlay.raise_()
+        self.fitted.emit()
+
+
+# What a photo is drawn from: building, obstacles, ground, and panels outlined where they are covered.
+
+FACES_NEARER, OUTLINES_NEARER, COVERED_NEARER = 0.003, 0.004, 0.005
+"""Parts of their distance by which panels, their outlines and those of covered ones come before the wall on which they
+lie, 3 cm at 10 m. They are not moved off the wall, as in the 3-D view: at 10 m that would shift corners by pixels."""
+
+COVERED_PX = 2.0
+PANEL, PANEL_OUTLINE = "#8fa9bd", "#23415a"
+
+BACKDROP = (Layer.GROUND, Layer.BUILDING, Layer.OBSTACLES, Layer.NO_FLY)
+
+
+def panel_colours(frames: PanelFrames, covered: NDArray[np.bool_], look: Colours) -> NDArray[np.uint8]:
+    """Colours of panels, shape (m, 4): grey-blue, or the colour of what is covered."""
+    colours = flat(PANEL, len(frames))
+    colours[covered] = rgba(look.covered)
+    return shaded(colours, frames.normals)
+
+
+def panel_faces(frames: PanelFrames, colours: NDArray[np.uint8]) -> Drawable:
+    """All panels, with colours of shape (m, 4)."""
+    return Drawable(*quads(frames.corners), colours, nearer=FACES_NEARER)
+
+
+def panel_outlines(frames: PanelFrames) -> Drawable:
+    """Thin outlines of all panels."""
+    points, cells = outlines(frames.corners)
+    return Drawable(points, cells, flat(PANEL_OUTLINE, len(cells)), nearer=OUTLINES_NEARER)
+
+
+def covered_outlines(frames: PanelFrames, covered: NDArray[np.bool_], look: Colours) -> Drawable:
+    """Thick, bright outlines of the covered panels."""
+    points, cells = outlines(frames.corners[covered])
+    return Drawable(points, cells, flat(look.open, len(cells)), width_px=COVERED_PX, nearer=COVERED_NEARER)
+
 
 SPEEDS = (1, 2, 5, 10, 20)
 FRAME_MS = 40

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Document, PlanEntry
-from groundstation.services.jobs import JobContext
-from groundstation.services.live_sortie import is_same_place
-from groundstation.services.top_up import flown_plan, resume_flight, top_up_flight
+from groundstation.gui.application.context import Workspace
+from groundstation.services.fly.sortie import is_same_place
+from groundstation.services.jobs.runner import JobContext
+from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
+from groundstation.services.project.document import Document, PlanEntry
 from missions.flight.flight_file import flight_of
 from missions.flight.record import FlightRecord
-from missions.resume import Resumed
-from planning.findings import Finding, Severity
+from missions.mission.resume import Resumed
+from planning.base.findings import Finding, Severity
 from planning.plan import Plan
-from planning.site import SiteModel
-from planning.top_up import TopUp, TopUpRequest
+from planning.revision.top_up import TopUp, TopUpRequest
+from planning.site.records import SiteModel
 
 MOST_BATTERIES = 20
 """Full batteries that a top-up may take at most; more than anybody has with them."""

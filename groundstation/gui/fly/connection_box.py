@@ -8,9 +8,9 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QLabel, QLineEdit, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.fly.signing_box import SigningBox
-from groundstation.gui.inputs import ChoiceBox, Form, NumberBox
-from groundstation.gui.tab_order import set_enabled
-from groundstation.services.live_choice import USUAL_ADDRESS, ConnectionChoice, LinkKind
+from groundstation.gui.widgets.inputs import ChoiceBox, Form, NumberBox
+from groundstation.gui.widgets.tab_order import set_enabled
+from groundstation.services.fly.link_choice import USUAL_ADDRESS, ConnectionChoice, LinkKind
 from missions.mavlink.autopilots import Autopilot
 
 MAX_SPEED_UP = 50.0

@@ -6,10 +6,10 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QColor, QIcon, QKeySequence, QMouseEvent, QPainter, QPainterPath, QPixmap
 from PySide6.QtWidgets import QGridLayout, QPushButton, QSizePolicy, QWidget
 
-from groundstation.gui.languages import shown_keys
-from groundstation.gui.tab_order import set_enabled
-from groundstation.gui.theme import colours
-from groundstation.services.live_events import Request
+from groundstation.gui.application.languages import shown_keys
+from groundstation.gui.widgets.tab_order import set_enabled
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.fly.events import Request
 
 APART_PX = 16
 """Free space around Return and Land, in which a click that misses does nothing."""

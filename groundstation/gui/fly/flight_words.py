@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject
 
-from groundstation.gui.fly.fly_desk import FlyDesk
-from groundstation.gui.workspace import Workspace
-from groundstation.services.live_events import LinkState, LiveView
-from groundstation.vehicle.run_records import Phase
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.fly.fly_controller import FlyDesk
+from groundstation.services.fly.events import LinkState, LiveView
+from groundstation.vehicle.sortie.run_records import Phase
 
 
 class FlightWords(QObject):

@@ -2,40 +2,218 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject, Qt
-from PySide6.QtGui import QAction, QCloseEvent
-from PySide6.QtWidgets import QLabel, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtCore import QObject, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QAction, QCloseEvent, QColor
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QLabel,
+    QListWidget,
+    QListWidgetItem,
+    QMainWindow,
+    QTabWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.translate import own_words
+from groundstation.gui.fly.active_flight import FlightInHand
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons
-from groundstation.gui.fly.flight_in_hand import FlightInHand
 from groundstation.gui.fly.flight_words import FlightWords
-from groundstation.gui.fly.fly_desk import BEFORE_FLIGHT, FlyDesk
-from groundstation.gui.fly.link_band import LinkBand
+from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, FlyDesk
 from groundstation.gui.fly.live_pictures import LivePictures
 from groundstation.gui.fly.photo_strip import PhotoStrip, ScrolledStrip
 from groundstation.gui.fly.preflight_list import PreflightList
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.fly.readouts_view import ReadoutsView
 from groundstation.gui.fly.report_view import ReportView
-from groundstation.gui.fly.settings_page import SettingsPage
-from groundstation.gui.fly.simulation_page import SimulationPage
-from groundstation.gui.fly.warnings_view import FlightNotes, WarningsView
-from groundstation.gui.inputs import ChoiceBox
-from groundstation.gui.main_window import MainWindow
-from groundstation.gui.mission.findings_list import FindingsList
-from groundstation.gui.scrolling import scrolled
-from groundstation.gui.stage import Stage
-from groundstation.gui.tab_order import set_enabled
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Document, Item, ItemKind
-from groundstation.services.live_events import FlightEnded, LinkState, LiveView, PhotoCounted, Request
-from groundstation.services.live_sortie import is_same_place, take_off_of
-from groundstation.services.places import item_of_place
+from groundstation.gui.fly.simulation_controller import SimulationPage
+from groundstation.gui.shared_view import Stage
+from groundstation.gui.widgets.findings_list import FindingsList
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.gui.widgets.tab_order import set_enabled
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.fly.events import FlightEnded, LinkState, LiveView, PhotoCounted, Request
+from groundstation.services.fly.options import FlightSettings
+from groundstation.services.fly.sortie import is_same_place, take_off_of
+from groundstation.services.plan.places import item_of_place
+from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, minutes_text
 from groundstation.vehicle.preflight import Mend, PreflightCheck
-from planning.findings import Severity
-from planning.top_up import TopUp
+from groundstation.vehicle.watch import FlightWarning
+from planning.base.findings import Severity
+from planning.revision.top_up import TopUp
+
+# A band across the whole window while the link is lost, whatever tab is in front.
+
+FONT_SCALE = 1.3
+
+
+class LinkBand(QLabel):
+    """Says that the link is lost, since when, and that the aircraft goes on by itself."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setWordWrap(True)
+        self.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        font = self.font()
+        font.setPointSizeF(FONT_SCALE * font.pointSizeF())
+        font.setBold(True)
+        self.setFont(font)
+        self.setContentsMargins(8, 6, 8, 6)
+        self.hide()
+
+    def put_into(self, window: QWidget) -> None:
+        """Stand above the messages of a main window, where it moves no button, or on top of any other."""
+        centre = window.centralWidget() if isinstance(window, QMainWindow) else None
+        page = window if centre is None else centre
+        layout = page.layout()
+        if isinstance(layout, QVBoxLayout):
+            layout.insertWidget(layout.count() - 1, self)
+        else:
+            self.setParent(page)
+
+    def show_lost(self, silent_s: float | None) -> None:
+        """Appear; `silent_s` since the vehicle was last heard."""
+        look = colours()
+        self.setStyleSheet(f"background: {look.error}; color: {look.base};")
+        if silent_s is None:
+            text = self.tr("LINK LOST. It is opened again; the aircraft goes on by itself.")
+        else:
+            text = self.tr("LINK LOST for {0:.0f} s. What is shown is old; the aircraft goes on by itself.").format(
+                silent_s
+            )
+        if self.text() != text:
+            self.setText(text)
+        self.setVisible(True)
+
+
+# Warnings of now, above everything that was noted in the flight: answers, warnings, texts of the autopilot.
+
+MAX_NOTES = 300
+
+
+class WarningsView(QWidget):
+    """Shows the warnings that hold; the most severe first."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._warnings: tuple[FlightWarning, ...] = ()
+        self._units = UnitSystem.METRIC
+        self._labels: list[QLabel] = []
+        self._layout = QVBoxLayout(self)
+        self._layout.setContentsMargins(4, 0, 4, 0)
+        self._calm = QLabel(self.tr("No warnings."))
+        self._calm.setProperty("role", "muted")
+        self._layout.addWidget(self._calm)
+        self._layout.addStretch(1)
+
+    def set_warnings(self, warnings: tuple[FlightWarning, ...]) -> None:
+        """Show these."""
+        if warnings != self._warnings:
+            self._warnings = warnings
+            self._fill()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self._units = units
+        self._fill()
+
+    def text(self) -> str:
+        """All warnings, a line each."""
+        return "\n".join(label.text() for label in self._labels[: len(self._warnings)])
+
+    def _fill(self) -> None:
+        ordered = sorted(self._warnings, key=lambda warning: warning.severity is not Severity.ERROR)
+        while len(self._labels) < len(ordered):
+            label = QLabel()
+            label.setWordWrap(True)
+            self._layout.insertWidget(1 + len(self._labels), label)
+            self._labels.append(label)
+        for number, label in enumerate(self._labels):
+            label.setVisible(number < len(ordered))
+            if number < len(ordered):
+                warning = ordered[number]
+                label.setText(self._said(warning))
+                role = warning.severity.value
+                if label.property("role") != role:
+                    label.setProperty("role", role)
+                    label.style().polish(label)
+        self._calm.setVisible(not ordered)
+
+    def _said(self, warning: FlightWarning) -> str:
+        told = own_words(warning.text, self._units)
+        if warning.severity is Severity.ERROR:
+            return self.tr("Danger: {0}").format(told)
+        return self.tr("Warning: {0}").format(told)
+
+
+class FlightNotes(QListWidget):
+    """What happened, the latest at the end."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWordWrap(True)
+        self.setAccessibleName(self.tr("What happened in the flight"))
+        self.setToolTip(self.tr("Minutes and seconds after take-off, as in the plan and the report"))
+
+    def add(self, time_s: float | None, severity: Severity, text: str) -> None:
+        """Note something; `time_s` after take-off."""
+        minutes, tenths = divmod(round(10.0 * (time_s or 0.0)), 600)
+        when = "" if time_s is None else f"{minutes}:{tenths / 10.0:04.1f}  "
+        row = QListWidgetItem(f"{when}{text}")
+        colour = {Severity.ERROR: colours().error, Severity.WARNING: colours().warning}.get(severity)
+        if colour:
+            row.setForeground(QColor(colour))
+        self.addItem(row)
+        while self.count() > MAX_NOTES:
+            self.takeItem(0)
+        self.scrollToBottom()
+
+    def texts(self) -> str:
+        """All notes, a line each."""
+        return "\n".join(self.item(row).text() for row in range(self.count()))
+
+
+# What the pilot decides: whether RTK is needed.
+
+
+class SettingsPage(QWidget):
+    """Edits `FlightSettings`.
+
+    Signals
+    -------
+    valueChanged(FlightSettings)
+    """
+
+    valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.needs_rtk = QCheckBox(self.tr("RTK needed for take-off"))
+        says = QLabel(self.tr("Start waits for RTK, and a warning comes when it is lost in flight."))
+        says.setWordWrap(True)
+        says.setProperty("role", "muted")
+        layout = QVBoxLayout(self)
+        layout.addWidget(self.needs_rtk)
+        layout.addWidget(says)
+        layout.addStretch(1)
+        self.needs_rtk.toggled.connect(self._edited)
+
+    def value(self) -> FlightSettings:
+        """What was chosen."""
+        return FlightSettings(self.needs_rtk.isChecked())
+
+    def setValue(self, value: FlightSettings) -> None:  # noqa: N802
+        """Show another choice."""
+        blocker = QSignalBlocker(self.needs_rtk)
+        self.needs_rtk.setChecked(value.needs_rtk)
+        del blocker
+
+    def _edited(self, _is_on: bool) -> None:
+        self.valueChanged.emit(self.value())
 
 
 class FlyPage(QObject):
@@ -162,9 +340,7 @@ class FlyPage(QObject):
         workspace.documentChanged.connect(self._document_changed)
         workspace.unitsChanged.connect(self._show_units)
         workspace.jobsChanged.connect(self._show_state)
-        window = self._stage.window()
-        if isinstance(window, MainWindow):
-            window.closing.connect(self._window_closing)
+        self._stage.closing.connect(self._window_closing)
 
     # What the user does
 

@@ -2,18 +2,212 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QObject, QTimer
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.fly.flight_in_hand import FlightInHand
-from groundstation.gui.fly.live_map import LiveMap
-from groundstation.gui.fly.live_scene import LiveScene
-from groundstation.gui.map_view import MapView
-from groundstation.gui.stage import Stage, StagePage
-from groundstation.gui.view3d.paint import ColourScale
+from groundstation.gui.fly.active_flight import FlightInHand
+from groundstation.gui.fly.photo_strip import state_colour
+from groundstation.gui.map.map_view import MapView
+from groundstation.gui.shared_view import Stage, StagePage
+from groundstation.gui.view3d.layers import ON_TOP, Drawable
+from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.view3d.scene_view import SceneView
-from groundstation.services.live_events import LiveView, PhotoCounted
+from groundstation.gui.view3d.shapes import frusta, joined, polyline
+from groundstation.gui.widgets.theme import Colours, colours
+from groundstation.services.fly.events import LiveView, PhotoCounted, ViewState
+from groundstation.services.map.web_mercator import world_from_geodetic
+from groundstation.vehicle.state import VehicleState
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin
+from planning.plan import Camera, Viewpoint, ViewpointArrays
+
+# The aircraft, its track and the state of each view, over the shared map.
+
+Array = NDArray[np.float64]
+
+AIRCRAFT_PX, LIVE_MAP_DOT_PX = 16.0, 5.0
+
+
+class LiveMap(QWidget):
+    """Lies over a map, lets the pointer through, and moves with it."""
+
+    def __init__(self, map_view: MapView) -> None:
+        super().__init__(map_view)
+        self._map = map_view
+        self._track = np.zeros((0, 2))
+        self._views: tuple[tuple[Array, ViewState], ...] = ()
+        self._heading_rad = 0.0
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setGeometry(map_view.rect())
+        map_view.installEventFilter(self)
+        self.lower()
+        self.show()
+
+    def set_aircraft(self, origin: Origin, track_enu_m: Array, heading_rad: float) -> None:
+        """Show a track, shape (n, 3), whose last point is where the aircraft is."""
+        self._track, self._heading_rad = _world(origin, track_enu_m), heading_rad
+        self.update()
+
+    def set_views(self, origin: Origin, views: tuple[tuple[tuple[float, float, float], ViewState], ...]) -> None:
+        """Show how the views of the sortie stand."""
+        places = _world(origin, np.array([place for place, _ in views], np.float64).reshape(-1, 3))
+        self._views = tuple((place, state) for place, (_, state) in zip(places, views, strict=True))
+        self.update()
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Be as large as the map."""
+        if event.type() == QEvent.Type.Resize:
+            self.setGeometry(self._map.rect())
+        return False
+
+    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
+        """Paint over what the map shows."""
+        painter, look, viewport = QPainter(self), colours(), self._map.viewport()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for place, state in self._views:
+            x, y = viewport.screen(place[None])[0]
+            radius = 2.0 * LIVE_MAP_DOT_PX if state is ViewState.NEXT else LIVE_MAP_DOT_PX
+            painter.setPen(QPen(QColor(look.base), 1))
+            painter.setBrush(state_colour(state, look))
+            painter.drawEllipse(QPointF(x, y), radius, radius)
+        if len(self._track):
+            points = [QPointF(x, y) for x, y in viewport.screen(self._track).tolist()]
+            painter.setPen(QPen(QColor(look.accent), 3))
+            painter.drawPolyline(QPolygonF(points))
+            painter.setPen(QPen(QColor(look.text), 2))
+            painter.setBrush(QColor(look.error))
+            painter.drawPolygon(_arrow(points[-1], self._heading_rad))
+        painter.end()
+
+
+def _world(origin: Origin, points_enu_m: Array) -> Array:
+    """Points of the map's plane, shape (n, 2)."""
+    if len(points_enu_m) == 0:
+        return np.zeros((0, 2))
+    lat_deg, lon_deg, _ = geodetic_from_enu(origin, points_enu_m)
+    return np.asarray(world_from_geodetic(lat_deg, lon_deg))
+
+
+def _arrow(at: QPointF, heading_rad: float) -> QPolygonF:
+    """An arrowhead whose tip points along the heading; north is up."""
+    ahead = (math.sin(heading_rad), -math.cos(heading_rad))
+    right = (-ahead[1], ahead[0])
+    corners = ((1.0, 0.0), (-0.8, 0.7), (-0.4, 0.0), (-0.8, -0.7))
+    return QPolygonF(
+        [
+            QPointF(
+                at.x() + AIRCRAFT_PX * (a * ahead[0] + r * right[0]),
+                at.y() + AIRCRAFT_PX * (a * ahead[1] + r * right[1]),
+            )
+            for a, r in corners
+        ]
+    )
+
+
+# The aircraft, its track, its picture and the state of each view, drawn into the shared 3-D view.
+
+AIRCRAFT_M = 6.0
+"""Length of the aircraft as it is drawn: larger than it is, so that it is found in a view of the whole site."""
+
+TRACK_PX, OUTLINE_PX, PICTURE_PX, FOOTPRINT_PX = 4.0, 5.0, 1.0, 3.0
+DOT_PX = {
+    ViewState.TO_COME: 5.0,
+    ViewState.NEXT: 16.0,
+    ViewState.TAKEN: 10.0,
+    ViewState.OFF: 12.0,
+    ViewState.MISSING: 14.0,
+}
+NAMES = ("live-track", "live-aircraft", "live-picture", "live-footprint", "live-views")
+
+
+class LiveScene:
+    """Draws onto a 3-D view until it is cleared."""
+
+    def __init__(self, scene: SceneView) -> None:
+        self._scene = scene
+        self._drawn_states: tuple[tuple[str, ViewState], ...] | None = None
+
+    def draw_views(self, states: tuple[tuple[str, ViewState], ...], by_id: dict[str, Viewpoint]) -> None:
+        """A dot on each view of the sortie, by its state."""
+        if states == self._drawn_states:
+            return
+        self._drawn_states = states
+        look, parts = colours(), []
+        for wanted in ViewState:
+            places = [
+                by_id[view_id].position_enu_m for view_id, state in states if state is wanted and view_id in by_id
+            ]
+            if places:
+                points = np.array(places, np.float64)
+                dots = np.arange(len(points))[:, None]
+                colour = flat(state_colour(wanted, look).name(), len(points))
+                # Where to look next is seen through walls, all else where it is.
+                shift = ON_TOP if wanted is ViewState.NEXT else 0.0
+                parts.append(Drawable(points, dots, colour, width_px=DOT_PX[wanted], depth_shift=shift))
+        self._scene.canvas().draw("live-views", parts)
+
+    def draw_aircraft(
+        self, state: VehicleState, track_enu_m: NDArray[np.float64], camera: Camera, facade_m: float | None
+    ) -> None:
+        """Where it is, where it was, and what its camera sees: a pyramid, and the border of its picture on the site."""
+        canvas, look = self._scene.canvas(), colours()
+        canvas.draw("live-track", _track(track_enu_m, look))
+        if state.motion is None:
+            return
+        place = np.array(state.motion.value.position_enu_m)
+        heading = 0.0 if state.attitude is None else state.attitude.value.heading_rad
+        canvas.draw("live-aircraft", _aircraft(place, heading, look))
+        pointing = state.camera
+        if pointing is None or facade_m is None:
+            canvas.draw("live-picture", ())
+            canvas.draw("live-footprint", ())
+            return
+        view = ViewpointArrays(
+            place[None], np.array([pointing.value.heading_rad]), np.array([pointing.value.pitch_rad])
+        )
+        points, cells = frusta(view, camera, max(1.0, facade_m))
+        canvas.draw("live-picture", [Drawable(points, cells, flat(look.accent, len(cells)), width_px=PICTURE_PX)])
+        pieces = self._scene.photo_border(view, 0, camera)
+        canvas.draw("live-footprint", _lines(pieces, look))
+
+    def clear(self) -> None:
+        """Take everything away."""
+        self._drawn_states = None
+        for name in NAMES:
+            self._scene.canvas().draw(name, ())
+
+
+def _track(track_enu_m: NDArray[np.float64], look: Colours) -> list[Drawable]:
+    points, cells = polyline(track_enu_m)
+    if len(cells) == 0:
+        return []
+    return [Drawable(points, cells, flat(look.accent, len(cells)), width_px=TRACK_PX)]
+
+
+def _lines(pieces: list[NDArray[np.float64]], look: Colours) -> list[Drawable]:
+    if not pieces:
+        return []
+    points, cells = joined([polyline(piece) for piece in pieces])
+    return [Drawable(points, cells, flat(look.accent, len(cells)), width_px=FOOTPRINT_PX)]
+
+
+def _aircraft(place: NDArray[np.float64], heading_rad: float, look: Colours) -> list[Drawable]:
+    """An arrowhead that points where the nose does, level, over everything, with an outline that any ground shows."""
+    ahead = np.array([math.sin(heading_rad), math.cos(heading_rad), 0.0])
+    right = np.array([ahead[1], -ahead[0], 0.0])
+    size = 0.5 * AIRCRAFT_M
+    points = place + size * np.array([1.2 * ahead, -ahead + 0.8 * right, -0.5 * ahead, -ahead - 0.8 * right])
+    body = np.array([[0, 1, 2], [0, 2, 3]])
+    ring = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    centre = Drawable(place[None], np.array([[0]]), flat(look.error, 1), width_px=12.0, depth_shift=ON_TOP)
+    edges = Drawable(points, ring, flat(look.text, 4), width_px=OUTLINE_PX, depth_shift=ON_TOP)
+    return [Drawable(points, body, flat(look.error, 2)), edges, centre]
+
 
 DRAW_EVERY_MS = 250
 """A frame takes some 36 ms where the processor draws: four in a second leave the rest of it to everything else."""

@@ -8,8 +8,8 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QToolTip, QWidget
 
-from groundstation.gui.theme import Colours, colours
-from groundstation.services.live_events import PhotoCounted, ViewState
+from groundstation.gui.widgets.theme import Colours, colours
+from groundstation.services.fly.events import PhotoCounted, ViewState
 from groundstation.services.units import UnitSystem, length_unit
 
 CELL_PX, ROW_PX = 30, 34

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.own_words import own_words
+from groundstation.gui.application.translate import own_words
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import Mend, OnBoard, PreflightCheck, Verdict, mends
 

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.questions import agrees, ask_text
-from groundstation.services.finding_texts import duration_text
-from groundstation.services.live_limit import TooLong
-from groundstation.services.live_sortie import TakeOff
+from groundstation.gui.widgets.questions import agrees, ask_text
+from groundstation.services.fly.sortie import TakeOff
+from groundstation.services.mission.finding_texts import duration_text
+from groundstation.services.mission.item_limit import TooLong
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text
 from groundstation.vehicle.setup import ParameterChange
 from planning.insight.flight_profile import LOW_M, LowFlight
-from planning.top_up import TopUp
+from planning.revision.top_up import TopUp
 
 
 class FlightQuestions(QObject):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QProgressBar, QSizePolicy, QVBoxLayout, QWidget
 
-from groundstation.services.live_events import LiveView, PhotoCounted, Readouts, ViewState
+from groundstation.services.fly.events import LiveView, PhotoCounted, Readouts, ViewState
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, per_cent, speed_unit
 from groundstation.vehicle.preflight import FIX_NAMES
 

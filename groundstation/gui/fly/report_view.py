@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import QModelIndex, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.plan.table_view import Column, RowModel, table_of
-from groundstation.gui.scrolling import scrolled
-from groundstation.services.live_events import FlightEnded
+from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.gui.widgets.table_view import Column, RowModel, table_of
+from groundstation.services.fly.events import FlightEnded
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, per_cent
 from missions.flight.outcome import FlightReport, Reason, ViewOutcome
 

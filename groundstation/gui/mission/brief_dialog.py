@@ -17,22 +17,22 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
-from groundstation.gui.inputs import ChoiceBox
-from groundstation.gui.job_bar import DialogFoot
-from groundstation.gui.own_words import finding_in_own_words
-from groundstation.gui.questions import choose_new_file, file_name
-from groundstation.gui.workspace import Workspace
-from groundstation.services.brief_html import MAP, brief_html, brief_pictures
-from groundstation.services.flight_brief import flight_brief
-from groundstation.services.jobs import JobContext
-from groundstation.services.map_shapes import plan_shapes, site_shapes
-from groundstation.services.preflight import Preflight
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.translate import finding_in_own_words
+from groundstation.gui.widgets.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.questions import choose_new_file, file_name
+from groundstation.gui.window.job_bar import DialogFoot
+from groundstation.services.jobs.runner import JobContext
+from groundstation.services.map.shapes import plan_shapes, site_shapes
+from groundstation.services.mission.brief import flight_brief
+from groundstation.services.mission.brief_html import MAP, brief_html, brief_pictures
+from groundstation.services.mission.preflight import Preflight
 from groundstation.services.units import UnitSystem
-from planning.errors import InputError
-from planning.findings import Severity
+from planning.base.errors import InputError
+from planning.base.findings import Severity
 from planning.plan import Plan
-from planning.site import SiteModel
+from planning.site.records import SiteModel
 
 
 class BriefDialog(QDialog):

@@ -6,12 +6,12 @@ from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
 from PySide6.QtGui import QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QCheckBox, QLabel, QTableView, QVBoxLayout, QWidget
 
-from groundstation.gui.mission.severity_icon import severity_icon
-from groundstation.gui.theme import colours
-from groundstation.services.document import Item, ItemKind
-from groundstation.services.mission_compare import Difference, MissionComparison, PhotoComparison
+from groundstation.gui.widgets.severity_icon import severity_icon
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.mission.compare import Difference, MissionComparison, PhotoComparison
+from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, length_unit
-from planning.findings import Severity
+from planning.base.findings import Severity
 
 ID_ROLE = Qt.ItemDataRole.UserRole
 SORT_ROLE = Qt.ItemDataRole.UserRole + 1

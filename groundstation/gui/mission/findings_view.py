@@ -17,14 +17,14 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.inputs import NumberBox, calm
-from groundstation.gui.mission.findings_list import FindingsList
-from groundstation.gui.mission.severity_icon import SIZE_PX, severity_icon
-from groundstation.gui.theme import colours
-from groundstation.services.finding_texts import SEVERITIES, counts_by_severity
-from groundstation.services.readiness import UNKNOWN_DAY, FlightDay, Readiness, readiness_of
+from groundstation.gui.widgets.findings_list import FindingsList
+from groundstation.gui.widgets.inputs import NumberBox, calm
+from groundstation.gui.widgets.severity_icon import SIZE_PX, severity_icon
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.mission.finding_texts import SEVERITIES, counts_by_severity
+from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, Readiness, readiness_of
 from groundstation.services.units import UnitSystem
-from planning.findings import Finding, Severity
+from planning.base.findings import Finding, Severity
 
 
 class FindingsView(QWidget):

@@ -8,23 +8,22 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.map_view import MapView
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.map.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog
 from groundstation.gui.mission.findings_view import FindingsView
-from groundstation.gui.mission.mission_desk import MissionDesk
-from groundstation.gui.mission.mission_lists import MissionLists
-from groundstation.gui.mission.sortie_table import SortieTable
-from groundstation.gui.questions import choose_files
-from groundstation.gui.stage import Stage
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Document, Item
-from groundstation.services.finding_texts import duration_text
-from groundstation.services.mission_files import in_order_of_sorties
-from groundstation.services.places import item_of_place
-from groundstation.services.preflight import Preflight
-from groundstation.services.readiness import FlightDay
+from groundstation.gui.mission.mission_controller import MissionDesk
+from groundstation.gui.mission.mission_lists import MissionLists, SortieTable
+from groundstation.gui.shared_view import Stage
+from groundstation.gui.widgets.questions import choose_files
+from groundstation.services.mission.files import in_order_of_sorties
+from groundstation.services.mission.finding_texts import duration_text
+from groundstation.services.mission.preflight import Preflight
+from groundstation.services.mission.readiness import FlightDay
+from groundstation.services.plan.places import item_of_place
+from groundstation.services.project.document import Document, Item
 from groundstation.services.units import UnitSystem
-from planning.findings import Severity
+from planning.base.findings import Severity
 
 REST_MS = 300
 """Without changes for so long, a plan is checked."""

@@ -8,8 +8,8 @@ from typing import get_args
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import ChoiceBox, Form
-from groundstation.services.model_export import (
+from groundstation.gui.widgets.inputs import ChoiceBox, Form
+from groundstation.services.model.export import (
     OF_ALL_PARTS,
     WITH_PRESETS,
     WITHOUT_COLOURS,

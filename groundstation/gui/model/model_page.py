@@ -8,21 +8,20 @@ from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QSplitter, QWidget
 
-from groundstation.gui.main_window import MainWindow
+from groundstation.gui.application.context import Workspace
 from groundstation.gui.model.export_dialog import ExportDialog
-from groundstation.gui.model.model_desk import ModelDesk
+from groundstation.gui.model.model_controller import ModelDesk
 from groundstation.gui.model.panel_side import PanelSide
 from groundstation.gui.model.record_side import KIND_TITLES, RecordSide
 from groundstation.gui.model.report_maker import ReportMaker
 from groundstation.gui.model.scene_pane import ScenePane
-from groundstation.gui.questions import Questions, choose_new_file, file_name
-from groundstation.gui.stage import Stage
-from groundstation.gui.workspace import Workspace
-from groundstation.services.model_export import ENDINGS, OTHER_ENDINGS, ModelFormat, with_ending
-from groundstation.services.reconstruct_places import MODELS_FOLDER
-from groundstation.services.scene_card import PanelRow
+from groundstation.gui.shared_view import Stage
+from groundstation.gui.widgets.questions import Questions, choose_new_file, file_name
+from groundstation.services.model.export import ENDINGS, OTHER_ENDINGS, ModelFormat, with_ending
+from groundstation.services.model.scene_card import PanelRow
+from groundstation.services.reconstruct.folders import MODELS_FOLDER
 from groundstation.services.units import UnitSystem
-from planning.findings import Severity
+from planning.base.findings import Severity
 
 SIDE_PX, DETAIL_PX, LEAST_PX = 230, 330, 200
 """Widths beside the view, at 1280 pixels."""
@@ -103,9 +102,7 @@ class ModelPage(QObject):
         desk.recordsChanged.connect(self._show_records)
         desk.coloursChanged.connect(self._show_colours)
         self._workspace.unitsChanged.connect(self._units_changed)
-        window = self._stage.window()
-        if isinstance(window, MainWindow):
-            window.closing.connect(self._window_closing)
+        self._stage.closing.connect(self._window_closing)
 
     # What the user does
 

@@ -9,9 +9,9 @@ from PySide6.QtCore import QAbstractListModel, QModelIndex, QPersistentModelInde
 from PySide6.QtGui import QColor, QIcon, QPixmap
 from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QListView, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import ChoiceBox
-from groundstation.services.panel_colours import Colouring, Computed, LegendLine
-from groundstation.services.scene_card import PanelRow
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.services.model.panel_colours import Colouring, Computed, LegendLine
+from groundstation.services.model.scene_card import PanelRow
 
 Index = QModelIndex | QPersistentModelIndex
 

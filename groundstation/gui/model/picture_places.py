@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from PySide6.QtCore import QPointF
 
-from reconstruction.cameras import PosedPhoto
+from reconstruction.base.cameras import PosedPhoto
 
 NEAR_M = 0.05
 """In front of the camera: what is nearer has no place in the picture."""

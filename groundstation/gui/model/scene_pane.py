@@ -11,23 +11,23 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import ChoiceBox, calm
-from groundstation.gui.model.model_desk import ModelDesk
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.model.model_controller import ModelDesk
 from groundstation.gui.model.picture_places import places_in
-from groundstation.gui.reconstruct.led_camera import USUAL_DISTANCE_M, LedCamera
+from groundstation.gui.reconstruct.guided_camera import USUAL_DISTANCE_M, LedCamera
 from groundstation.gui.reconstruct.looks import Looks, View
 from groundstation.gui.reconstruct.model_view import Mark, ModelView
 from groundstation.gui.reconstruct.names import layer_names
-from groundstation.gui.scrolling import WrappingRow, labelled
-from groundstation.gui.theme import colours
-from groundstation.gui.workspace import Workspace
-from groundstation.services.reconstruct_messages import Probe, Probed, Section, Seen, Subject
-from groundstation.services.scene_card import PanelRow, view_of
+from groundstation.gui.widgets.inputs import ChoiceBox, calm
+from groundstation.gui.widgets.scrolling import WrappingRow, labelled
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.model.scene_card import PanelRow, view_of
+from groundstation.services.reconstruct.messages import Probe, Probed, Section, Seen, Subject
 from groundstation.services.units import UnitSystem, length_unit
-from planning.frames import Vec3
-from reconstruction.cameras import PosedPhoto
-from reconstruction.modelling.layer_names import PICTURE
+from planning.geo.frames import Vec3
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.objects.picking import picked
+from reconstruction.training.names import PICTURE
 
 STEPS = 1000
 """Of the section's slider."""

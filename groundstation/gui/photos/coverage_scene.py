@@ -8,15 +8,15 @@ from PySide6.QtCore import QCoreApplication, Qt, Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
-from groundstation.gui.theme import colours
 from groundstation.gui.view3d.layers import ON_TOP, Drawable
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.view3d.scene_view import SceneView
-from groundstation.services.document import Item, ItemKind
-from groundstation.services.photo_coverage import PhotoCoverage
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.photos.coverage import PhotoCoverage
+from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem
-from planning.site import SiteModel
+from planning.site.records import SiteModel
 
 Array = NDArray[np.float64]
 

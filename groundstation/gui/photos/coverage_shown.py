@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject
 
+from groundstation.gui.application.context import Workspace
 from groundstation.gui.photos.coverage_scene import CoverageScene
 from groundstation.gui.photos.panel_sightings import PanelSightings
-from groundstation.gui.photos.photos_desk import PhotosDesk
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Item, ItemKind
+from groundstation.gui.photos.photos_controller import PhotosDesk
+from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, per_cent
 
 

@@ -9,10 +9,10 @@ from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from groundstation.gui.photos.picture_view import PictureView
-from groundstation.gui.theme import colours
-from groundstation.services.photo_grids import LinePlace, cell_bounds, lines_of
-from reconstruction.panels.record import Axis
-from reconstruction.segmentation.record import FacadeGrid, FoundPanel, GridLine
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.photos.grids import LinePlace, cell_bounds, lines_of
+from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine
+from reconstruction.panels.solving.record import Axis
 
 Array = NDArray[np.float64]
 

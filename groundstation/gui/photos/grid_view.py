@@ -10,7 +10,7 @@ from PySide6.QtGui import QFocusEvent, QHelpEvent, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from groundstation.gui.photos.grid_picture import GridPicture
-from groundstation.services.photo_grids import (
+from groundstation.services.photos.grids import (
     LinePlace,
     cell_at,
     cell_beside,
@@ -21,7 +21,7 @@ from groundstation.services.photo_grids import (
     place_beside,
     room_for_line,
 )
-from reconstruction.segmentation.record import FacadeGrid
+from reconstruction.panels.search.record import FacadeGrid
 
 GRAB_PX = 12.0
 """On the screen; a finger on a large picture hits that well enough, for lines are far apart there."""

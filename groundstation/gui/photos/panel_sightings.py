@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
-from groundstation.gui.plan.hemisphere_view import HemisphereView, ShownSection
-from groundstation.services.photo_coverage import PhotoCoverage
+from groundstation.gui.charts.hemisphere_view import HemisphereView, ShownSection
+from groundstation.services.photos.coverage import PhotoCoverage
 from planning.insight.sections import SectionState
 
 MAX_NAMED = 6

@@ -15,12 +15,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.inputs import ChoiceBox
 from groundstation.gui.photos.coverage_scene import CoverageScene
 from groundstation.gui.photos.grid_view import GridView
 from groundstation.gui.photos.photo_store import LargePicture, PhotoStore
-from groundstation.services.photo_cards import PhotoCard
-from groundstation.services.photo_desk import GridPlace, PanelDraft
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.services.photos.cards import PhotoCard
+from groundstation.services.photos.found_panels import GridPlace, PanelDraft
 
 
 class PhotoPane(QWidget):

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QImage
 
-from planning.errors import InputError
-from planning.photo_files.record import PhotoMetadata
+from planning.base.errors import InputError
+from planning.photos.record import PhotoMetadata
+from reconstruction.panels.rectify.warp import warp
+from reconstruction.panels.search.record import Rectification
 from reconstruction.photos.decode import colour_picture
-from reconstruction.rectify.warp import warp
-from reconstruction.segmentation.record import Rectification
 
 THUMBNAIL_PX = 144
 """Longest side of a small picture; 1/8 of a photo is four times that, and is shrunk before it is kept."""

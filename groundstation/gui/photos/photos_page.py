@@ -2,38 +2,231 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QAction, QCloseEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSplitter, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QGridLayout,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QSplitter,
+    QTableWidget,
+    QTableWidgetItem,
+    QTabWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
-from groundstation.gui.main_window import MainWindow
-from groundstation.gui.mission.findings_list import FindingsList
-from groundstation.gui.photos.corrections import Corrections
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.charts.trial_chart import TrialChart
+from groundstation.gui.map.place_map import PlaceMap
 from groundstation.gui.photos.coverage_shown import CoverageShown
-from groundstation.gui.photos.facade_table import FacadeTable
 from groundstation.gui.photos.grid_view import Tool
 from groundstation.gui.photos.panel_sightings import PanelSightings
 from groundstation.gui.photos.photo_pane import PhotoPane
 from groundstation.gui.photos.photo_store import PhotoStore
-from groundstation.gui.photos.photos_desk import PhotosDesk
-from groundstation.gui.photos.place_map import PlaceMap
-from groundstation.gui.photos.pose_box import PoseBox
+from groundstation.gui.photos.photos_controller import PhotosDesk
 from groundstation.gui.photos.thumbnail_strip import ThumbnailStrip
 from groundstation.gui.photos.tool_box import ToolBox
-from groundstation.gui.photos.trial_chart import TrialChart
-from groundstation.gui.questions import Questions
-from groundstation.gui.scrolling import scrolled
-from groundstation.gui.stage import Stage
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Document, Item, ItemKind
-from groundstation.services.photo_cards import card_of_place
-from groundstation.services.photo_outlines import known_panels, panel_outlines
-from groundstation.services.units import UnitSystem
-from planning.findings import Severity
+from groundstation.gui.shared_view import Stage
+from groundstation.gui.widgets.findings_list import FindingsList
+from groundstation.gui.widgets.questions import Questions
+from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.services.jobs.runner import JobContext
+from groundstation.services.photos.cards import card_of_place
+from groundstation.services.photos.found_panels import PanelDraft
+from groundstation.services.photos.grid_edits import add_line, move_line, remove_line, set_panel
+from groundstation.services.photos.outlines import known_panels, panel_outlines
+from groundstation.services.photos.poses import BetterPoses, RefinedOutcome, RefineWish, refined_poses
+from groundstation.services.photos.tradeoff import corner_sigma_m
+from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.units import UnitSystem, length_unit, sampling_unit
+from planning.base.findings import Severity
+from reconstruction.panels.solving.record import Axis
+
+# The facades that were found, one line each, with how good they are.
+
+
+class FacadeTable(QTableWidget):
+    """Shows a draft.
+
+    Signals
+    -------
+    chosen(str)
+        Identifier of a facade.
+    """
+
+    chosen = Signal(str)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(0, 4, parent)
+        self._units = UnitSystem.METRIC
+        self._draft: PanelDraft | None = None
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.verticalHeader().hide()
+        self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
+        self.setAccessibleName(self.tr("Facades found"))
+        self.cellClicked.connect(self._choose)
+        self._fill()
+
+    def set_draft(self, draft: PanelDraft | None) -> None:
+        """Show other facades."""
+        self._draft = draft
+        self._fill()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self._units = units
+        self._fill()
+
+    def _choose(self, row: int, _column: int) -> None:
+        if self._draft is not None:
+            self.chosen.emit(self._draft.found.facades[row].id)
+
+    def _fill(self) -> None:
+        unit = sampling_unit(self._units)
+        self.setHorizontalHeaderLabels(
+            [self.tr("Facade"), self.tr("Panels"), self.tr("Photos"), f"\u00b1 {unit.symbol}"]
+        )
+        facades = () if self._draft is None else self._draft.found.facades
+        self.setRowCount(len(facades))
+        for row, facade in enumerate(facades):
+            is_old = self._draft is not None and facade.id in self._draft.unsolved
+            sigma_m = corner_sigma_m(facade)
+            texts = (
+                facade.id,
+                "\u2026"
+                if is_old
+                else f"{len(facade.panels)} ({len(facade.rows) - 1} \u00d7 {len(facade.columns) - 1})",
+                str(len(facade.pose_changes)),
+                "\u2026" if is_old else "\u2013" if sigma_m is None else f"{unit.shown(sigma_m):.3g}",
+            )
+            for column, text in enumerate(texts):
+                item = QTableWidgetItem(text)
+                item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
+                self.setItem(row, column, item)
+
+
+# Corrections made by hand over a photo, given to the desk as steps that can be undone.
+
+
+class Corrections(QObject):
+    """Turns what a pane's view says into edits of the grid that is in hand."""
+
+    def __init__(self, desk: PhotosDesk, pane: PhotoPane, parent: QObject) -> None:
+        super().__init__(parent)
+        self._desk, self._pane = desk, pane
+        view = pane.view
+        view.lineMoved.connect(self._move_line)
+        view.lineAdded.connect(self._add_line)
+        view.lineRemoved.connect(self._remove_line)
+        view.panelSwitched.connect(self._switch_panel)
+
+    def _move_line(self, axis: Axis, index: int, position_px: float) -> None:
+        place = self._pane.place()
+        if place is not None:
+            self._desk.edit(self.tr("Move line"), lambda draft: move_line(draft, place, axis, index, position_px))
+
+    def _add_line(self, axis: Axis, position_px: float) -> None:
+        place = self._pane.place()
+        if place is not None:
+            self._desk.edit(self.tr("Add line"), lambda draft: add_line(draft, place, axis, position_px))
+
+    def _remove_line(self, axis: Axis, index: int) -> None:
+        place = self._pane.place()
+        if place is not None:
+            self._desk.edit(self.tr("Remove line"), lambda draft: remove_line(draft, place, axis, index))
+
+    def _switch_panel(self, row: int, column: int, is_panel: bool) -> None:
+        place = self._pane.place()
+        if place is not None:
+            label = self.tr("Restore panel") if is_panel else self.tr("Remove panel")
+            self._desk.edit(label, lambda draft: set_panel(draft, place, row, column, is_panel=is_panel))
+
+
+# Refining the poses of the photos: the button, what it has brought, and the way back.
+
+
+class PoseBox(QWidget):
+    """Buttons for the photos of a desk, and a line about their poses."""
+
+    def __init__(self, desk: PhotosDesk, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._desk, self._units = desk, UnitSystem.METRIC
+        self.refine, self.back = QPushButton(self.tr("Refine poses")), QPushButton(self.tr("Own poses"))
+        self.outcome = QLabel()
+        self.refine.setToolTip(
+            self.tr("Match the photos with each other and adjust all rays; computed once and kept beside the photos")
+        )
+        self.back.setToolTip(self.tr("Go back to the poses that the photos themselves have"))
+        self.outcome.setWordWrap(True)
+        self.outcome.setProperty("role", "muted")
+        self.outcome.setToolTip(
+            self.tr("By how much poses differ from the photos' own, and how well the photos fit each other; more below")
+        )
+        layout = QGridLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        layout.addWidget(self.refine, 0, 0)
+        layout.addWidget(self.back, 0, 1)
+        layout.addWidget(self.outcome, 1, 0, 1, 2)
+        self.refine.clicked.connect(self._refine)
+        self.back.clicked.connect(self._back)
+        for signal in (desk.photosChanged, desk.stateChanged):
+            signal.connect(self._show)
+        self._show()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self._units = units
+        self._show()
+
+    def _refine(self) -> None:
+        intake = self._desk.intake
+        if intake is None:
+            return
+
+        def poses(context: JobContext) -> BetterPoses:
+            return refined_poses(intake.posed.photos, intake.folder, RefineWish(), context)
+
+        self._desk.change_poses(self.tr("Refine poses"), poses)
+
+    def _back(self) -> None:
+        intake = self._desk.intake
+        if intake is not None:
+            own = BetterPoses(intake.posed.photos)
+            self._desk.change_poses(self.tr("Own poses"), lambda _context: own)
+
+    def _show(self) -> None:
+        intake, is_free = self._desk.intake, not self._desk.is_busy
+        refined = None if intake is None else intake.better.refined
+        self.refine.setEnabled(is_free and intake is not None and bool(intake.photos) and refined is None)
+        self.back.setEnabled(is_free and refined is not None)
+        self.outcome.setText("" if refined is None else self._words(refined))
+        self.outcome.setVisible(refined is not None)
+
+    def _words(self, refined: RefinedOutcome) -> str:
+        """What a refinement has brought; findings say what was refused, and why."""
+        parts = [self.tr("Refined: {0} of {1} photos.").format(refined.n_refined, refined.n_photos)]
+        if refined.n_refined:
+            unit = replace(length_unit(self._units), decimals=3)
+            moves = self.tr("Moved {0}, at most {1}; turned {2:.2f}\u00b0, at most {3:.2f}\u00b0; {4:.2f} px.")
+            moved = (unit.text(m) for m in refined.moved_m)
+            parts.append(moves.format(*moved, *refined.turned_deg, refined.reprojection_px))
+        if refined.not_joined:
+            parts.append(self.tr("{0} found no place.").format(len(refined.not_joined)))
+        return " ".join(parts)
+
 
 SIDE_PX, DETAIL_PX = 250, 320
 """First widths beside the photo, at 1280 pixels."""
@@ -170,9 +363,7 @@ class PhotosPage(QObject):
         workspace.unitsChanged.connect(self._units_changed)
         workspace.documentChanged.connect(self._document_changed)
         self._stage.with_scene(lambda _scene: self.pane.scene.let_open())
-        window = self._stage.window()
-        if isinstance(window, MainWindow):
-            window.closing.connect(self._window_closing)
+        self._stage.closing.connect(self._window_closing)
 
     # What the user does
 
@@ -189,9 +380,9 @@ class PhotosPage(QObject):
 
     def _use(self) -> None:
         """Take the panels over, and show them in the shared view."""
-        draft, window = self.desk.draft, self._stage.window()
-        if self.desk.use() and draft is not None and isinstance(window, MainWindow):
-            window.show_tab("site")
+        draft = self.desk.draft
+        if self.desk.use() and draft is not None:
+            self._stage.tabRequested.emit("site")
             first = next(facade.id for facade in draft.found.facades if facade.panels)
             self._workspace.jump_to(Item(ItemKind.FACADE, first))
 

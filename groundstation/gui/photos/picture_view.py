@@ -7,7 +7,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent,
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from groundstation.gui.photos.photo_store import LargePicture
-from groundstation.gui.theme import colours
+from groundstation.gui.widgets.theme import colours
 
 MAX_ZOOM = 16.0
 """Screen pixels per pixel of the picture."""

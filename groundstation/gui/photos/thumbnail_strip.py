@@ -8,10 +8,10 @@ from PySide6.QtCore import QRect, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.photo_strip import PhotoStrip
 from groundstation.gui.photos.photo_store import PhotoStore
-from groundstation.gui.theme import colours
-from groundstation.services.photo_cards import PhotoCard, PhotoMark
+from groundstation.gui.widgets.photo_strip import PhotoStrip
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.photos.cards import PhotoCard, PhotoMark
 
 CELL = QSize(124, 100)
 FOOT_PX = 20

@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QButtonGroup, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.photos.grid_view import Tool
-from groundstation.gui.scrolling import ButtonGrid
+from groundstation.gui.widgets.scrolling import ButtonGrid
 
 
 class ToolBox(QWidget):

@@ -17,17 +17,17 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.inputs import ChoiceBox
-from groundstation.gui.theme import colours
+from groundstation.gui.application.context import Workspace
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, ValueKind
 from groundstation.gui.view3d.scene_view import SceneView
-from groundstation.gui.workspace import Workspace
-from groundstation.services.comparison import compare, marked_as_best, told_apart
-from groundstation.services.document import PlanEntry
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.plan.comparison import compare, marked_as_best, told_apart
+from groundstation.services.project.document import PlanEntry
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, sampling_unit
 from planning.insight.comparison import Comparison, Row
-from planning.site import SiteModel
+from planning.site.records import SiteModel
 
 
 class CompareWindow(QDialog):

@@ -7,8 +7,8 @@ from enum import StrEnum
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.inputs import ChoiceBox
-from groundstation.gui.scrolling import WrappingRow, labelled
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.scrolling import WrappingRow, labelled
 
 
 class PanelPaint(StrEnum):

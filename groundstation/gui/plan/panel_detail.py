@@ -6,8 +6,8 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
-from groundstation.gui.own_words import own_words
-from groundstation.gui.plan.hemisphere_view import HemisphereView, ShownSection
+from groundstation.gui.application.translate import own_words
+from groundstation.gui.charts.hemisphere_view import HemisphereView, ShownSection
 from groundstation.services.units import UnitSystem, sampling_unit
 from planning.insight.sections import PlanInsight, SectionState
 from planning.plan import Plan

@@ -3,26 +3,93 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QLabel,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QCheckBox, QLabel, QToolButton, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import ChoiceBox, Form, LengthBox, NumberBox, PercentBox, QuantityBox, SpeedBox, WholeBox
-from groundstation.gui.own_words import own_words
-from groundstation.gui.plan.aircraft_box import AircraftBox
+from groundstation.gui.application.translate import own_words
 from groundstation.gui.plan.method_names import method_name
+from groundstation.gui.widgets.inputs import (
+    ChoiceBox,
+    Form,
+    LengthBox,
+    NumberBox,
+    PercentBox,
+    QuantityBox,
+    SpeedBox,
+    WholeBox,
+)
+from groundstation.gui.widgets.questions import choose_file
 from groundstation.services.units import UnitSystem, length_unit, sampling_unit
-from planning.catalogue import profile
-from planning.errors import GroundStationError
-from planning.methods import METHODS
+from planning.aircraft.catalogue import Profile, profile, profiles
+from planning.base.errors import GroundStationError
 from planning.plan import Constraints, usual_gsd_m
 from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, LARGEST_SEED, PlanRequest
+from planning.viewpoints.methods import METHODS
+
+# Chooses the aircraft and camera of a plan: one that the program knows, or one from a file of the user's own.
+
+
+class AircraftBox(ChoiceBox):
+    """`value()`, `setValue()` and `valueChanged` of a profile's identifier: its name in the catalogue, or its file.
+
+    Signals
+    -------
+    valueChanged(str)
+    refused(str)
+        Why a file cannot be used; the aircraft before stays.
+    """
+
+    valueChanged = Signal(str)  # noqa: N815  (Qt's own way of naming)
+    refused = Signal(str)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        for identifier, found in sorted(profiles().items()):
+            self.addItem(_text(found), identifier)
+        self._value = str(self.itemData(0))
+        self.addItem(self.tr("From a file ..."), None)
+        self.currentIndexChanged.connect(self._chosen)
+
+    def value(self) -> str:
+        """Identifier of the profile."""
+        return self._value
+
+    def setValue(self, identifier: str) -> None:  # noqa: N802
+        """Show a profile; raises `InputError` where it is a file that cannot be read."""
+        index = self.findData(identifier)
+        with QSignalBlocker(self):
+            if index < 0:
+                found = profile(identifier)
+                index = self.count() - 1
+                self.insertItem(index, _text(found), identifier)
+            self.setCurrentIndex(index)
+        self._value = identifier
+
+    def use_file(self, path: Path | None) -> None:
+        """Take an aircraft from a file; for None, or a file that is wrong, the one before stays."""
+        before = self._value
+        try:
+            self.setValue(before if path is None else str(path))
+        except GroundStationError as error:
+            self.setValue(before)
+            self.refused.emit(str(error))
+            return
+        if self._value != before:
+            self.valueChanged.emit(self._value)
+
+    def _chosen(self) -> None:
+        if self.currentData() is None:
+            self.use_file(choose_file(self, self.tr("Aircraft and camera"), self.tr("Aircraft (*.toml)")))
+        elif self.currentData() != self._value:
+            self._value = str(self.currentData())
+            self.valueChanged.emit(self._value)
+
+
+def _text(found: Profile) -> str:
+    return " / ".join(dict.fromkeys([found.aircraft.name, found.camera.name]))
+
 
 COVERAGE, VIEWS, BATTERIES = range(3)
 

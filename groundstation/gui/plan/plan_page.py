@@ -2,34 +2,112 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from dataclasses import replace
 
-from PySide6.QtCore import QObject
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
-from groundstation.gui.plan.effects_desk import EffectsDesk
-from groundstation.gui.plan.effects_panel import EffectsPanel
-from groundstation.gui.plan.paint_bar import PaintBar
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.charts.quality_chart import QualityChart
+from groundstation.gui.plan.effects_controller import EffectsDesk
+from groundstation.gui.plan.paint_bar import PaintBar, PanelPaint, RoutePaint
 from groundstation.gui.plan.panel_detail import PanelDetail
-from groundstation.gui.plan.plan_desk import PlanDesk
+from groundstation.gui.plan.plan_controller import PlanDesk
 from groundstation.gui.plan.plan_form import PlanForm
 from groundstation.gui.plan.plan_lists import PlanLists
-from groundstation.gui.plan.quality_chart import QualityChart
 from groundstation.gui.plan.viewpoint_page import ViewpointPage
-from groundstation.gui.scrolling import scrolled
-from groundstation.gui.stage import Stage
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Document, Item, ItemKind
-from groundstation.services.jobs import Job, JobBounded, JobImproved
-from groundstation.services.plan_bench import PlanInHand
-from groundstation.services.readiness import findings_beside
+from groundstation.gui.shared_view import Stage
+from groundstation.gui.view3d.hemispheres import OPEN, UNDECIDED, UNREACHABLE
+from groundstation.gui.view3d.paint import ColourScale, ValueKind
+from groundstation.gui.view3d.scene_view import SceneView
+from groundstation.gui.widgets.effects_panel import EffectsPanel
+from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.services.jobs.runner import Job, JobBounded, JobImproved
+from groundstation.services.mission.readiness import findings_beside
+from groundstation.services.plan.plan_cache import PlanInHand
+from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
-from planning.findings import Severity, is_flyable
+from planning.base.findings import Severity, is_flyable
+from planning.base.progress import QualityPoint
+from planning.insight.sections import PlanInsight, SectionState
 from planning.plan import Plan
-from planning.progress import QualityPoint
 from planning.request import PlanRequest
+
+# What the current plan paints in the 3-D view: coverage or pixel sizes on panels, clearance on routes.
+
+WIDE_CLEARANCE = 3.0
+"""Routes this many safety distances away from everything all look alike: far enough."""
+
+
+def paint_plan(
+    scene: SceneView, in_hand: PlanInHand | None, panels: PanelPaint, routes: RoutePaint, units: UnitSystem
+) -> None:
+    """Paint a plan on a 3-D view, as chosen; without a plan in hand everything is plain."""
+    if in_hand is None or panels is not PanelPaint.HEMISPHERES:
+        scene.paint_hemispheres(None)
+    if in_hand is None or panels not in (PanelPaint.SHARE, PanelPaint.GSD):
+        scene.set_panel_values(None)
+    if in_hand is None:
+        scene.set_route_values(None)
+        return
+    insight = in_hand.insight
+    match panels:
+        case PanelPaint.SHARE:
+            title = QCoreApplication.translate("PlanPictures", "Covered of what is possible")
+            scene.set_panel_values(ColourScale(title, "%", 0.0, 100.0), 100.0 * insight.share_per_panel)
+        case PanelPaint.GSD:
+            scale, values = _sampling(insight, units)
+            scene.set_panel_values(scale, values)
+        case PanelPaint.HEMISPHERES:
+            scene.paint_hemispheres(insight.grid, painted_states(insight))
+        case PanelPaint.FACADE:
+            pass
+    if routes is RoutePaint.SORTIE:
+        scene.set_route_values(None)
+    else:
+        scene.set_route_values(*_clearance(in_hand, units))
+
+
+def _sampling(insight: PlanInsight, units: UnitSystem) -> tuple[ColourScale | None, NDArray[np.float64]]:
+    unit = sampling_unit(units)
+    values = insight.sampling.best_m * unit.factor
+    known = values[np.isfinite(values)]
+    if len(known) == 0:
+        return None, values
+    low, high = float(known.min()), float(known.max())
+    # A plan whose panels are all alike still has a scale.
+    title = QCoreApplication.translate("PlanPictures", "Finest pixel")
+    return ColourScale(title, unit.symbol, low, max(high, 1.01 * low + 1e-9), ValueKind.LOW_IS_GOOD), values
+
+
+def _clearance(in_hand: PlanInHand, units: UnitSystem) -> tuple[ColourScale, list[NDArray[np.float64]]]:
+    unit = length_unit(units)
+    least_m = in_hand.plan.constraints.min_distance_m
+    far_m = max(WIDE_CLEARANCE * least_m, least_m + 5.0)
+    title = QCoreApplication.translate("PlanPictures", "Clearance")
+    scale = ColourScale(title, unit.symbol, unit.shown(least_m), unit.shown(far_m))
+    legs = (in_hand.revision.leg_clearances_m(sortie) for sortie in in_hand.plan.sorties)
+    return scale, [unit.factor * vertex_clearances_m(clearances_m) for clearances_m in legs]
+
+
+def painted_states(insight: PlanInsight) -> NDArray[np.int64]:
+    """Number of views of each section, or why there is none, as the 3-D view takes it; shape (m, n_sections)."""
+    states = insight.counts.astype(np.int64)
+    states[insight.states == SectionState.MISSED] = OPEN
+    states[insight.states == SectionState.UNREACHABLE] = UNREACHABLE
+    states[insight.states == SectionState.UNDECIDED] = UNDECIDED
+    return states
+
+
+def vertex_clearances_m(legs_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The lesser clearance of the legs at each vertex, shape (k,) from (k - 1,): none looks safer than its legs."""
+    padded = [float("inf"), *legs_m.tolist(), float("inf")]
+    return np.array([min(pair) for pair in itertools.pairwise(padded)])
 
 
 class PlanPage(QObject):
@@ -234,8 +312,6 @@ class PlanPage(QObject):
             self._stage.with_scene(lambda _scene: self._paint())
             return
         if not self.paint.isHidden():
-            from groundstation.gui.plan.plan_pictures import paint_plan
-
             paint_plan(scene, self.desk.in_hand, *self.paint.value(), self._workspace.units)
 
     def _show_selection(self, item: Item | None) -> None:

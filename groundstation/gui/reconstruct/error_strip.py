@@ -8,10 +8,10 @@ from PySide6.QtCore import QModelIndex, QRect, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.photo_strip import PhotoStrip
-from groundstation.gui.reconstruct.small_pictures import SmallPictures
-from groundstation.gui.theme import Colours, colours
-from reconstruction.cameras import PosedPhoto
+from groundstation.gui.widgets.photo_strip import PhotoStrip
+from groundstation.gui.widgets.theme import Colours, colours
+from groundstation.gui.widgets.thumbnails import SmallPictures
+from reconstruction.base.cameras import PosedPhoto
 
 CELL = QSize(112, 104)
 FOOT_PX, BAR_PX = 18, 7

@@ -5,13 +5,13 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import ChoiceBox
-from groundstation.gui.plan.effects_panel import EffectsPanel
 from groundstation.gui.reconstruct.names import light_name
-from groundstation.services.effects import EffectChoice
-from groundstation.services.reconstruct_choices import MethodRow, light_names
+from groundstation.gui.widgets.effects_panel import EffectsPanel
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.services.plan.effects import EffectChoice
+from groundstation.services.reconstruct.choices import MethodRow, light_names
 from groundstation.services.units import UnitSystem
-from planning.effects import Decision
+from planning.base.effects import Decision
 
 
 class LightPage(QWidget):

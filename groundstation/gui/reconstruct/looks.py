@@ -15,10 +15,10 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QImage
 
-from groundstation.services.picture_pace import PicturePace
-from groundstation.services.reconstruct_camera import sized
-from groundstation.services.reconstruct_messages import Look, Section, Seen, Subject, Tints
-from reconstruction.cameras import PosedPhoto
+from groundstation.services.reconstruct.guided_camera import sized
+from groundstation.services.reconstruct.messages import Look, Section, Seen, Subject, Tints
+from groundstation.services.reconstruct.render_pace import PicturePace
+from reconstruction.base.cameras import PosedPhoto
 
 QUICK_S = 0.12
 """What a picture may take while the camera is led about, where so few pixels help (`picture_pace`)."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject
 
-from groundstation.services.reconstruct_choices import PROGRAM_BYTES, Forecast, Machine, TrainChoice
-from groundstation.services.reconstruct_places import LEAST_FREE_BYTES, DataSetCard, Standing
+from groundstation.services.reconstruct.choices import PROGRAM_BYTES, Forecast, Machine, TrainChoice
+from groundstation.services.reconstruct.folders import LEAST_FREE_BYTES, DataSetCard, Standing
 
 Told = tuple[str, str]
 """Role of a label ("", warning, error), and text."""

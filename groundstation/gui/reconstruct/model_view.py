@@ -22,7 +22,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from groundstation.gui.theme import colours
+from groundstation.gui.widgets.theme import colours
 
 TURN_RAD_PX = 0.004
 """Of a drag: the width of the view is about half a turn."""

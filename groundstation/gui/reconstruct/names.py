@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QCoreApplication
 
-from reconstruction.modelling.layer_names import LAYERS, PICTURE
+from reconstruction.training.names import LAYERS, PICTURE
 
 
 def layer_names() -> dict[str, str]:

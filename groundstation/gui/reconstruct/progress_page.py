@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QLabel, QProgressBar, QVBoxLayout, QWidget
 
-from groundstation.gui.reconstruct.lines_plot import Line, LinesPlot
+from groundstation.gui.charts.lines_plot import Line, LinesPlot
 from groundstation.gui.reconstruct.names import term_name
-from groundstation.services.reconstruct_curves import ThinCurve, smoothed
+from groundstation.services.reconstruct.curves import ThinCurve, smoothed
 
 REDRAW_MS = 250
 """Steps come a hundred times as often as the eye can follow."""

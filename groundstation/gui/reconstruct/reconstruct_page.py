@@ -9,20 +9,36 @@ from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
-from groundstation.gui.main_window import MainWindow
-from groundstation.gui.questions import Questions
+from groundstation.gui.application.context import Workspace
 from groundstation.gui.reconstruct.choice_side import ChoiceSide
 from groundstation.gui.reconstruct.light_page import LightPage
 from groundstation.gui.reconstruct.machine_words import MachineWords
 from groundstation.gui.reconstruct.progress_page import ProgressPage
-from groundstation.gui.reconstruct.questions import ReconstructQuestions
-from groundstation.gui.reconstruct.reconstruct_desk import Phase, ReconstructDesk
+from groundstation.gui.reconstruct.reconstruct_controller import Phase, ReconstructDesk
 from groundstation.gui.reconstruct.view_pane import ViewPane
-from groundstation.gui.scrolling import scrolled
-from groundstation.gui.stage import Stage
-from groundstation.gui.workspace import Workspace
-from groundstation.services.reconstruct_choices import TrainChoice, method_rows
+from groundstation.gui.shared_view import Stage
+from groundstation.gui.widgets.questions import Questions, agrees
+from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.services.reconstruct.choices import TrainChoice, method_rows
 from groundstation.services.units import UnitSystem, minutes_text
+
+# Questions of the Reconstruct tab; a class of its own so that whoever drives the window without a user can answer.
+
+
+class ReconstructQuestions(QObject):
+    """Asks by dialogs."""
+
+    def break_off(self, parent: QWidget) -> bool:
+        """Whether to break a training off because the window closes."""
+        return agrees(
+            parent,
+            self.tr("A model is being trained"),
+            self.tr(
+                "Closing the window breaks the training off. What it has reached is kept, and the Reconstruct tab "
+                "goes on with it later. Close the window?"
+            ),
+        )
+
 
 SIDE_PX, DETAIL_PX, LEAST_DETAIL_PX = 270, 340, 260
 """Widths beside the view, at 1280 pixels."""
@@ -115,9 +131,7 @@ class ReconstructPage(QObject):
         desk.progressed.connect(self._show_progress)
         desk.lightChanged.connect(self._show_light)
         workspace.unitsChanged.connect(self._units_changed)
-        window = self._stage.window()
-        if isinstance(window, MainWindow):
-            window.closing.connect(self._window_closing)
+        self._stage.closing.connect(self._window_closing)
 
     # What the user does
 

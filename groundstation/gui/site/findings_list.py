@@ -6,11 +6,11 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
-from groundstation.gui.own_words import own_words
-from groundstation.gui.theme import colours
-from groundstation.services.document import Item, ItemKind
+from groundstation.gui.application.translate import own_words
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem
-from planning.findings import Finding, Severity
+from planning.base.findings import Finding, Severity
 
 
 def item_of(finding: Finding) -> Item | None:

@@ -8,13 +8,13 @@ import numpy as np
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.inputs import Form, LengthBox, WholeBox
-from groundstation.gui.scrolling import ButtonGrid
-from groundstation.gui.site.value_boxes import ErrorLine, PointBox, muted
+from groundstation.gui.widgets.inputs import Form, LengthBox, WholeBox
+from groundstation.gui.widgets.scrolling import ButtonGrid
+from groundstation.gui.widgets.value_boxes import ErrorLine, PointBox, muted
 from groundstation.services.units import UnitSystem, length_unit
-from planning.scenes import Rectangle
-from planning.site_import.options import ImportOptions
-from planning.site_import.panel_grid import GridField
+from planning.site.bundled import Rectangle
+from planning.site.importing.options import ImportOptions
+from planning.site.importing.panel_grid import GridField
 
 MAX_COUNT = 500
 """Rows or columns of one grid; the tallest facades have some 160 storeys."""

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.shared_view import Stage
 from groundstation.gui.site.grid_form import GridForm, GridWish
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.site.site_tools import SiteTool, SiteTools
-from groundstation.gui.stage import Stage
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Document, Item, ItemKind
-from groundstation.services.panel_edits import AddedGrid, add_panel_grid
-from planning.errors import InputError
-from planning.scenes import Rectangle
-from planning.site import SiteModel
-from planning.site_import.panel_grid import PanelGridError
+from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.site.panel_edits import AddedGrid, add_panel_grid
+from planning.base.errors import InputError
+from planning.site.bundled import Rectangle
+from planning.site.importing.panel_grid import PanelGridError
+from planning.site.records import SiteModel
 
 CHECK_AFTER_MS = 200
 

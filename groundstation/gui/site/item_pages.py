@@ -9,19 +9,18 @@ import numpy as np
 from PySide6.QtWidgets import QLabel, QPushButton, QWidget
 
 from groundstation.gui.site.pages import Page
-from groundstation.gui.site.polygon_box import PolygonBox
-from groundstation.gui.site.site_tree_model import size_text
-from groundstation.gui.site.value_boxes import ExtentBox, NameBox, PointBox, coordinate_box, muted
-from groundstation.services.document import Item
-from groundstation.services.item_edits import remove_item, rename_item
-from groundstation.services.panel_edits import flip_facade
-from groundstation.services.site_edits import move_rally_point, set_box, set_zone
+from groundstation.gui.site.site_tree import size_text
+from groundstation.gui.widgets.value_boxes import ExtentBox, NameBox, PointBox, PolygonBox, coordinate_box, muted
+from groundstation.services.project.document import Item
+from groundstation.services.site.edits import move_rally_point, set_box, set_zone
+from groundstation.services.site.item_edits import remove_item, rename_item
+from groundstation.services.site.panel_edits import flip_facade
 from groundstation.services.units import UnitSystem, area_unit, length_unit, sampling_unit
 from planning.coverage.sections import panel_frames
-from planning.frames import Vec3
-from planning.site import Facade, SiteModel
-from planning.site_import.polygons import quad_areas
-from reconstruction.panels.accuracy import FoundFacades
+from planning.geo.frames import Vec3
+from planning.site.importing.polygons import quad_areas
+from planning.site.records import Facade, SiteModel
+from reconstruction.panels.solving.accuracy import FoundFacades
 
 
 class ItemPage(Page):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.inputs import Form, LengthBox, NumberBox
-from groundstation.gui.own_words import own_words
-from groundstation.gui.site.value_boxes import DECIMALS, ErrorLine, muted
-from groundstation.services.site_edits import HeightReference, height_above_sea_m, origin_at
+from groundstation.gui.application.translate import own_words
+from groundstation.gui.widgets.inputs import Form, LengthBox, NumberBox
+from groundstation.gui.widgets.value_boxes import DECIMALS, ErrorLine, muted
+from groundstation.services.site.edits import HeightReference, height_above_sea_m, origin_at
 from groundstation.services.units import UnitSystem
-from planning.errors import InputError
-from planning.site import Origin
+from planning.base.errors import InputError
+from planning.geo.frames import Origin
 
 DEGREE_DECIMALS = 7
 """1 cm on the ground."""

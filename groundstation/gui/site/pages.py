@@ -8,8 +8,8 @@ from PySide6.QtCore import QCoreApplication, Signal
 from PySide6.QtWidgets import QLabel, QPushButton, QWidget
 
 from groundstation.gui.site.origin_box import OriginBox
-from groundstation.gui.site.site_tree_model import size_text
-from groundstation.gui.site.value_boxes import (
+from groundstation.gui.site.site_tree import size_text
+from groundstation.gui.widgets.value_boxes import (
     ErrorLine,
     ExtentBox,
     FormColumn,
@@ -18,12 +18,12 @@ from groundstation.gui.site.value_boxes import (
     coordinate_box,
     muted,
 )
-from groundstation.services.document import Item, ItemKind
-from groundstation.services.site_edits import HeightReference, move_home, rename_site, set_airspace, set_origin
-from groundstation.services.site_sources import site_summary
+from groundstation.services.project.document import Item, ItemKind
+from groundstation.services.site.edits import HeightReference, move_home, rename_site, set_airspace, set_origin
+from groundstation.services.site.sources import site_summary
 from groundstation.services.units import UnitSystem, area_unit
-from planning.frames import Vec3
-from planning.site import Origin, SiteModel
+from planning.geo.frames import Origin, Vec3
+from planning.site.records import SiteModel
 
 Edit = Callable[[SiteModel], SiteModel]
 

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from groundstation.gui.application.context import Workspace
 from groundstation.gui.site.item_pages import FacadePage, ItemPage, NoFlyPage, ObstaclePage, PanelPage, RallyPage
 from groundstation.gui.site.pages import SITE, AirspacePage, Edit, HomePage, Page, SitePage
 from groundstation.gui.site.site_editor import SiteEditor
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Document, Item, ItemKind
+from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem
 
 PAGES: dict[ItemKind, Callable[[UnitSystem], Page]] = {

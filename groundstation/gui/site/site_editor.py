@@ -6,16 +6,16 @@ from dataclasses import replace
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from groundstation.gui.application.context import Workspace
 from groundstation.gui.site.pages import Edit
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Document, Item
-from groundstation.services.item_edits import remove_item
-from groundstation.services.jobs import ENDED, Job
-from groundstation.services.panel_edits import flip_facade
-from groundstation.services.site_findings import site_findings
-from planning.errors import InputError
-from planning.findings import Finding, Severity
-from planning.site import SiteModel
+from groundstation.services.jobs.runner import ENDED, Job
+from groundstation.services.project.document import Document, Item
+from groundstation.services.site.findings import site_findings
+from groundstation.services.site.item_edits import remove_item
+from groundstation.services.site.panel_edits import flip_facade
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.site.records import SiteModel
 
 CHECK_AFTER_MS = 300
 """After the last edit: several in a row, as with the arrows of a box, are checked once."""

@@ -9,15 +9,15 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QMenu, QWidget
 
-from groundstation.gui.questions import choose_file
-from groundstation.gui.workspace import Workspace
-from groundstation.services.project_facades import facades_beside
-from groundstation.services.site_sources import bundled_site, open_site, with_new_site
-from planning.findings import Severity
-from planning.scenes import SCENES
-from planning.site import SiteModel
-from planning.site_import.importer import SUFFIXES
-from reconstruction.panels.accuracy import FoundFacades
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.widgets.questions import choose_file
+from groundstation.services.project.facades import facades_beside
+from groundstation.services.site.sources import bundled_site, open_site, with_new_site
+from planning.base.findings import Severity
+from planning.site.bundled import SCENES
+from planning.site.importing.importer import SUFFIXES
+from planning.site.records import SiteModel
+from reconstruction.panels.solving.accuracy import FoundFacades
 
 if TYPE_CHECKING:
     from groundstation.gui.site.import_dialog import ImportDialog

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QPushButton, QWidget
 
-from groundstation.gui.questions import choose_file
-from groundstation.gui.scrolling import ButtonGrid
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.shared_view import Stage, StagePage
 from groundstation.gui.site.pages import Edit
 from groundstation.gui.site.site_editor import SiteEditor
-from groundstation.gui.stage import Stage, StagePage
-from groundstation.gui.workspace import Workspace
-from groundstation.services.document import Item, ItemKind
-from groundstation.services.site_edits import (
+from groundstation.gui.widgets.questions import choose_file
+from groundstation.gui.widgets.scrolling import ButtonGrid
+from groundstation.services.project.document import Item, ItemKind
+from groundstation.services.site.edits import (
     add_box,
     add_mesh_obstacle,
     add_rally_point,
@@ -25,9 +25,9 @@ from groundstation.services.site_edits import (
     move_home,
     set_airspace,
 )
-from planning.findings import Severity
-from planning.mesh import MESH_SUFFIXES, TriangleMesh, read_mesh
-from planning.site import SiteModel
+from planning.base.findings import Severity
+from planning.geo.mesh import MESH_SUFFIXES, TriangleMesh, read_mesh
+from planning.site.records import SiteModel
 
 if TYPE_CHECKING:
     from groundstation.gui.view3d.drawing_tools import DrawnBox, DrawnPolygon, PickedRectangle, RectangleTool

@@ -18,8 +18,8 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QWidget
 
 if TYPE_CHECKING:
-    from groundstation.gui.stage import Stage
-    from groundstation.gui.workspace import Workspace
+    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.shared_view import Stage
 
 CONTEXT = "Tabs"
 """Translation context of the titles and tips of all tabs: `QT_TRANSLATE_NOOP("Tabs", "Site")`."""

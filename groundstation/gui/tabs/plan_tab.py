@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
+    from groundstation.gui.application.context import Workspace
     from groundstation.gui.plan.plan_page import PlanPage
-    from groundstation.gui.stage import Stage
-    from groundstation.gui.workspace import Workspace
+    from groundstation.gui.shared_view import Stage
 
 
 def make(workspace: Workspace, stage: Stage) -> PlanPage:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.gui.view3d.tools import ClickTool, Hint, Key, Pointer, Preview, vec3
-from planning.frames import Vec3
+from planning.geo.frames import Vec3
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ from groundstation.gui.view3d.pinhole import Pinhole, photo_pinhole
 from groundstation.gui.view3d.plan_scene import FRUSTUM_M, PlanScene
 from groundstation.gui.view3d.shapes import Shape, box_edges, frusta, joined, outlines, polyline, shown_panels
 from groundstation.gui.view3d.site_scene import SiteScene, landing_pad
-from groundstation.services.document import Item, ItemKind
+from groundstation.services.project.document import Item, ItemKind
 from planning.coverage.sections import PanelFrames
-from planning.frames import camera_axes
+from planning.geo.frames import camera_axes
 from planning.plan import ViewpointArrays
 
 Array = NDArray[np.float64]

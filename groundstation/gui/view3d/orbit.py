@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.gui.view3d.pinhole import Pinhole, pinhole_at
-from planning.frames import Vec3, aim, camera_axes, wrap_heading_deg
+from planning.geo.frames import Vec3, aim, camera_axes, wrap_heading_deg
 
 Array = NDArray[np.float64]
 

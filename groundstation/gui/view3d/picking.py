@@ -12,12 +12,13 @@ from groundstation.gui.view3d.pinhole import Pinhole
 from groundstation.gui.view3d.plan_scene import PlanScene
 from groundstation.gui.view3d.shapes import shown_panels
 from groundstation.gui.view3d.site_scene import SiteScene, landing_pad
-from groundstation.services.document import Item, ItemKind
-from planning.geometry.bvh import Bvh, build_bvh, segment_hits
-from planning.geometry.distance import segment_hits_triangle
-from planning.site import panel_triangles
+from groundstation.services.project.document import Item, ItemKind
+from planning.geo.bvh import Bvh, build_bvh, segment_hits
+from planning.geo.distance import segment_hits_triangle
+from planning.site.records import panel_triangles
 
 Array = NDArray[np.float64]
+
 
 REACH_M = 50_000.0
 """Length of a picking ray."""
@@ -194,3 +195,47 @@ def _load_kernels() -> None:
 
 
 _load_kernels()
+
+
+# What a picture covers: where the border of a photo falls on the surfaces of a site.
+
+RAYS_PER_SIDE = 12
+"""Enough to follow corners of a building; 48 rays take about 2 ms."""
+
+LIFT_M = 0.06
+"""The line is drawn this far in front of the surfaces."""
+
+MAX_STEP = 0.2
+"""Neighbouring rays whose depths differ by a larger part meet different surfaces: no line is drawn between them."""
+
+SEEN_THROUGH = frozenset({Layer.NO_FLY, Layer.HOME})
+
+
+def footprint(index: PickIndex, view: Pinhole) -> list[Array]:
+    """Pieces of the border of a picture on the surfaces it meets, polylines of shape (k, 3), k >= 2."""
+    along = np.arange(RAYS_PER_SIDE) / RAYS_PER_SIDE
+    zeros = np.zeros(RAYS_PER_SIDE)
+    x = np.concatenate([along, zeros + 1.0, 1.0 - along, zeros, [0.0]]) * view.width_px
+    y = np.concatenate([zeros, along, zeros + 1.0, 1.0 - along, [0.0]]) * view.height_px
+    pieces: list[list[Array]] = [[]]
+    last_m = np.inf
+    for x_px, y_px in zip(x, y, strict=True):
+        ray = view.ray(float(x_px), float(y_px))
+        point, depth_m = _first(index, view.eye_enu_m, ray)
+        if point is None or abs(depth_m - last_m) > MAX_STEP * depth_m:
+            pieces.append([])
+        if point is not None:
+            pieces[-1].append(point)
+        last_m = depth_m
+    return [np.array(piece) for piece in pieces if len(piece) > 1]
+
+
+def _first(index: PickIndex, eye_enu_m: Array, ray: Array) -> tuple[Array | None, float]:
+    """Where a ray ends: on a surface, else on the ground."""
+    hit = index.surface(eye_enu_m, ray, SEEN_THROUGH)
+    if hit is not None:
+        return hit.point_enu_m + LIFT_M * hit.normal, hit.depth_m
+    ground = index.ground(eye_enu_m, ray)
+    if ground is None:
+        return None, np.inf
+    return ground, float(np.linalg.norm(ground - eye_enu_m))

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.gui.theme import SORTIES, Colours
 from groundstation.gui.view3d.layers import Drawable, Layer
 from groundstation.gui.view3d.paint import ColourScale, flat, rgba
 from groundstation.gui.view3d.shapes import arrows, frusta, polyline
+from groundstation.gui.widgets.theme import SORTIES, Colours
 from planning.plan import Plan, ViewpointArrays, viewpoint_arrays
 
 Array = NDArray[np.float64]

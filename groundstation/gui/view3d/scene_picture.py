@@ -16,27 +16,25 @@ from PySide6.QtCore import QEvent, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from groundstation.gui.theme import colours
 from groundstation.gui.view3d.canvas import Canvas, image_array
-from groundstation.gui.view3d.coverage_painter import CoveragePainter
-from groundstation.gui.view3d.footprint import footprint
+from groundstation.gui.view3d.hemispheres import CoveragePainter
 from groundstation.gui.view3d.item_shapes import ItemShape, item_shape, with_surroundings
 from groundstation.gui.view3d.layers import Drawable, Layer
 from groundstation.gui.view3d.navigator import Navigator
 from groundstation.gui.view3d.orbit import Orbit, facing
-from groundstation.gui.view3d.overlay import Overlay
+from groundstation.gui.view3d.overlay import Overlay, SceneTexts
 from groundstation.gui.view3d.paint import ColourScale, flat, shaded
-from groundstation.gui.view3d.picking import Hit, PickIndex, pick
+from groundstation.gui.view3d.picking import Hit, PickIndex, footprint, pick
 from groundstation.gui.view3d.pinhole import photo_pinhole
 from groundstation.gui.view3d.plan_scene import PlanScene, plan_scene
-from groundstation.gui.view3d.scene_texts import SceneTexts
 from groundstation.gui.view3d.shapes import joined, polyline
 from groundstation.gui.view3d.site_scene import SiteScene, facade_colours, panels_drawable, site_scene
-from groundstation.services.document import Item, ItemKind
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem
 from planning.coverage.sections import SectionGrid
 from planning.plan import Camera, Plan, ViewpointArrays
-from planning.site import SiteModel
+from planning.site.records import SiteModel
 
 Array = NDArray[np.float64]
 

@@ -6,13 +6,13 @@ from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.theme import colours
-from groundstation.gui.view3d.gestures import Drag, Gestures
 from groundstation.gui.view3d.layers import Layer
+from groundstation.gui.view3d.navigator import Drag, Gestures
 from groundstation.gui.view3d.overlay import Tip
 from groundstation.gui.view3d.scene_picture import ScenePicture, StandardView
 from groundstation.gui.view3d.tool_driver import ToolDriver, preview_drawables
 from groundstation.gui.view3d.tools import Pointer, Tool
+from groundstation.gui.widgets.theme import colours
 from groundstation.services.units import UnitSystem
 
 __all__ = ["SceneView", "StandardView"]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.coverage.positions import picture_corners
 from planning.coverage.sections import PanelFrames
-from planning.mesh import TriangleMesh
+from planning.geo.mesh import TriangleMesh
 from planning.plan import Camera, ViewpointArrays
-from planning.positions import picture_corners
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -7,19 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.gui.theme import FACADES, Colours
 from groundstation.gui.view3d.layers import Drawable, Label, Layer
 from groundstation.gui.view3d.paint import flat, shaded
-from groundstation.gui.view3d.shapes import (
-    box_edges,
-    quads,
-    shown_panels,
-    triangle_normals,
-)
+from groundstation.gui.view3d.shapes import box_edges, quads, shown_panels, triangle_normals
+from groundstation.gui.widgets.theme import FACADES, Colours
 from planning.coverage.sections import PanelFrames, panel_frames
-from planning.frames import Vec3
-from planning.mesh import TriangleMesh, box_mesh
-from planning.site import SiteModel, panel_corners
+from planning.geo.frames import Vec3
+from planning.geo.mesh import TriangleMesh, box_mesh
+from planning.site.records import SiteModel, panel_corners
 
 Array = NDArray[np.float64]
 

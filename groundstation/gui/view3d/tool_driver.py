@@ -8,12 +8,12 @@ import numpy as np
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent
 
-from groundstation.gui.theme import Colours
 from groundstation.gui.view3d.layers import ON_TOP, Drawable
 from groundstation.gui.view3d.paint import flat
 from groundstation.gui.view3d.shapes import joined, polyline
 from groundstation.gui.view3d.tools import Hint, Key, Pointer, Preview, Tool
 from groundstation.gui.view3d.viewpoint_tool import ViewpointTool
+from groundstation.gui.widgets.theme import Colours
 from groundstation.services.units import UnitSystem, length_unit
 
 MOVED_MS = 50

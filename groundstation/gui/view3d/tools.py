@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from groundstation.gui.view3d.picking import Hit
 from groundstation.gui.view3d.pinhole import Pinhole
-from planning.frames import Vec3
+from planning.geo.frames import Vec3
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from groundstation.gui.view3d.picking import VIEWPOINT_PX
 from groundstation.gui.view3d.tools import Hint, Key, Pointer, Preview, vec3
-from planning.frames import Vec3, camera_axes
+from planning.geo.frames import Vec3, camera_axes
 
 Array = NDArray[np.float64]
 

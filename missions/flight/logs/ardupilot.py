@@ -8,19 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from missions.flight.logs.dataflash import (
-    Table,
-    binary_tables,
-    column,
-    looks_binary,
-    text_tables,
-    texts,
-    times_s,
-)
+from missions.flight.logs.dataflash import Table, binary_tables, column, looks_binary, text_tables, texts, times_s
 from missions.flight.logs.raw import NOT_KNOWN, RawLog, RawPhoto, Row
 from missions.flight.record import FlightEvent
 from missions.mavlink.autopilots import Autopilot
-from planning.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor
 
 WANTED = frozenset(
     "POS GPS ATT AHR2 XKF1 NKF1 EKF1 MNT BAT CURR CAM TRIG MODE MSG EV ARM ERR PARM".split()  # noqa: SIM905

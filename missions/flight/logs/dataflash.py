@@ -17,8 +17,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.jit import kernel
-from planning.progress import QUIET, Monitor
+from planning.base.jit import kernel
+from planning.base.progress import QUIET, Monitor
 
 Column = NDArray[np.generic]
 Table = dict[str, Column]

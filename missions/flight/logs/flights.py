@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 from missions.flight.logs.raw import Floats, RawLog, RawPhoto, Row, camera_angles_rad, table
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.mavlink.autopilots import Autopilot
-from planning.belonging import HEIGHT_DIFFERENCE_M, MAX_DISTANCE_M
-from planning.errors import InputError
-from planning.findings import Finding, Severity
-from planning.frames import wrap_heading_deg, wrap_heading_rad
-from planning.mesh import MAX_COORDINATE_M
-from planning.site import Site
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.geo.frames import wrap_heading_deg, wrap_heading_rad
+from planning.geo.mesh import MAX_COORDINATE_M
+from planning.site.records import HEIGHT_DIFFERENCE_M, MAX_DISTANCE_M, Site
 
 HeightSource = Literal["takeoff", "sea-level"]
 """What heights are counted from: `takeoff` is the site's home, plus what the autopilot says to be above its own home,
@@ -153,8 +152,8 @@ def _is_on_globe(rows: Floats) -> NDArray[np.bool_]:
 
 def _enu_m(rows: Floats, site: Site, heights: HeightSource) -> Floats:
     """ENU, shape (n, 3), of latitude, longitude, altitude above sea level and above home; NaN without height."""
-    from planning.geodesy.enu import enu_from_geodetic, geodetic_from_enu
-    from planning.geodesy.geoid import ellipsoid_from_amsl_m
+    from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
+    from planning.geo.geoid import ellipsoid_from_amsl_m
 
     lat, lon, amsl_m, above_home_m = rows.T
     if heights == "sea-level":

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from missions.flight.record import FlightEvent
 from missions.mavlink.autopilots import Autopilot
-from planning.findings import Finding, Severity
+from planning.base.findings import Finding, Severity
 
 Floats = NDArray[np.float64]
 

@@ -10,10 +10,10 @@ from missions.flight.logs.flights import HeightSource, LogFlights, flights_of
 from missions.flight.logs.raw import RawLog
 from missions.flight.logs.tlog import looks_like_tlog, read_tlog
 from missions.flight.logs.ulog import looks_like_ulog, read_ulog
-from planning.errors import InputError
-from planning.files import MIB, FileLimit, open_given, read_given
-from planning.progress import QUIET, Monitor
-from planning.site import Site
+from planning.base.errors import InputError
+from planning.base.files import MIB, FileLimit, open_given, read_given
+from planning.base.progress import QUIET, Monitor
+from planning.site.records import Site
 
 LOG_FILE = FileLimit("a flight log", 512 * MIB, "cut out the flight with a log tool")
 """Larger logs are refused: an hour of ArduPilot's full logging has about 200 MiB."""

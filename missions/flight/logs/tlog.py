@@ -14,7 +14,7 @@ from typing import Any
 from missions.flight.logs.raw import RawLog
 from missions.flight.logs.telemetry import TelemetryReader
 from missions.mavlink.messages import Address, Received
-from planning.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor
 
 TIME_BYTES = 8
 HEADER_BYTES = {0xFE: 6, 0xFD: 10}

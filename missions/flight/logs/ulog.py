@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from missions.flight.logs.raw import RawLog, RawPhoto, Row
 from missions.flight.record import FlightEvent
 from missions.mavlink.autopilots import Autopilot
-from planning.errors import InputError
-from planning.progress import QUIET, Monitor
+from planning.base.errors import InputError
+from planning.base.progress import QUIET, Monitor
 
 if TYPE_CHECKING:
     from pyulog import ULog

@@ -15,8 +15,8 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import has_home, has_place
-from planning.frames import wrap_heading_deg
-from planning.json_file import read_toml
+from planning.base.json_file import read_toml
+from planning.geo.frames import wrap_heading_deg
 
 DATA_PATH = Path(__file__).parents[2] / "data" / "mavlink_rounding.toml"
 

@@ -12,7 +12,7 @@ from missions.mavlink.check import WITH_POSITION
 from missions.mavlink.items import MissionItem
 from missions.mavlink.messages import MissionItemInt
 from missions.mavlink.transfer.exchange import MissionType
-from planning.errors import MissionError
+from planning.base.errors import MissionError
 
 SCALE = 1e7
 LARGEST = 2**31 - 1

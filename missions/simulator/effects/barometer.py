@@ -7,8 +7,8 @@ import numpy as np
 from missions.simulator.effects.facts import BarometerFacts, effect_facts
 from missions.simulator.effects.gnss import AboveStart
 from missions.simulator.scene import FlightScene
-from planning.effects import Assessment
-from planning.frames import Vec3
+from planning.base.effects import Assessment
+from planning.geo.frames import Vec3
 
 COST_PER_STEP_S = 1e-6
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from missions.simulator.airframe import Battery
+from missions.simulator.airframe.state import Battery
 from missions.simulator.effects.facts import BatteryFacts, effect_facts
 from missions.simulator.scene import FlightScene
-from planning.effects import Assessment
-from planning.frames import Vec3
+from planning.base.effects import Assessment
+from planning.geo.frames import Vec3
 
 GRAVITY_M_S2 = 9.80665
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from planning.json_file import read_toml
+from planning.base.json_file import read_toml
 
 FACTS_PATH = Path(__file__).parent / "data" / "effects.toml"
 

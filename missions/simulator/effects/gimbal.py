@@ -8,7 +8,7 @@ import numpy as np
 
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.scene import FlightScene
-from planning.effects import Assessment
+from planning.base.effects import Assessment
 
 COST_PER_STEP_S = 5e-7
 

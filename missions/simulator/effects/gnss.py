@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from missions.simulator.airframe import Fix
+from missions.simulator.airframe.state import Fix
 from missions.simulator.effects.facts import ReceiverFacts, effect_facts
 from missions.simulator.effects.noise import SmoothNoise
 from missions.simulator.scene import FlightScene
-from planning.effects import Assessment
-from planning.frames import Vec3
+from planning.base.effects import Assessment
+from planning.geo.frames import Vec3
 
 COST_PER_STEP_S = 5e-6
 

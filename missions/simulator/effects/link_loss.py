@@ -9,7 +9,7 @@ import numpy as np
 from missions.mavlink.link import Link
 from missions.mavlink.messages import Message, Received
 from missions.simulator.scene import Conditions, FlightScene
-from planning.effects import Assessment, Decision
+from planning.base.effects import Assessment, Decision
 
 FlightClock = Callable[[], float]
 """Seconds since take-off, simulated; minus infinity before."""

@@ -14,15 +14,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from missions.simulator.airframe import Fix
+from missions.simulator.airframe.parts import Receiver
+from missions.simulator.airframe.state import Fix
 from missions.simulator.effects.facts import MultipathFacts, ReceiverFacts, effect_facts
 from missions.simulator.effects.gnss import AboveStart
 from missions.simulator.effects.noise import SmoothNoise
-from missions.simulator.parts import Receiver
 from missions.simulator.scene import FixKind, FlightScene
-from planning.effects import Assessment
-from planning.frames import Vec3
-from planning.site import SiteModel, panel_corners, panel_triangles
+from planning.base.effects import Assessment
+from planning.geo.frames import Vec3
+from planning.site.records import SiteModel, panel_corners, panel_triangles
 
 Floats = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.frames import Vec3
+from planning.geo.frames import Vec3
 
 Floats = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ import math
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.wind import GustResponse
 from missions.simulator.scene import FlightScene
-from planning.effects import Assessment
-from planning.frames import Vec3
+from planning.base.effects import Assessment
+from planning.geo.frames import Vec3
 
 
 def blur_px(

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from missions.simulator.effects.facts import WindFacts, effect_facts
 from missions.simulator.effects.noise import covariance_root
 from missions.simulator.scene import FlightScene
-from planning.effects import Assessment
-from planning.errors import InfeasibleError
-from planning.frames import Vec3
+from planning.base.effects import Assessment
+from planning.base.errors import InfeasibleError
+from planning.geo.frames import Vec3
 
 Floats = NDArray[np.float64]
 
@@ -109,7 +109,7 @@ LONG_STEP_S = 1.0
 
 
 class GustyAir:
-    """The part of the aircraft: see `missions.simulator.parts.Air`.
+    """The part of the aircraft: see `missions.simulator.airframe.parts.Air`.
 
     Parameters
     ----------

@@ -12,17 +12,17 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QLineEdit, QMessageBox
 
 from groundstation.gui.fly.flight_buttons import APART_PX, ICON_PX, PLACES
-from groundstation.services.document import Document, ItemKind, PlanEntry
-from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice
-from groundstation.services.live_events import LinkState, Request, ViewState
+from groundstation.services.fly.events import LinkState, Request, ViewState
+from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind, choice_path, read_choice
+from groundstation.services.project.document import Document, ItemKind, PlanEntry
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import Mend
-from groundstation.vehicle.run_records import Phase
+from groundstation.vehicle.sortie.run_records import Phase
 from missions.mavlink.autopilots import Autopilot
-from planning.findings import Severity
+from planning.base.findings import Severity
 from planning.plan import viewpoint_arrays
-from planning.top_up import TopUpRequest, top_up
+from planning.revision.top_up import TopUpRequest, top_up
 from tests.gui.driving import (
     click_on,
     clicked,
@@ -55,7 +55,7 @@ def radio():
 @pytest.fixture
 def desk(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.desk import Desk
+    from groundstation.gui.window.project_controller import Desk
 
     desk = Desk(application, worker=worker)
     desk.show()
@@ -404,7 +404,7 @@ def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio
     [(Language.ENGLISH, 1.0), slow(Language.ENGLISH, 1.6), slow(Language.GERMAN, 1.0), (Language.GERMAN, 1.6)],
 )
 def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application, desk, scale, language):
-    from groundstation.gui.theme import TOUCH_PX
+    from groundstation.gui.widgets.theme import TOUCH_PX
 
     desk.choose(language=language, text_scale=scale)
     turn_until(application, lambda: desk.window.stage.scene() is not None)
@@ -499,7 +499,7 @@ def test_a_finding_of_the_report_leads_to_its_view(application, desk, page):
 
 def few_items(monkeypatch, limit):
     """An autopilot with room for fewer photos than a small plan has."""
-    monkeypatch.setattr("groundstation.services.live_limit.photos_that_fit", lambda _autopilot: limit)
+    monkeypatch.setattr("groundstation.services.mission.item_limit.photos_that_fit", lambda _autopilot: limit)
 
 
 def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, desk, page, monkeypatch):
@@ -636,8 +636,8 @@ def test_a_return_through_the_building_needs_a_typed_word(application, radio, de
 
 @pytest.mark.slow
 def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_picture(application, desk, page, tmp_path):
-    from planning.scenes import write_scene
-    from planning.site_file import read_site
+    from planning.site.bundled import write_scene
+    from planning.site.file import read_site
 
     connect(application, page)
     take_off(application, page)

@@ -4,10 +4,10 @@ import threading
 
 import pytest
 
-from groundstation.services import signing
-from groundstation.services.document import Document, PlanEntry
-from groundstation.services.live_choice import ConnectionChoice, LinkKind, choice_path, read_choice
-from groundstation.services.live_connection import VehicleAt
+from groundstation.services.fly import signing
+from groundstation.services.fly.connection import VehicleAt
+from groundstation.services.fly.link_choice import ConnectionChoice, LinkKind, choice_path, read_choice
+from groundstation.services.project.document import Document, PlanEntry
 from missions.mavlink.key_store import KeyStore
 from missions.mavlink.link import open_link
 from missions.mavlink.messages import Address, Heartbeat, SetupSigning
@@ -55,7 +55,7 @@ class Autopilot:
 
 @pytest.fixture
 def desk(application, worker):
-    from groundstation.gui.desk import Desk
+    from groundstation.gui.window.project_controller import Desk
 
     desk = Desk(application, worker=worker)
     desk.show()
@@ -219,7 +219,7 @@ def test_a_link_that_is_opened_again_goes_on_with_the_same_time_stamps():
 def test_a_passphrase_must_be_long_enough_and_typed_alike_twice(application):
     from PySide6.QtWidgets import QDialogButtonBox, QLineEdit
 
-    from groundstation.gui.fly.signing_questions import PassphraseDialog
+    from groundstation.gui.fly.signing_controller import PassphraseDialog
 
     dialog = PassphraseDialog()
     ok = dialog.buttons.button(QDialogButtonBox.StandardButton.Ok)

@@ -2,19 +2,19 @@
 
 import pytest
 
-from groundstation.services.document import Document
-from groundstation.services.jobs import JobRunner
-from groundstation.services.live_settings import FlightSettings
-from groundstation.services.session import Session
-from planning.findings import Severity
+from groundstation.services.fly.options import FlightSettings
+from groundstation.services.jobs.runner import JobRunner
+from groundstation.services.project.document import Document
+from groundstation.services.project.session import Session
+from planning.base.findings import Severity
 
 
 @pytest.fixture
 def new_desk(application, tmp_path, monkeypatch):
     """Makes the desk of another start of the program."""
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.fly.fly_desk import FlyDesk
-    from groundstation.gui.workspace import Workspace
+    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.fly.fly_controller import FlyDesk
 
     runner = JobRunner()
     yield lambda: FlyDesk(Workspace(Session(Document()), runner))
@@ -42,7 +42,7 @@ def test_a_setting_that_cannot_be_kept_is_told_and_holds_for_now(new_desk, tmp_p
     [(0.0, "0:00.0"), (59.94, "0:59.9"), (59.96, "1:00.0"), (60.0, "1:00.0"), (3599.99, "60:00.0"), (None, "armed")],
 )
 def test_times_of_notes_never_have_sixty_seconds(application, time_s, words):
-    from groundstation.gui.fly.warnings_view import FlightNotes
+    from groundstation.gui.fly.fly_page import FlightNotes
 
     notes = FlightNotes()
     notes.add(time_s, Severity.NOTE, "armed")

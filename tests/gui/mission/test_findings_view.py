@@ -6,9 +6,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from groundstation.services.readiness import FlightDay
+from groundstation.services.mission.readiness import FlightDay
 from groundstation.services.units import UnitSystem
-from planning.findings import Finding, Severity
+from planning.base.findings import Finding, Severity
 
 FINDINGS = (
     Finding(Severity.OK, "airspace", "viewpoints outside the airspace by: 0 m", "", 0.0, 0.0, "m"),
@@ -107,8 +107,8 @@ def test_click_asks_for_the_place_where_there_is_one(view, qtbot):
 def test_severities_differ_in_shape_not_only_in_colour(application):
     from dataclasses import replace
 
-    from groundstation.gui.mission.severity_icon import severity_icon
-    from groundstation.gui.theme import LIGHT
+    from groundstation.gui.widgets.severity_icon import severity_icon
+    from groundstation.gui.widgets.theme import LIGHT
 
     grey = replace(LIGHT, error="#404040", warning="#404040", note="#404040", ok="#404040")
     pictures = {bytes(severity_icon(s, grey).pixmap(22, 22).toImage().constBits()) for s in Severity}

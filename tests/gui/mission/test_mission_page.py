@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
-from groundstation.services.document import Document, Item, ItemKind, PlanEntry
-from groundstation.services.jobs import JobRunner
-from groundstation.services.session import Session
+from groundstation.services.jobs.runner import JobRunner
+from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
+from groundstation.services.project.session import Session
 from groundstation.services.units import UnitSystem
-from missions.formats import read_missions
-from missions.model import FileFormat
-from planning.findings import Severity
+from missions.formats.registry import read_missions
+from missions.mission.model import FileFormat
+from planning.base.findings import Severity
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from tests.gui.driving import choose, clicked, turn_until
@@ -28,7 +28,7 @@ def planned():
 
 @pytest.fixture
 def workspace(application):
-    from groundstation.gui.workspace import Workspace
+    from groundstation.gui.application.context import Workspace
 
     runner = JobRunner()
     workspace = Workspace(Session(), runner)
@@ -42,7 +42,7 @@ def page(application, workspace):
     from PySide6.QtWidgets import QHBoxLayout, QWidget
 
     from groundstation.gui.mission.mission_page import MissionPage
-    from groundstation.gui.stage import Stage
+    from groundstation.gui.shared_view import Stage
 
     window = QWidget()
     stage = Stage(workspace, window)
@@ -278,11 +278,11 @@ def test_a_folder_that_cannot_be_written_is_told_in_the_dialog(page, workspace, 
 
 
 def test_every_choice_of_the_export_form_comes_back(application):
-    from groundstation.gui.mission.export_form import ExportForm
+    from groundstation.gui.mission.export_dialog import ExportForm
     from missions.dji.write import LinkLoss
-    from missions.encode import ExportOptions
+    from missions.formats.encode import ExportOptions
     from missions.mavlink.autopilots import Autopilot
-    from missions.model import HeightReference
+    from missions.mission.model import HeightReference
 
     form = ExportForm(UnitSystem.METRIC)
     heard = []
@@ -302,7 +302,7 @@ def test_every_choice_of_the_export_form_comes_back(application):
 
 
 def test_import_makes_a_plan_that_undo_takes_away(page, workspace, planned, idle, said, tmp_path):
-    from groundstation.services.mission_files import prepare_export, write_export
+    from groundstation.services.mission.files import prepare_export, write_export
 
     model, plan = planned
     path = tmp_path / "flown.kmz"
@@ -350,7 +350,7 @@ def test_files_that_are_no_missions_are_refused_by_name(page, workspace, planned
 
 
 def test_compare_answers_and_leads_to_the_photos_that_differ(page, workspace, planned, idle, tmp_path):
-    from groundstation.services.mission_files import prepare_export, write_export
+    from groundstation.services.mission.files import prepare_export, write_export
 
     model, plan = planned
     path = tmp_path / "kiosk.plan"
@@ -375,7 +375,7 @@ def test_compare_answers_and_leads_to_the_photos_that_differ(page, workspace, pl
 
 
 def test_all_photos_in_another_order_are_neither_the_plan_nor_strangers(page, workspace, planned, idle, tmp_path):
-    from groundstation.services.mission_files import prepare_export, write_export
+    from groundstation.services.mission.files import prepare_export, write_export
 
     model, plan = planned
     path = tmp_path / "kiosk.plan"
@@ -426,8 +426,8 @@ def _horizontal():
 def test_chart_draws_each_sortie_and_picks_the_nearest_photo(application):
     from PySide6.QtCore import QPointF
 
-    from groundstation.gui.mission.profile_chart import ProfileChart
-    from groundstation.services.profiles import height_limits, plan_profiles
+    from groundstation.gui.charts.profile_chart import ProfileChart
+    from groundstation.services.mission.profiles import height_limits, plan_profiles
 
     plan = example_plan()
     chart = ProfileChart()
@@ -460,7 +460,7 @@ def test_chart_draws_each_sortie_and_picks_the_nearest_photo(application):
 
 
 def test_times_of_sorties_say_that_take_off_and_landing_are_in_them(application):
-    from groundstation.gui.mission.sortie_table import SortieTable
+    from groundstation.gui.mission.mission_lists import SortieTable
 
     table = SortieTable()
     plan = example_plan()

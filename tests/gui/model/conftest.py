@@ -14,7 +14,7 @@ from tests.reconstruction.objects.made_scene import made_scene
 def desk(application, worker, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
-        from groundstation.gui.desk import Desk
+        from groundstation.gui.window.project_controller import Desk
 
         desk = Desk(application, worker=worker)
         desk.window.setGeometry(0, 0, 1280, 720)
@@ -26,7 +26,7 @@ def desk(application, worker, tmp_path_factory):
 @pytest.fixture
 def page(application, desk, monkeypatch):
     """The tab, with nothing open yet."""
-    from groundstation.gui.model import model_desk
+    from groundstation.gui.model import model_controller as model_desk
     from groundstation.gui.model.model_page import ModelPage
 
     monkeypatch.setattr(model_desk, "ModelProcess", lambda _listener: Told())

@@ -3,10 +3,10 @@
 import pytest
 
 from groundstation.gui.model.export_dialog import ExportDialog, format_words
-from groundstation.services.model_export import ENDINGS, ModelExport, ModelFormat, with_ending
-from reconstruction.exports.spz_reading import read_spz
+from groundstation.services.model.export import ENDINGS, ModelExport, ModelFormat, with_ending
+from reconstruction.exports.spz.reading import read_spz
 from tests.gui.driving import choose, clicked, escape, press, shut, turn_until
-from tests.services.test_shown_models import made_model
+from tests.services.reconstruct.test_shown_models import made_model
 
 
 @pytest.fixture(scope="module")

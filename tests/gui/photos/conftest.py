@@ -22,7 +22,7 @@ def folder(tmp_path_factory):
 def desk(application, worker, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
-        from groundstation.gui.desk import Desk
+        from groundstation.gui.window.project_controller import Desk
 
         desk = Desk(application, worker=worker)
         desk.show()

@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
 
-from groundstation.services.document import Document, Item, ItemKind, PlanEntry
-from planning.site_file import site_sha256
+from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
+from planning.site.file import site_sha256
 from tests.gui.driving import turn_until
 from tests.services import project_cases
 

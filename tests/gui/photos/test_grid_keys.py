@@ -9,9 +9,9 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from groundstation.services.photo_edits import set_panel
-from reconstruction.segmentation.cells import facade_grid
-from reconstruction.segmentation.record import InclinedLine
+from groundstation.services.photos.grid_edits import set_panel
+from reconstruction.panels.search.cells import facade_grid
+from reconstruction.panels.search.record import InclinedLine
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.photo_cards import PhotoCard, PhotoMark
-from planning.photo_files.metadata import read_photo
+from groundstation.services.photos.cards import PhotoCard, PhotoMark
+from planning.photos.metadata import read_photo
 from tests.gui.driving import turn_until
 from tests.services.photo_cases import true_photos, write_photos
 
@@ -68,8 +68,8 @@ def test_a_file_that_has_gone_is_told(application, store, photos, tmp_path):
 
 @pytest.mark.slow
 def test_thousands_of_photos_are_shown_at_once_and_few_of_them_decoded(application, store, photos):
+    from groundstation.gui.map.place_map import PlaceMap
     from groundstation.gui.photos.photo_store import MAX_WANTED
-    from groundstation.gui.photos.place_map import PlaceMap
     from groundstation.gui.photos.thumbnail_strip import ThumbnailStrip
 
     posed = true_photos()[0]

@@ -8,16 +8,16 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from groundstation.services.document import Document
-from groundstation.services.photo_cards import PhotoMark
-from groundstation.services.site_edits import HeightReference, set_origin
-from planning.findings import Severity
+from groundstation.services.photos.cards import PhotoMark
+from groundstation.services.project.document import Document
+from groundstation.services.site.edits import HeightReference, set_origin
+from planning.base.findings import Severity
 from tests.gui.driving import choose, click_on, clicked, escape, turn_until
 from tests.services.photo_cases import site_model
 
 
 def middle(grid, row, column):
-    from groundstation.services.photo_grids import cell_middle
+    from groundstation.services.photos.grids import cell_middle
 
     return cell_middle(grid, row, column)
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from groundstation.services.units import UnitSystem
-from planning.findings import Severity
+from planning.base.findings import Severity
 from reconstruction.colmap.pycolmap_run import RefineParameters
 from reconstruction.colmap.refined_folder import write_refined
 from tests.services.photo_cases import write_photos
-from tests.services.test_photo_poses import refinement
+from tests.services.photos.test_poses import refinement
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import gc
 import pytest
 
 from tests.gui.driving import close_desk, turn_until
-from tests.reconstruction.modelling.made_data_set import write_data_set
+from tests.reconstruction.training.made_data_set import write_data_set
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +19,7 @@ def data(tmp_path_factory):
 def desk(application, worker, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
-        from groundstation.gui.desk import Desk
+        from groundstation.gui.window.project_controller import Desk
 
         desk = Desk(application, worker=worker)
         desk.window.setGeometry(0, 0, 1280, 720)
@@ -49,7 +49,7 @@ class Told:
 @pytest.fixture
 def page(application, desk, monkeypatch):
     """The tab, with nothing chosen yet."""
-    from groundstation.gui.reconstruct import reconstruct_desk
+    from groundstation.gui.reconstruct import reconstruct_controller as reconstruct_desk
     from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
 
     monkeypatch.setattr(reconstruct_desk, "ModelProcess", lambda _listener: Told())

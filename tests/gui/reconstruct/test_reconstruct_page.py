@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from groundstation.services.reconstruct_messages import (
+from groundstation.services.reconstruct.messages import (
     AskScene,
     BreakOff,
     Chosen,
@@ -27,9 +27,9 @@ from groundstation.services.reconstruct_messages import (
     Train,
     WatchErrors,
 )
-from planning.effects import Decision
-from planning.errors import InputError
-from planning.findings import Severity
+from planning.base.effects import Decision
+from planning.base.errors import InputError
+from planning.base.findings import Severity
 from tests.gui.driving import choose, clicked, escape, shut, turn_until
 
 TRAINING = Subject("training")

@@ -12,9 +12,9 @@ from PySide6.QtGui import QFocusEvent, QImage, QKeyEvent, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from groundstation.gui.reconstruct.choice_form import ChoiceForm
-from groundstation.gui.reconstruct.led_camera import LedCamera
-from groundstation.gui.reconstruct.lines_plot import Line, LinesPlot
+from groundstation.gui.charts.lines_plot import Line, LinesPlot
+from groundstation.gui.reconstruct.choice_side import ChoiceForm
+from groundstation.gui.reconstruct.guided_camera import LedCamera
 from groundstation.gui.reconstruct.looks import image_of
 from groundstation.gui.reconstruct.model_view import (
     FASTER,
@@ -31,11 +31,11 @@ from groundstation.gui.reconstruct.model_view import (
 )
 from groundstation.gui.reconstruct.names import layer_names
 from groundstation.gui.reconstruct.progress_page import ProgressPage
-from groundstation.gui.reconstruct.small_pictures import SIDE_PX, SmallPictures
-from groundstation.services.reconstruct_choices import TrainChoice
-from groundstation.services.reconstruct_curves import ThinCurve
-from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.modelling.layer_names import LAYERS, PICTURE
+from groundstation.gui.widgets.thumbnails import SIDE_PX, SmallPictures
+from groundstation.services.reconstruct.choices import TrainChoice
+from groundstation.services.reconstruct.curves import ThinCurve
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
+from reconstruction.training.names import LAYERS, PICTURE
 from tests.gui.driving import turn_until
 
 

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from missions.dji.catalogue import dji_catalogue, dji_profile
-from planning.catalogue import profiles
-from planning.errors import MissionError
+from planning.aircraft.catalogue import profiles
+from planning.base.errors import MissionError
 
 
 def test_numbers_are_those_of_djis_documents() -> None:

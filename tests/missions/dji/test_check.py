@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from missions.build import missions_from_plan
 from missions.dji.check import check_dji
 from missions.dji.container import DjiParts, load_parts, parts_of_kmz
 from missions.dji.wpml import parse_wpml
 from missions.dji.write import DjiOptions, kmz_bytes
-from planning.findings import Severity
+from missions.mission.build import missions_from_plan
+from planning.base.findings import Severity
 from tests.missions.plans import example_plan
 
 ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE

@@ -7,15 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from missions.build import missions_from_plan
-from missions.dji.fly import Flight
-from missions.dji.read import read_dji
+from missions.dji.read import Flight, read_dji
 from missions.dji.wpml import Action, ActionGroup, Folder, WpmlWaypoint
 from missions.dji.write import DjiOptions, kmz_bytes
-from missions.legs import distance_m
-from missions.model import Finish, HeightReference, ReadMission, ReadPhoto
-from planning.errors import MissionError
-from planning.findings import Severity
+from missions.mission.build import missions_from_plan
+from missions.mission.legs import distance_m
+from missions.mission.model import Finish, HeightReference, ReadMission, ReadPhoto
+from planning.base.errors import MissionError
+from planning.base.findings import Severity
 from tests.missions.plans import example_plan
 
 

@@ -12,12 +12,11 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given, settings
 
-from missions.build import missions_from_plan
 from missions.dji.write import DjiOptions, LinkLoss, kmz_bytes
-from missions.encode import ExportOptions, encode
-from missions.heights import altitude_amsl_m
-from missions.model import FileFormat, HeightReference, Mission
-from planning.errors import MissionError
+from missions.formats.encode import ExportOptions, encode
+from missions.mission.build import missions_from_plan
+from missions.mission.model import FileFormat, HeightReference, Mission, altitude_amsl_m
+from planning.base.errors import MissionError
 from planning.plan import Constraints, FlightRules, Plan
 from tests.missions.plans import example_plan, make_plan, plans, ring
 from tests.planning.plan_cases import kiosk

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from missions.flight.record import FlightRecord, TakenPhoto, Track
+from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.motion.timing import motion_limits, stopping_times_s
 from planning.plan import Plan, viewpoint_arrays
-from planning.sortie_timing import sortie_flight_path, stopping_duration_s
-from planning.timing import motion_limits, stopping_times_s
 
 SAMPLE_S = 0.2
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from missions.flight.record import FlightRecord
-from planning.geodesy.enu import geodetic_from_enu
-from planning.geodesy.geoid import amsl_from_ellipsoid_m
-from planning.site import Airspace, Facade, Panel, Site
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.geoid import amsl_from_ellipsoid_m
+from planning.site.records import Airspace, Facade, Panel, Site
 from tests.missions.plans import HOME, HONG_KONG
 
 BOOT_S = 12.5

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from planning.geodesy.enu import geodetic_from_enu
-from planning.geodesy.geoid import amsl_from_ellipsoid_m
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.geoid import amsl_from_ellipsoid_m
 from planning.plan import Viewpoint
-from planning.site import Site
-from tests.planning.photo_files.photo_writer import exif_part, gps_tags, jpeg, packet, save
+from planning.site.records import Site
+from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
 
 START = datetime(2024, 5, 1, 10, 0, 0)
 

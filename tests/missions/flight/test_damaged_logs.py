@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from missions.flight.logs.read import read_log
-from planning.errors import InputError
+from planning.base.errors import InputError
 from tests.missions.flight import log_writers as write
 from tests.missions.flight.flights import flown_as_planned
 from tests.missions.flight.test_logs import LOGS, PLAN, SITE, tlog_records, written

@@ -16,11 +16,11 @@ from hypothesis.extra.numpy import arrays
 from missions.flight.flight_file import Flight, flight_to_json, plan_sha256, read_flight, write_flight
 from missions.flight.outcome import FlightReport, Reason, Summary, ViewOutcome
 from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
-from planning.effects import Decision
-from planning.errors import InputError
-from planning.findings import Finding, Severity
-from planning.plan_file import write_plan
-from planning.site import Origin
+from planning.base.effects import Decision
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.geo.frames import Origin
+from planning.plan import write_plan
 from tests.missions.flight.flights import flown_as_planned
 from tests.missions.plans import HONG_KONG, example_plan
 

@@ -14,12 +14,12 @@ import pytest
 from missions.flight.logs.read import _content, _raw_log, read_log
 from missions.flight.matching import match_flight
 from missions.flight.record import FlightRecord
-from planning.errors import InputError
-from planning.findings import Severity
-from planning.frames import wrap_heading_deg
-from planning.geodesy.geoid import ellipsoid_from_amsl_m
-from planning.progress import QUIET
-from planning.site import Origin, Site
+from planning.base.errors import InputError
+from planning.base.findings import Severity
+from planning.base.progress import QUIET
+from planning.geo.frames import Origin, wrap_heading_deg
+from planning.geo.geoid import ellipsoid_from_amsl_m
+from planning.site.records import Site
 from tests.missions.flight import log_writers as write
 from tests.missions.flight.flights import cut_at, flown_as_planned, with_durations
 from tests.missions.plans import example_plan

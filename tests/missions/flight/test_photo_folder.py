@@ -12,16 +12,16 @@ from missions.flight.matching import match_flight
 from missions.flight.outcome import Reason
 from missions.flight.photo_folder import photo_flights, read_photo_flights
 from missions.flight.report import Limits, report_case
+from planning.base.errors import InputError
 from planning.checks.case import Case
-from planning.errors import InputError
-from planning.frames import aim
-from planning.photo_files.folder import read_photos
+from planning.geo.frames import Origin, aim
+from planning.photos.folder import read_photos
 from planning.plan import Constraints, Plan, Viewpoint
-from planning.scenes import ORIGIN
-from planning.site import Origin, SiteModel
+from planning.site.bundled import ORIGIN
+from planning.site.records import SiteModel
 from tests.missions.flight.photo_files import Device, write_photos
 from tests.missions.plans import make_plan
-from tests.planning.photo_files.photo_writer import exif_part, gps_tags, jpeg, save
+from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, save
 from tests.planning.plan_cases import kiosk
 
 PLAIN = Device(has_rtk=False)

@@ -18,12 +18,12 @@ from missions.flight.record import FlightEvent, FlightRecord, TakenPhoto, Track
 from missions.flight.report import Limits, closest, report_case
 from missions.flight.report_rules import ENDED_BADLY, ENDINGS, REASONS
 from missions.flight.report_text import report_text, report_to_json
+from planning.base.findings import Finding, Severity
 from planning.checks.case import Case
-from planning.findings import Finding, Severity
-from planning.frames import aim
+from planning.geo.frames import aim
 from planning.plan import Constraints, Plan, Viewpoint
-from planning.scenes import ORIGIN
-from planning.site import SiteModel
+from planning.site.bundled import ORIGIN
+from planning.site.records import SiteModel
 from tests.missions.flight.flights import cut_at, flown_as_planned, moved, never_taken, with_durations, with_photos
 from tests.missions.plans import make_plan
 from tests.planning.plan_cases import dense_points, distances, kiosk, seen_by_contract, solid_triangles

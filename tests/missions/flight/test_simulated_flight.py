@@ -9,19 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from groundstation.vehicle.conduct import conduct
-from groundstation.vehicle.flight_run import FlightRun, RunOptions
 from groundstation.vehicle.orders import sortie_orders
-from missions.build import missions_from_plan
+from groundstation.vehicle.sortie.conduct import conduct
+from groundstation.vehicle.sortie.flight_run import FlightRun, RunOptions
 from missions.flight.flight_file import flight_of, flight_to_json, read_flight, write_flight
 from missions.flight.logs.read import read_log
 from missions.flight.report import report_flight
 from missions.mavlink.autopilots import Autopilot
+from missions.mission.build import missions_from_plan
 from missions.simulator.build import make_airframe
 from missions.simulator.scene import Conditions
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
-from planning.findings import Severity
+from planning.base.findings import Severity
 from tests.missions.simulator.flying import planned
 from tests.slow import slow
 

@@ -34,8 +34,8 @@ from missions.mavlink.messages import (
     SystemTime,
 )
 from missions.mavlink.wire import Decoder, Encoder
-from missions.simulator.instruments import camera_quaternion
-from planning.frames import wrap_heading_deg
+from missions.simulator.autopilot.instruments import camera_quaternion
+from planning.geo.frames import wrap_heading_deg
 from tests.missions.flight.log_writers import log_site
 
 SITE = log_site()

@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from missions.mavlink.items import MissionItem
-from planning.geodesy.enu import enu_from_geodetic
-from planning.site import Origin
+from planning.geo.enu import enu_from_geodetic
+from planning.geo.frames import Origin
 
 TAKEOFF, WAYPOINT, LAND, DELAY = 22, 16, 21, 93
 YAW, MOUNT, GIMBAL, DIGICAM, CAPTURE, SPEED = 115, 205, 1000, 203, 2000, 178

@@ -11,8 +11,8 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MissionItem
 from missions.mavlink.transfer.exchange import MissionType
 from missions.mavlink.transfer.wire_items import from_wire, to_wire
-from missions.model import GeoPoint
-from planning.errors import MissionError
+from missions.mission.model import GeoPoint
+from planning.base.errors import MissionError
 
 TRIANGLE = ((22.1, 114.1), (22.2, 114.1), (22.2, 114.2))
 DEGREES = st.integers(-899_999_999, 899_999_999).map(lambda whole: whole / 1e7)

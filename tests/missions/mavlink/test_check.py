@@ -6,13 +6,12 @@ import math
 
 import pytest
 
-from missions.build import missions_from_plan
-from missions.heights import point_at_amsl
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.check import check_items
 from missions.mavlink.items import MavlinkFile, MissionItem, mission_items, plain
-from missions.model import HeightReference
-from planning.findings import Severity
+from missions.mission.build import missions_from_plan
+from missions.mission.model import HeightReference, point_at_amsl
+from planning.base.findings import Severity
 from tests.missions.plans import example_plan
 
 ARDUPILOT, PX4 = Autopilot.ARDUPILOT, Autopilot.PX4

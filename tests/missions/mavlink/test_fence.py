@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import math
 
-from missions.build import missions_from_plan
 from missions.mavlink.fence import fence_polygons
-from planning.geodesy.enu import enu_from_geodetic
-from planning.site import NoFlyZone
+from missions.mission.build import missions_from_plan
+from planning.geo.enu import enu_from_geodetic
+from planning.site.records import NoFlyZone
 from tests.missions.plans import HONG_KONG, example_plan
 
 

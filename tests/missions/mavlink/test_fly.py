@@ -7,14 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from missions.heights import point_at_amsl
-from missions.legs import distance_m
 from missions.mavlink.autopilots import Autopilot
-from missions.mavlink.fly import autopilot_by_items
 from missions.mavlink.items import MavlinkFile, MissionItem, plain
-from missions.mavlink.read import read_mavlink
-from missions.model import FileFormat, Finish, GeoPoint, HeightReference, ReadMission, ReadPhoto
-from planning.errors import MissionError
+from missions.mavlink.read import autopilot_by_items, read_mavlink
+from missions.mission.legs import distance_m
+from missions.mission.model import FileFormat, Finish, GeoPoint, HeightReference, ReadMission, ReadPhoto, point_at_amsl
+from planning.base.errors import MissionError
 
 HOME = point_at_amsl(52.0, 5.0, 10.0)
 NORTH_100_M = 52.0 + 100.0 / 111_267.0

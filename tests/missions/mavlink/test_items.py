@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from missions.build import missions_from_plan
-from missions.heights import altitude_amsl_m
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MissionItem, mission_items, plain
-from missions.model import HeightReference, Mission
+from missions.mission.build import missions_from_plan
+from missions.mission.model import HeightReference, Mission, altitude_amsl_m
 from planning.plan import FlightRules, Plan, Viewpoint
 from tests.missions.mavlink.autopilot_twins import ArduPilotTwin, Px4Twin, Shot
 from tests.missions.plans import HONG_KONG, example_plan, make_plan, plans, ring

@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from missions.build import missions_from_plan
-from missions.encode import ExportOptions
-from missions.formats import export
+from missions.formats.encode import ExportOptions
+from missions.formats.registry import export
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem, mission_items
-from missions.model import FileFormat, HeightReference
+from missions.mission.build import missions_from_plan
+from missions.mission.model import FileFormat, HeightReference
 from tests.missions.plans import example_plan
 
 SCALE = 1e7

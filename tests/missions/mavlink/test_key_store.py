@@ -9,7 +9,7 @@ import pytest
 
 from missions.mavlink.key_store import KeyStore
 from missions.mavlink.signing import RESERVE, key_from_passphrase, timestamp_of
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 KEY = key_from_passphrase("blue sky")
 NOW_S = 1_800_000_000.0

@@ -10,15 +10,13 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from missions.mavlink.channels import PEER_KEPT_S, UdpChannel
 from missions.mavlink.drive import GROUND_HEARTBEAT, drive
-from missions.mavlink.link import VEHICLE, ChannelLink, Link, memory_pair, open_link
+from missions.mavlink.link import PEER_KEPT_S, VEHICLE, ChannelLink, Link, UdpChannel, memory_pair, open_link
 from missions.mavlink.messages import Address, Heartbeat, Message, MissionAck, Received, Statustext
 from missions.mavlink.signing import Signer
-from missions.mavlink.transfer.clear import Clear
 from missions.mavlink.transfer.exchange import Ending, Route
-from missions.mavlink.transfer.verified import Verified, VerifiedUpload
-from planning.errors import InputError, LinkError, LinkTimeout, OperationCancelled
+from missions.mavlink.transfer.verified import Clear, Verified, VerifiedUpload
+from planning.base.errors import InputError, LinkError, LinkTimeout, OperationCancelled
 from tests.missions.mavlink.transfer.twins import ARDUPILOT, OWN, TwinVehicle, waypoints
 
 WAIT_S = 60.0

@@ -14,7 +14,6 @@ from typing import Any
 
 import pytest
 
-from missions.build import missions_from_plan
 from missions.mavlink.areas import FenceCircle, FencePolygon, fence_items, rally_items
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.drive import GROUND_HEARTBEAT, drive
@@ -24,9 +23,10 @@ from missions.mavlink.plan_json import plan_json_bytes
 from missions.mavlink.transfer.download import Download
 from missions.mavlink.transfer.exchange import Ending, MissionType, Route
 from missions.mavlink.transfer.rounding import compare
-from missions.mavlink.transfer.upload import Upload
+from missions.mavlink.transfer.verified import Upload
 from missions.mavlink.transfer.wire_items import to_wire
-from missions.model import GeoPoint, HeightReference
+from missions.mission.build import missions_from_plan
+from missions.mission.model import GeoPoint, HeightReference
 from missions.simulator.server import serve
 from missions.simulator.vehicle import SimulatedVehicle
 from tests.missions.mavlink.transfer.test_simulated_vehicle import planned

@@ -5,7 +5,7 @@ from pymavlink import mavutil
 
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.mode_numbers import mode_numbers, px4_custom_mode, px4_main_and_sub
-from missions.simulator.profiles import vehicle_profile
+from missions.simulator.autopilot.profiles import vehicle_profile
 
 
 def test_arducopters_numbers_are_those_of_pymavlink():

@@ -8,17 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from missions.encode import ExportOptions, encode
-from missions.formats import read_missions
-from missions.heights import altitude_amsl_m
+from missions.formats.encode import ExportOptions, encode
+from missions.formats.registry import read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.plan_json import read_plan_json
-from missions.model import FileFormat, GeoPoint
-from planning.errors import InputError, MissionError
-from planning.geodesy.enu import enu_from_geodetic
+from missions.mission.model import FileFormat, GeoPoint, altitude_amsl_m
+from planning.base.errors import InputError, MissionError
+from planning.geo.enu import enu_from_geodetic
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.site import RallyPoint
+from planning.site.records import RallyPoint
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
 

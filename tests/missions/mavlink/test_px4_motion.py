@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from missions.mavlink.px4_motion import px4_leg_s, px4_turn_s, straight_s
-from planning.timing import MotionLimits
+from planning.motion.timing import MotionLimits
 
 PX4 = MotionLimits(5.0, 3.0, 1.5, 3.0, math.radians(45.0), 1.0, 4.0)
 

@@ -20,7 +20,7 @@ from missions.mavlink.signing import (
     timestamp_of,
 )
 from missions.mavlink.wire import Decoder, Encoder
-from planning.errors import InputError
+from planning.base.errors import InputError
 
 KEY, OTHER = key_from_passphrase("blue sky"), key_from_passphrase("grey sky")
 GROUND, VEHICLE = Address(255, 190), Address(1, 1)

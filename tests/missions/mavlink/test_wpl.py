@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from missions.build import missions_from_plan
-from missions.encode import ExportOptions, encode
-from missions.formats import read_missions
+from missions.formats.encode import ExportOptions, encode
+from missions.formats.registry import read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.wpl import read_wpl
-from missions.model import FileFormat
-from planning.errors import MissionError
+from missions.mission.build import missions_from_plan
+from missions.mission.model import FileFormat
+from planning.base.errors import MissionError
 from tests.missions.plans import example_plan
 
 HOME = "0\t1\t0\t16\t0\t0\t0\t0\t52.0\t5.0\t10.0\t1"

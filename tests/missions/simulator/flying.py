@@ -9,15 +9,15 @@ from functools import cache
 
 import numpy as np
 
-from missions.simulator.airframe import Pose, Target
-from missions.simulator.multirotor import Multirotor
-from planning.catalogue import profile
+from missions.simulator.airframe.multirotor import Multirotor
+from missions.simulator.airframe.state import Pose, Target
+from planning.aircraft.catalogue import profile
+from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
 from planning.plan import Constraints, Coverage, FlightRules, Plan, Sortie, Viewpoint
 from planning.planner import plan_flight
 from planning.request import GreedyParameters, PlanRequest
-from planning.scenes import SCENES
-from planning.site import SiteModel
-from planning.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.site.bundled import SCENES
+from planning.site.records import SiteModel
 
 GLASS_M = 11.0
 

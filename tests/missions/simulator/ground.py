@@ -21,13 +21,12 @@ from missions.mavlink.messages import (
     Received,
     Statustext,
 )
-from missions.simulator.airframe import Battery, Fix, Pose, Target
+from missions.simulator.airframe.state import Battery, Fix, Pose, Target
+from missions.simulator.autopilot.stored_item import WITH_POSITION
 from missions.simulator.server import DirectLink
-from missions.simulator.stored_item import WITH_POSITION
 from missions.simulator.vehicle import SimulatedVehicle
-from planning.frames import Vec3
-from planning.geodesy.enu import geodetic_from_enu
-from planning.site import Origin
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin, Vec3
 
 ORIGIN = Origin(22.3372, 114.2636, 62.0)
 HOME: Vec3 = (0.0, 0.0, 0.0)

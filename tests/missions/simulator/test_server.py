@@ -27,8 +27,8 @@ from missions.mavlink.messages import (
 from missions.mavlink.wire import Decoder
 from missions.simulator.server import DEAF_S, MAX_FLOWN_S, DirectLink, serve
 from missions.simulator.vehicle import SimulatedVehicle
-from planning.errors import LinkError
-from planning.progress import StopRequest
+from planning.base.errors import LinkError
+from planning.base.progress import StopRequest
 from tests.missions.simulator.ground import ARDUPILOT, ORIGIN, PX4, PointMass, item
 
 

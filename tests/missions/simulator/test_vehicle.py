@@ -11,7 +11,6 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from missions.build import missions_from_plan
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import mission_items
 from missions.mavlink.messages import (
@@ -40,16 +39,17 @@ from missions.mavlink.messages import (
     Timesync,
 )
 from missions.mavlink.wire import Encoder
-from missions.model import HeightReference, Mission
+from missions.mission.build import missions_from_plan
+from missions.mission.model import HeightReference, Mission
+from missions.simulator.autopilot.instruments import camera_quaternion
+from missions.simulator.autopilot.stored_item import Refused, stored
 from missions.simulator.build import make_airframe
-from missions.simulator.instruments import camera_quaternion
-from missions.simulator.stored_item import Refused, stored
 from missions.simulator.vehicle import CONTROL_STEP_S, SimulatedVehicle
-from planning.frames import camera_axes
+from planning.geo.frames import camera_axes
 from planning.plan import Plan
 from planning.planner import plan_flight
 from planning.request import GreedyParameters, PlanRequest
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
 from tests.missions.plans import example_plan, plans
 from tests.missions.simulator.flying import bundled
 from tests.missions.simulator.ground import ARDUPILOT, ORIGIN, PX4, Ground, PointMass, at, item, planned

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import functools
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
 from planning.insight.reasons import SectionReasons, section_reasons
 from planning.plan import Constraints, Plan
 from planning.planner import plan_flight
-from planning.prepare import Prepared, prepare
 from planning.request import GreedyParameters, PlanRequest
-from planning.scenes import SCENES
-from planning.site import SiteModel
+from planning.site.bundled import SCENES
+from planning.site.records import SiteModel
+from planning.viewpoints.prepare import Prepared, prepare
 from tests.planning.plan_cases import kiosk
 
 CAMERA = profile("m3e").camera

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from planning.insight.clearance import MAX_SAMPLES, route_clearance
 from planning.insight.things import things_of
 from planning.plan import Sortie
-from planning.space import unchecked_space
+from planning.site.free_space import unchecked_space
 from tests.planning.insight.cases import plan, scene
 from tests.planning.plan_cases import dense_points, distances, kiosk, solid_triangles
 

@@ -6,12 +6,12 @@ from functools import partial
 import numpy as np
 import pytest
 
+from planning.base.findings import Severity
 from planning.checks import check_plan
 from planning.coverage.model import exact_coverage
-from planning.findings import Severity
+from planning.coverage.reach_kernel import UNREACHABLE
 from planning.insight.comparison import Better, Row, compare_plans
 from planning.plan import Constraints, viewpoint_arrays
-from planning.reach_kernel import UNREACHABLE
 from tests.planning.insight.cases import NEAR, plan, prepared, scene
 
 model, site, planned = partial(scene, "kiosk"), partial(prepared, "kiosk"), partial(plan, "kiosk")

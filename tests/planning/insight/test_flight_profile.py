@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InfeasibleError
+from planning.base.errors import InfeasibleError
 from planning.insight.flight_profile import LOW_M, keep_extremes, low_flight, lowest_flight, sortie_profile
 from planning.plan import FlightRules, Sortie
 from tests.planning.insight.cases import plan

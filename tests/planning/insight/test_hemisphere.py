@@ -5,8 +5,8 @@ import pytest
 
 from planning.coverage.sections import SectionGrid, panel_frames, sections_of
 from planning.insight.hemisphere import in_enu, section_shapes
-from planning.scenes import SCENES
-from planning.site import panel_corners
+from planning.site.bundled import SCENES
+from planning.site.records import panel_corners
 
 STEPS_DEG = [30.0, 15.0, 5.0, 90.0]
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.insight.ramps import rest_to_rest_ramps
-from planning.timing import rest_to_rest_s
+from planning.insight.flight_profile import rest_to_rest_ramps
+from planning.motion.timing import rest_to_rest_s
 
 lengths = st.floats(1e-3, 5000.0)
 limits = st.tuples(st.floats(0.3, 20.0), st.floats(0.3, 8.0), st.sampled_from([math.inf, 0.2, 1.0, 4.0, 50.0]))

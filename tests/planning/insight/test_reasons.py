@@ -7,20 +7,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from planning.base.errors import OperationCancelled
+from planning.coverage.positions import hemisphere_direction
+from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
+from planning.coverage.reachability import elevation_range_rad, find_reachable
 from planning.coverage.sections import sections_of
-from planning.errors import OperationCancelled
 from planning.insight.reasons import BrokenRule, Rule, section_reasons
 from planning.insight.things import Thing
 from planning.plan import Constraints
-from planning.positions import hemisphere_direction
-from planning.prepare import coverage_model, prepare
-from planning.reach_kernel import REACHABLE, UNREACHABLE
-from planning.reachability import elevation_range_rad, find_reachable
-from planning.scenes import SCENES
-from planning.site import Airspace, NoFlyZone, Obstacle, box_geometry
-from planning.site_import.importer import import_site
-from planning.site_import.options import ImportOptions
-from planning.space import SAFETY_MARGIN_M
+from planning.site.bundled import SCENES
+from planning.site.free_space import SAFETY_MARGIN_M
+from planning.site.importing.importer import import_site
+from planning.site.importing.options import ImportOptions
+from planning.site.records import Airspace, NoFlyZone, Obstacle, box_geometry
+from planning.viewpoints.prepare import coverage_model, prepare
 from tests.planning.insight.cases import CAMERA, NEAR, prepared, reasons, scene
 from tests.planning.plan_cases import distances, inside_zone, lines_free, solid_triangles
 from tests.slow import slow

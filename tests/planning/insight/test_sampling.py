@@ -7,8 +7,8 @@ import pytest
 
 from planning.coverage.sections import NOT_SEEN, panel_frames
 from planning.insight.sampling import panel_sampling
-from planning.scenes import SCENES
-from planning.site import panel_corners
+from planning.site.bundled import SCENES
+from planning.site.records import panel_corners
 from tests.planning.insight.cases import CAMERA
 
 FRAMES = panel_frames(panel_corners(SCENES["office"]().site))

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from planning.coverage.model import exact_coverage
+from planning.coverage.reach_kernel import UNREACHABLE
 from planning.insight.reasons import section_reasons
 from planning.insight.sections import SectionState, plan_insight
 from planning.plan import Constraints, Viewpoint, viewpoint_arrays
-from planning.prepare import prepare
-from planning.reach_kernel import UNREACHABLE
-from planning.scenes import SCENES
+from planning.site.bundled import SCENES
+from planning.viewpoints.prepare import prepare
 from tests.planning.insight.cases import CAMERA, NEAR, plan, prepared, reasons, scene
 from tests.planning.plan_cases import seen_by_contract
 

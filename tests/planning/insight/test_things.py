@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from planning.insight.things import Thing, first_things_hit, nearest_things, nearest_triangles, things_of
-from planning.space import unchecked_space
+from planning.site.free_space import unchecked_space
 from tests.planning.insight.cases import scene
 from tests.planning.plan_cases import distances, kiosk, lines_free
 

@@ -14,7 +14,7 @@ from planning.insight.clearance import route_clearance
 from planning.insight.reasons import section_reasons
 from planning.insight.things import things_of
 from planning.insight.warm_up import compile_kernels
-from planning.space import unchecked_space
+from planning.site.free_space import unchecked_space
 from tests.planning.insight.cases import plan, prepared, scene
 
 kernels = [reason_kernel.explain_sections, clearance._nearest_parts, things._nearest_triangles, things._first_hits]

@@ -10,19 +10,19 @@ from typing import NamedTuple
 import numpy as np
 from hypothesis import strategies as st
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
 from planning.checks import check_plan
-from planning.errors import InputError
-from planning.evaluate import coverage, coverage_counts
-from planning.findings import Finding, Severity
-from planning.frames import Vec3
+from planning.coverage.evaluate import coverage, coverage_counts
+from planning.geo.frames import Vec3
 from planning.plan import Constraints, FlightRules
 from planning.planner import plan_flight
-from planning.prepare import Prepared, prepare
 from planning.request import GreedyParameters, PlanRequest
 from planning.revision import Revision, add, delete, lock, move, revise
-from planning.scenes import SCENES
-from planning.site import SiteModel
+from planning.site.bundled import SCENES
+from planning.site.records import SiteModel
+from planning.viewpoints.prepare import Prepared, prepare
 from tests.planning.plan_cases import kiosk
 
 QUICK = GreedyParameters(n_candidates=400, improve=False, certify=False)

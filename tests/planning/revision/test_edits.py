@@ -10,20 +10,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from planning.base.errors import InputError
+from planning.base.findings import Severity
+from planning.coverage.evaluate import coverage
 from planning.coverage.sections import in_picture
-from planning.errors import InputError
-from planning.evaluate import coverage
-from planning.findings import Severity
-from planning.plan import FlightRules, Plan, Sortie, Viewpoint, viewpoint_arrays
-from planning.plan_file import plan_to_json
-from planning.prepare import prepare
+from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
+from planning.plan import FlightRules, Plan, Sortie, Viewpoint, plan_to_json, viewpoint_arrays
 from planning.revision import Revision, add, aim_at, delete, lock, move, next_id, revise, unlock
 from planning.revision.route import redrawn
 from planning.routing.roadmap import build_roadmap
-from planning.sortie_timing import sortie_flight_path, stopping_duration_s
-from planning.space import free_space
+from planning.site.free_space import free_space
+from planning.viewpoints.prepare import prepare
 from tests.planning.revision.cases import NEAR, assert_is_as_from_scratch, errors, planned
-from tests.planning.test_legs import room
+from tests.planning.routing.test_legs import room
 
 HOME = (0.0, -30.0, 0.0)
 

@@ -9,16 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
 from planning.plan import FlightRules
 from planning.revision.ways import HOME, Ways
 from planning.routing.legs import build_leg_table
 from planning.routing.roadmap import build_roadmap, leg_length
-from planning.scenes import SCENES
-from planning.space import free_space
+from planning.site.bundled import SCENES
+from planning.site.free_space import free_space
 from tests.planning.plan_cases import dense_points, distances, inside_zone, kiosk, solid_triangles
 from tests.planning.revision.cases import prepared
-from tests.planning.test_legs import DISTANCE_M, allowed_stops, room
+from tests.planning.routing.test_legs import DISTANCE_M, allowed_stops, room
 
 M3E = profile("m3e").aircraft
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.colmap.camera_models import camera_of
 from reconstruction.colmap.record import ColmapImage, ColmapModel, ColmapPoints, quaternion_of
 

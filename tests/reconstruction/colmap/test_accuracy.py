@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reconstruction.cameras import Intrinsics
+from reconstruction.base.cameras import Intrinsics
 from reconstruction.colmap.accuracy import LEAST_SIGMA_PX, pose_covariances
 from reconstruction.colmap.camera_models import camera_of
 from tests.reconstruction.colmap.models import LENS, covariance, model, photos, turned

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError
-from reconstruction.cameras import Intrinsics
+from planning.base.errors import InputError
+from reconstruction.base.cameras import Intrinsics
 from reconstruction.colmap.camera_models import RATIONAL_TOLERANCE_PX, camera_of, intrinsics_of
 from reconstruction.colmap.record import ColmapCamera
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.colmap.binary import COUNT
 from reconstruction.colmap.camera_models import N_PARAMETERS
 from reconstruction.colmap.folder import read_model, write_model

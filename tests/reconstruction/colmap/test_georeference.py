@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from planning.errors import InputError
-from reconstruction.cameras import Pose
+from planning.base.errors import InputError
+from reconstruction.base.cameras import Pose
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import angle_between_deg, georeference, in_enu, model_of, posed_photos
 from reconstruction.colmap.record import rotation_of

@@ -10,9 +10,9 @@ import cv2
 import numpy as np
 import pytest
 
-from planning.errors import InputError, OperationCancelled
-from planning.progress import QUIET
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from planning.base.errors import InputError, OperationCancelled
+from planning.base.progress import QUIET
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap import block_inverse
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import angle_between_deg, georeference, posed_photos

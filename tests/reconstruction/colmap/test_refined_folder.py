@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning.errors import InputError
-from planning.findings import Finding, Severity
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import georeference
 from reconstruction.colmap.pycolmap_run import RefineParameters

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning.findings import Severity
-from reconstruction.cameras import Pose, cam_from_enu
+from planning.base.findings import Severity
+from reconstruction.base.cameras import Pose, cam_from_enu
 from reconstruction.colmap.verdict import judge_poses
 from tests.reconstruction.colmap.models import covariance, photos, turned
 

@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from planning.mesh import TriangleMesh, box_mesh, empty_mesh
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.panel_images import draw_panels, facing, without_hidden
-from reconstruction.ray_casting import RayCaster
-from tests.reconstruction.rectify.scenes import BENT, looking_at
-from tests.reconstruction.rectify.test_surface import surface
+from tests.reconstruction.panels.rectify.scenes import BENT, looking_at
+from tests.reconstruction.panels.rectify.test_surface import surface
 
 Array = NDArray[np.float64]
 TINY = Intrinsics(160, 120, 114.0, 114.0, 80.0, 60.0)

@@ -12,12 +12,14 @@ import open3d as o3d
 import pytest
 from numpy.typing import NDArray
 
-from planning.effects import decide
-from planning.errors import InputError, OperationCancelled
-from planning.mesh import TriangleMesh, box_mesh, join
-from planning.progress import Monitor
-from planning.site import Airspace, Facade, Obstacle, Origin, Panel, Site, SiteModel
-from reconstruction.cameras import Intrinsics, PosedPhoto
+from planning.base.effects import decide
+from planning.base.errors import InputError, OperationCancelled
+from planning.base.progress import Monitor
+from planning.geo.frames import Origin
+from planning.geo.mesh import TriangleMesh, box_mesh, join
+from planning.site.records import Airspace, Facade, Obstacle, Panel, Site, SiteModel
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
 from reconstruction.colmap.camera_models import intrinsics_of
 from reconstruction.colmap.folder import read_model
 from reconstruction.dataset.effects import HiddenPanels, LensDistortion, PanelsInPhotos, most_moved_px
@@ -33,10 +35,9 @@ from reconstruction.dataset.layers import (
 from reconstruction.dataset.panel_images import draw_panels
 from reconstruction.dataset.prepare import PrepareParameters, prepare
 from reconstruction.dataset.refined_mesh import refine_mesh
-from reconstruction.ray_casting import RayCaster
 from tests.reconstruction.dataset.test_panel_images import grid
-from tests.reconstruction.rectify.scenes import looking_at, surface_mesh
-from tests.reconstruction.rectify.test_surface import surface
+from tests.reconstruction.panels.rectify.scenes import looking_at, surface_mesh
+from tests.reconstruction.panels.rectify.test_surface import surface
 
 Array = NDArray[np.float64]
 FACE = surface(0.0, lean_rad=0.0)

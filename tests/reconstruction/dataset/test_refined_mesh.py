@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from planning.mesh import TriangleMesh, empty_mesh
+from planning.geo.mesh import TriangleMesh, empty_mesh
+from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.refined_mesh import RefineParameters, drawn_in, refine_mesh
-from reconstruction.ray_casting import RayCaster
-from tests.reconstruction.rectify.scenes import surface_mesh
-from tests.reconstruction.rectify.test_surface import surface
+from tests.reconstruction.panels.rectify.scenes import surface_mesh
+from tests.reconstruction.panels.rectify.test_surface import surface
 
 Array = NDArray[np.float64]
 FACE = surface(0.0, lean_rad=0.0)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from planning.errors import OperationCancelled
+from planning.base.errors import OperationCancelled
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.gaussian_blocks import morton_order
 from reconstruction.exports.turned_axes import turned

@@ -8,15 +8,15 @@ import pytest
 import torch
 
 from reconstruction.exports.baked import LEAST_COSINE, N_DIRECTIONS, baked, needs_baking, outward_directions
-from reconstruction.modelling.config import TrainConfig
-from reconstruction.modelling.photo_stream import PhotoStream
-from reconstruction.modelling.train import train_model
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.shading import display_from_linear, schlick
 from reconstruction.objects.organise import organised, put_together
-from reconstruction.reflections.config import ReflectionConfig
-from reconstruction.reflections.photo_set import read_photo_set
-from reconstruction.reflections.shading import display_from_linear, schlick
-from reconstruction.splatting.harmonic_colour import display_colours, light_of_display
-from tests.reconstruction.modelling.made_data_set import write_data_set
+from reconstruction.splats.harmonic_colour import display_colours, light_of_display
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.photos.photo_stream import PhotoStream
+from reconstruction.training.train import train_model
+from tests.reconstruction.training.made_data_set import write_data_set
 
 LIGHT = ReflectionConfig(environment_rows=8, steps=30, batch=512)
 CONFIG = TrainConfig(

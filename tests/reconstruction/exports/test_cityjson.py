@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning.errors import InputError, OperationCancelled
-from planning.geodesy.enu import enu_from_geodetic, geodetic_from_enu
-from planning.geodesy.geoid import undulation_m
-from planning.site import Origin
-from planning.site_import.importer import import_site
-from planning.site_import.options import ImportOptions
+from planning.base.errors import InputError, OperationCancelled
+from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
+from planning.geo.frames import Origin
+from planning.geo.geoid import undulation_m
+from planning.site.importing.importer import import_site
+from planning.site.importing.options import ImportOptions
 from reconstruction.exports.cityjson import STEP_M, write_cityjson
 from reconstruction.objects.gs_scene import GsElement
 from reconstruction.records.global_ids import global_id_of

@@ -8,14 +8,13 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reconstruction.exports.coarser_parts import coarser_part
 from reconstruction.exports.ellipsoids import ellipsoids_of
-from reconstruction.exports.tiles3d_tree import branches_of, part_of_branch
-from reconstruction.splatting.detail_tree import FEWEST
-from reconstruction.splatting.raster import RasterSettings
-from reconstruction.splatting.splats import Splats
+from reconstruction.exports.tiles3d import branches_of, coarser_part, part_of_branch
+from reconstruction.splats.detail_tree import FEWEST
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.splats.splats import Splats
 from tests.reconstruction.objects.made_scene import made_scene, pane
-from tests.reconstruction.splatting.test_merged_splats import drawn, from_south
+from tests.reconstruction.splats.test_merged_splats import drawn, from_south
 
 
 def halves_of(component, at_most):

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from reconstruction.exports.tiles3d import DEFAULT, TilesOptions, write_tiles
-from reconstruction.splatting.harmonic_colour import display_colours
+from reconstruction.splats.harmonic_colour import display_colours
 from tests import foreign
 from tests.reconstruction.exports.web_browser import chromium
 from tests.reconstruction.objects.made_scene import made_scene

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from reconstruction.exports.gaussian_blocks import is_antialiased, raster_of
-from reconstruction.splatting.raster import RasterSettings
+from reconstruction.splats.rasterising.raster_types import RasterSettings
 from tests.reconstruction.exports.hard_scenes import antialiased
 from tests.reconstruction.objects.made_scene import made_scene
 

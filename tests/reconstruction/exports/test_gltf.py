@@ -9,7 +9,7 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError, OperationCancelled
+from planning.base.errors import InputError, OperationCancelled
 from reconstruction.exports.component_parts import AT_ONCE, part_of
 from reconstruction.exports.compression import PRESETS
 from reconstruction.exports.ellipsoids import ellipsoids_of
@@ -17,7 +17,7 @@ from reconstruction.exports.glb import GlbBuffer, write_glb
 from reconstruction.exports.gltf import GltfOptions, write_gltf
 from reconstruction.exports.gltf_meshes import SPZ
 from reconstruction.exports.gltf_tables import identifier, one_after_the_other
-from reconstruction.exports.spz_reading import read_spz
+from reconstruction.exports.spz.reading import read_spz
 from reconstruction.objects.gs_scene import GsGaussian
 from tests.reconstruction.exports.glb_reader import FEATURES, SPLATTING, Glb
 from tests.reconstruction.objects.made_scene import gaussians, made_scene

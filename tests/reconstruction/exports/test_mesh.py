@@ -9,14 +9,12 @@ import pytest
 import torch
 import trimesh
 
-from planning.errors import InputError, OperationCancelled
-from reconstruction.exports.mesh import MeshOptions, write_mesh
-from reconstruction.exports.mesh_atlas import pack
-from reconstruction.exports.mesh_views import AWAY, EDGE_PX, panel_view
-from reconstruction.modelling.model import SceneModel
-from reconstruction.reflections.photo_set import PanelPlanes
-from reconstruction.splatting.sky import Sky
-from reconstruction.splatting.splats import Splats
+from planning.base.errors import InputError, OperationCancelled
+from reconstruction.exports.mesh import AWAY, EDGE_PX, MeshOptions, pack, panel_view, write_mesh
+from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.splats.sky import Sky
+from reconstruction.splats.splats import Splats
+from reconstruction.training.model.joint_model import SceneModel
 from tests.reconstruction.exports.hard_scenes import Interrupted
 from tests.reconstruction.objects.made_scene import made_scene
 

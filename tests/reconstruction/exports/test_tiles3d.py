@@ -9,13 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pyproj import Transformer
 
-from planning.errors import InputError, OperationCancelled
-from planning.geodesy.enu import geodetic_from_enu
+from planning.base.errors import InputError, OperationCancelled
+from planning.geo.enu import geodetic_from_enu
 from reconstruction.exports.component_parts import extents_m
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of
 from reconstruction.exports.gltf_meshes import SPZ
-from reconstruction.exports.tiles3d import CONTENT, TilesOptions, write_tiles
-from reconstruction.exports.tiles3d_tree import branches_of, part_of_branch
+from reconstruction.exports.tiles3d import CONTENT, TilesOptions, branches_of, part_of_branch, write_tiles
 from tests.reconstruction.exports.glb_reader import SPLATTING, Glb
 from tests.reconstruction.exports.test_gltf import HOSTILE, Cancelling, component_with, rotation_of
 from tests.reconstruction.objects.made_scene import made_scene

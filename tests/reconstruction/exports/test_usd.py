@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning.errors import InputError, OperationCancelled
+from planning.base.errors import InputError, OperationCancelled
 from reconstruction.exports.ellipsoids import ellipsoids_of
 from reconstruction.exports.usd import UsdOptions, write_usd
 from tests.reconstruction.exports.test_gltf import HOSTILE, Cancelling, component_with

@@ -3,12 +3,12 @@
 import pytest
 import torch
 
-from reconstruction.modelling.config import TrainConfig
-from reconstruction.modelling.train import train_model
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.objects.organise import organised
-from reconstruction.reflections.config import ReflectionConfig
-from reconstruction.reflections.reflection_mlp import MlpShape
-from tests.reconstruction.modelling.made_data_set import write_data_set
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.train import train_model
+from tests.reconstruction.training.made_data_set import write_data_set
 
 TINY = ReflectionConfig(MlpShape(width=16, layers=4, position_order=3, direction_order=2), steps=6, batch=256)
 CONFIG = TrainConfig(iterations=3, n_splats=150, max_splats=200, reflections=TINY, score_every_s=1e9, light="mlp")

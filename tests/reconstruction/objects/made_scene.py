@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from planning.site import Origin
+from planning.geo.frames import Origin
 from reconstruction.objects.gs_scene import GsAuxiliary, GsComponent, GsElement, GsGaussian, GsScene
 from reconstruction.records.global_ids import global_id_of
 

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 import torch
 
-from planning.errors import InputError
-from planning.site import Airspace, Facade, Origin, Panel, Site
-from reconstruction.modelling.config import config_of
-from reconstruction.modelling.saved import description_of, tensors_of
-from reconstruction.modelling.train import train_model
+from planning.base.errors import InputError
+from planning.geo.frames import Origin
+from planning.site.records import Airspace, Facade, Panel, Site
 from reconstruction.objects.organise import PanelGlobalIds, organised, put_together
 from reconstruction.objects.store import read_scene, write_scene
 from reconstruction.records.global_ids import is_global_id
 from reconstruction.records.objects import site_objects
+from reconstruction.training.config import config_of
+from reconstruction.training.model.saved import description_of, tensors_of
+from reconstruction.training.train import train_model
 from tests.reconstruction.objects.conftest import CONFIG
 
 HERE = Path("here")

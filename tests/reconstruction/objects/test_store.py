@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from safetensors.numpy import load_file, save_file
 
-from planning.errors import InputError, OperationCancelled
+from planning.base.errors import InputError, OperationCancelled
 from reconstruction.objects.store import DESCRIPTION, StoredScene, read_scene, write_scene
 from tests.reconstruction.objects.made_scene import made_scene
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from planning.photo_files.metadata import read_photo
-from planning.photo_files.record import PhotoMetadata
+from planning.photos.metadata import read_photo
+from planning.photos.record import PhotoMetadata
 
 
 def facade(seed: int, size: tuple[int, int] = (480, 640), contrast: float = 90.0) -> np.ndarray:

@@ -8,21 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
+from planning.coverage.evaluate import coverage_counts
 from planning.coverage.model import CoverageModel, exact_sections
 from planning.coverage.sections import NOT_SEEN, SectionGrid, panel_frames
-from planning.evaluate import coverage_counts
-from planning.mesh import box_mesh, empty_mesh
-from planning.occlusion import line_of_sight
+from planning.geo.line_of_sight import line_of_sight
+from planning.geo.mesh import box_mesh, empty_mesh
 from planning.plan import Viewpoint, viewpoint_arrays
-from planning.site import panel_corners
-from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.photos.coverage import (
-    achieved_coverage,
-    distances_m,
-    distances_to_building_m,
-    photo_sections,
-)
+from planning.site.records import panel_corners
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
+from reconstruction.photos.coverage import achieved_coverage, distances_m, distances_to_building_m, photo_sections
 from tests.planning.plan_cases import kiosk, solid_triangles
 
 CAMERA = profile("m3e").camera

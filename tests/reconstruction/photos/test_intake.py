@@ -5,19 +5,19 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from planning.catalogue import profile
+from planning.aircraft.catalogue import profile
+from planning.coverage.evaluate import coverage_counts
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import SectionGrid, panel_frames
-from planning.evaluate import coverage_counts
-from planning.geodesy.enu import geodetic_from_enu
-from planning.photo_files.folder import read_photos
+from planning.geo.enu import geodetic_from_enu
+from planning.photos.folder import read_photos
 from planning.plan import Viewpoint
-from planning.site import panel_corners
+from planning.site.records import panel_corners
 from reconstruction.photos.coverage import achieved_coverage, distances_m
 from reconstruction.photos.lens import LensSource
 from reconstruction.photos.poses import pose_photos
 from reconstruction.photos.quality import check_quality
-from tests.planning.photo_files.photo_writer import exif_part, gps_tags, jpeg, packet, save
+from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
 from tests.planning.plan_cases import kiosk
 from tests.reconstruction.photos.pictures import facade, moved
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from planning.photo_files.folder import read_photos
-from planning.photo_files.record import Dewarp, PhotoMetadata
+from planning.photos.folder import read_photos
+from planning.photos.record import Dewarp, PhotoMetadata
 from reconstruction.photos.lens import CameraKind, LensSource, camera_kind, lens_of, of_camera
 
 M3E = PhotoMetadata(

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from reconstruction.cameras import Pose
-from reconstruction.photos.likeness import NEAR_BITS, fingerprint, like_pairs
+from reconstruction.base.cameras import Pose
+from reconstruction.photos.quality import NEAR_BITS, fingerprint, like_pairs
 from tests.reconstruction.photos.pictures import facade
 
 

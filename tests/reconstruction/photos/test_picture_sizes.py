@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
-from planning.errors import InputError
-from planning.photo_files.jpeg import read_header
+from planning.base.errors import InputError
+from planning.photos.jpeg import read_header
 from reconstruction.photos.decode import MAX_PIXELS, decoded, picture_size
 
 ENDINGS = (".jpg", ".png", ".webp", ".tif", ".bmp")

@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError
-from planning.geodesy.enu import geodetic_from_enu
-from planning.geodesy.geoid import amsl_from_ellipsoid_m
-from planning.photo_files.folder import read_photos
-from planning.photo_files.record import PhotoMetadata
-from planning.site import Origin
-from reconstruction.cameras import cam_from_enu
+from planning.base.errors import InputError
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin
+from planning.geo.geoid import amsl_from_ellipsoid_m
+from planning.photos.folder import read_photos
+from planning.photos.record import PhotoMetadata
+from reconstruction.base.cameras import cam_from_enu
 from reconstruction.photos.lens import CameraKind
 from reconstruction.photos.poses import Accuracy, angle_covariance, pose_photos
 from tests.planning.plan_cases import kiosk

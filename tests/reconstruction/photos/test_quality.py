@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 import pytest
 
-from planning.errors import InputError, OperationCancelled
-from planning.photo_files.folder import read_photos
-from planning.photo_files.record import PhotoMetadata
-from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
+from planning.base.errors import InputError, OperationCancelled
+from planning.photos.folder import read_photos
+from planning.photos.record import PhotoMetadata
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.photos import quality
 from reconstruction.photos.decode import MAX_PIXELS, grey_picture
 from reconstruction.photos.quality import QualityLimits, check_quality, motion_sigma_px, photo_quality
@@ -62,7 +62,7 @@ def test_a_picture_of_sixteen_thousand_pixels_is_measured(tmp_path):
 
 
 def test_pixels_stay_where_the_camera_has_them_whatever_exif_says_of_turning(tmp_path):
-    from tests.planning.photo_files.photo_writer import exif_part, jpeg
+    from tests.planning.photos.photo_writer import exif_part, jpeg
 
     base = cv2.imencode(".jpg", facade(1, (60, 90)))[1].tobytes()
     path = tmp_path / "a.jpg"

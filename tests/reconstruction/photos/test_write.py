@@ -8,11 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.photo_files.exif import read_exif
-from planning.photo_files.jpeg import read_header
-from planning.photo_files.metadata import exif_altitude_m, exif_position_deg, read_photo
-from planning.site import Airspace, Facade, Origin, Panel, Site
-from reconstruction.cameras import Intrinsics, Pose, PosedPhoto
+from planning.geo.frames import Origin
+from planning.photos.exif import read_exif
+from planning.photos.jpeg import read_header
+from planning.photos.metadata import exif_altitude_m, exif_position_deg, read_photo
+from planning.site.records import Airspace, Facade, Panel, Site
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.colmap.georeference import angle_between_deg
 from reconstruction.photos.poses import pose_photos
 from reconstruction.photos.write import photo_jpeg

@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 
 from hypothesis import strategies as st
 
-from planning.site import Origin
+from planning.geo.frames import Origin
 from reconstruction.records.book import FILE, RecordBook, make_book
 from reconstruction.records.entries import (
     COMPUTED,

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.records.book import FILE, RecordBook
 from reconstruction.records.entries import KIND_OF, Attribute, Defect, Inspection, Maintenance
 from reconstruction.records.queries import attribute_values, history, search
@@ -254,7 +254,7 @@ def test_books_opened_beside_a_process_that_writes_all_the_time_are_never_called
 OTHER_WRITER = """
 import sys
 from pathlib import Path
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.records.book import RecordBook
 from reconstruction.records.entries import Attribute
 with RecordBook(Path(sys.argv[1]), True, "Lee", busy_s=0.05) as book:

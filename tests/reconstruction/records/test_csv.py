@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError
-from reconstruction.records.csv_cells import guarded, number_cell, read_number, unguarded
-from reconstruction.records.csv_import import kind_of_table, read_tables
-from reconstruction.records.csv_tables import TableError, write_tables
+from planning.base.errors import InputError
+from reconstruction.records.csv.cells import guarded, number_cell, read_number, unguarded
+from reconstruction.records.csv.reading import kind_of_table, read_tables
+from reconstruction.records.csv.tables import TableError, write_tables
 from reconstruction.records.entries import KIND_NAMED, KINDS, Attribute, Defect, Inspection
 from reconstruction.records.queries import history
 from tests.reconstruction.records.cases import NASTY, PANES, contents, entries, model, new_book, numbers, state, texts

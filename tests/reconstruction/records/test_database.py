@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.records.book import FILE, RecordBook, make_book
 from reconstruction.records.database import Database, create_database
 from reconstruction.records.entries import Attribute, Defect

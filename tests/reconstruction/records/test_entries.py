@@ -4,8 +4,9 @@ import math
 
 import pytest
 
-from planning.errors import InputError
-from planning.site import Airspace, Facade, Origin, Panel, Site
+from planning.base.errors import InputError
+from planning.geo.frames import Origin
+from planning.site.records import Airspace, Facade, Panel, Site
 from reconstruction.records.entries import KINDS, Attribute, Defect, Document, Inspection, Maintenance
 from reconstruction.records.global_ids import global_id_of
 from reconstruction.records.objects import ObjectRow, check_objects, site_objects

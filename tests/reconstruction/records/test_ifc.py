@@ -13,23 +13,22 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from planning.errors import InputError, OperationCancelled
-from planning.geodesy.enu import enu_from_geodetic, geodetic_from_enu
-from planning.scenes import SCENES, write_scene
-from planning.site import Origin
-from planning.site_file import read_site
-from planning.site_import.importer import import_site
-from planning.site_import.options import ImportOptions
+from planning.base.errors import InputError, OperationCancelled
+from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
+from planning.geo.frames import Origin
+from planning.site.bundled import SCENES, write_scene
+from planning.site.file import read_site
+from planning.site.importing.importer import import_site
+from planning.site.importing.options import ImportOptions
 from reconstruction.records.book import RecordBook, make_book
 from reconstruction.records.entries import KINDS, Attribute, Defect, Document, Inspection, Maintenance
-from reconstruction.records.ifc_extend import extension
-from reconstruction.records.ifc_extract import extract
-from reconstruction.records.ifc_import import entries_of_element, read_ifc_records
-from reconstruction.records.ifc_new import write_new_ifc
-from reconstruction.records.ifc_process import extend_copy, read_properties
-from reconstruction.records.ifc_sets import OUR_SETS, property_sets, sets_of
+from reconstruction.records.ifc.extend import extension
+from reconstruction.records.ifc.extract import extract
+from reconstruction.records.ifc.importing import entries_of_element, read_ifc_records
+from reconstruction.records.ifc.new import write_new_ifc
+from reconstruction.records.ifc.process import edited, extend_copy, read_properties
+from reconstruction.records.ifc.sets import OUR_SETS, property_sets, sets_of
 from reconstruction.records.objects import ObjectRow, site_objects
-from reconstruction.records.step_text import edited
 from tests.planning.facade_shapes import SHAPES, facades, normal
 from tests.reconstruction.records.cases import NASTY, ORIGIN, PANES, contents, entries, model, new_book
 
@@ -498,7 +497,7 @@ def test_real_files_give_attributes_and_take_records(shared_data, tmp_path, name
 
 
 def test_latitudes_are_written_to_a_millionth_of_a_second(tmp_path):
-    from reconstruction.records.ifc_new import _angle
+    from reconstruction.records.ifc.new import _angle
 
     for degrees in (22.3372, -33.999999999999, 0.0, -0.5, 179.99999999999, -71.059722):
         parts = _angle(degrees)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.errors import InputError
+from planning.base.errors import InputError
 from reconstruction.records.entries import Attribute, Defect, Inspection
 from reconstruction.records.queries import (
     AttributeValue,

@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
-from groundstation.services.facility_records import put_fields
-from planning.errors import InputError
-from planning.files import FileLimit
+from groundstation.services.model.facility_records import put_fields
+from planning.base.errors import InputError
+from planning.base.files import FileLimit
 from reconstruction.records import stored_files
 from reconstruction.records.entries import Defect
 from reconstruction.records.stored_files import store_document, store_picture, stored_path

@@ -20,24 +20,24 @@ from numpy.typing import NDArray
 
 pytest.importorskip("mitsuba", reason="the optional extra 'mitsuba' is not installed")
 
-from planning.effects import Wish
-from planning.errors import InputError
-from planning.mesh import box_mesh
-from planning.scenes import single_panel
-from reconstruction.cameras import Intrinsics, PosedPhoto
-from reconstruction.scenes import mitsuba_plugins
-from reconstruction.scenes.build import build_scene
-from reconstruction.scenes.effect_names import INTERIOR, SUN_GLARE
-from reconstruction.scenes.lens_effects import grey_levels
-from reconstruction.scenes.look import Look
-from reconstruction.scenes.mitsuba_plugins import SheetRole, mitsuba, sheet_shares
-from reconstruction.scenes.mitsuba_renderer import SAMPLES, MitsubaRenderer, renderer_of
-from reconstruction.scenes.mitsuba_trial import survives
-from reconstruction.scenes.optics import fresnel, pane_light
-from reconstruction.scenes.record import Body, Glass, Layer, Rgb, Scene, Sky, Texture
-from reconstruction.scenes.renderer import Renderer, RenderSettings
-from reconstruction.scenes.shading import GROUND_ALBEDO
-from reconstruction.scenes.square_views import square_photos
+from planning.base.effects import Wish
+from planning.base.errors import InputError
+from planning.geo.mesh import box_mesh
+from planning.site.bundled import single_panel
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.scenes.effects.names import INTERIOR, SUN_GLARE
+from reconstruction.scenes.light.optics import fresnel, pane_light
+from reconstruction.scenes.light.shading import GROUND_ALBEDO
+from reconstruction.scenes.mitsuba import plugins as mitsuba_plugins
+from reconstruction.scenes.mitsuba.plugins import SheetRole, mitsuba, sheet_shares
+from reconstruction.scenes.mitsuba.renderer import SAMPLES, MitsubaRenderer, renderer_of
+from reconstruction.scenes.mitsuba.trial import survives
+from reconstruction.scenes.photos.lens_effects import grey_levels
+from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.photos.square_views import square_photos
+from reconstruction.scenes.world.build import build_scene
+from reconstruction.scenes.world.look import Look
+from reconstruction.scenes.world.record import Body, Glass, Layer, Rgb, Scene, Sky, Texture
 from tests.reconstruction.scenes.small_scenes import BOARD_Y_M, checkerboard, photo, quad, scene, with_panes
 
 Array = NDArray[np.float64]

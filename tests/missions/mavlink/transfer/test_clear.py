@@ -3,8 +3,8 @@ from __future__ import annotations
 import pytest
 
 from missions.mavlink.messages import Message, MissionAck, MissionClearAll, Received
-from missions.mavlink.transfer.clear import Clear, ClearOutcome, ClearState
 from missions.mavlink.transfer.exchange import Ending, MissionType, Result
+from missions.mavlink.transfer.verified import Clear, ClearOutcome, ClearState
 from tests.missions.mavlink.transfer.twins import (
     ARDUPILOT,
     OWN,

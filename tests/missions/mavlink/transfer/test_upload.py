@@ -17,7 +17,7 @@ from missions.mavlink.messages import (
     Received,
 )
 from missions.mavlink.transfer.exchange import Ending, MissionType, Result
-from missions.mavlink.transfer.upload import Upload, UploadOutcome, UploadState
+from missions.mavlink.transfer.verified import Upload, UploadOutcome, UploadState
 from tests.missions.mavlink.transfer.twins import (
     ARDUPILOT,
     OWN,

@@ -19,15 +19,7 @@ from missions.mavlink.messages import (
 from missions.mavlink.transfer.exchange import Ending, MissionType, Result
 from missions.mavlink.transfer.rounding import compare
 from missions.mavlink.transfer.verified import NotVerified, Verified, VerifiedState, VerifiedUpload
-from tests.missions.mavlink.transfer.twins import (
-    ARDUPILOT,
-    PX4,
-    Air,
-    TwinVehicle,
-    lose,
-    route,
-    waypoints,
-)
+from tests.missions.mavlink.transfer.twins import ARDUPILOT, PX4, Air, TwinVehicle, lose, route, waypoints
 
 both = pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 OLD, NEW = waypoints(8, z=50.0), waypoints(10)

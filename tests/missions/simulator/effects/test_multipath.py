@@ -7,13 +7,14 @@ import math
 import numpy as np
 import pytest
 
+from missions.simulator.airframe.parts import ExactReceiver
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.gnss import fix_of
 from missions.simulator.effects.multipath import GlassSky, ReflectedReceiver, position_error_m, sphere
-from missions.simulator.parts import ExactReceiver
-from planning.mesh import empty_mesh
-from planning.scenes import SCENES, panel_grid
-from planning.site import Airspace, Origin, Site, SiteModel
+from planning.geo.frames import Origin
+from planning.geo.mesh import empty_mesh
+from planning.site.bundled import SCENES, panel_grid
+from planning.site.records import Airspace, Site, SiteModel
 
 FACTS = effect_facts()
 MASK = math.sin(math.radians(FACTS.multipath.mask_deg))

@@ -10,16 +10,16 @@ import pytest
 
 from missions.mavlink.link import memory_pair
 from missions.mavlink.messages import MissionCurrent
+from missions.simulator.airframe.multirotor import Multirotor
+from missions.simulator.airframe.parts import ExactReceiver, RateGimbal, SteadyPack
 from missions.simulator.build import EFFECTS, decide_effects, effects_table, make_airframe
 from missions.simulator.effects.link_loss import LossyLink, through_air
 from missions.simulator.effects.shutter import blur_px
-from missions.simulator.multirotor import Multirotor
-from missions.simulator.parts import ExactReceiver, RateGimbal, SteadyPack
 from missions.simulator.scene import Conditions, flight_scene
-from planning.effects import Wish
-from planning.errors import InfeasibleError, InputError
+from planning.base.effects import Wish
+from planning.base.errors import InfeasibleError, InputError
 from planning.plan import Plan
-from planning.site import SiteModel
+from planning.site.records import SiteModel
 from tests.missions.simulator.flying import Shot, bundled, fly, rms
 from tests.slow import slow
 

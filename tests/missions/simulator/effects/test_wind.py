@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.simulator.airframe import Target
+from missions.simulator.airframe.state import Target
 from missions.simulator.build import make_airframe
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.wind import GustResponse, GustyAir, gust_scale_m, gust_sigma_m_s, highest_airspeed_m_s

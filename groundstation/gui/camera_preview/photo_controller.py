@@ -1,0 +1,251 @@
+"""Has the photo rendered that the camera preview wants to show: a coarse one at once, then a fine one.
+
+One job at a time, and none while nobody looks. A newer wish replaces an older one, and other work comes first: the
+photo gives way to it and is begun anew.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, QTimer
+from PySide6.QtGui import QImage
+
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.camera_preview.effects_window import EffectsWindow
+from groundstation.gui.camera_preview.preview import CameraPreview
+from groundstation.services.jobs.runner import Job, JobContext, JobProgress, JobState
+from groundstation.services.scenes.preview import (
+    LEAST_WIDTH_PX,
+    MAX_WIDTH_PX,
+    PhotoWish,
+    SeenPhoto,
+    kept_photo,
+    quick_width_px,
+    site_key,
+    site_photo,
+)
+from groundstation.services.units import UnitSystem
+from planning.geo.frames import wrap_heading_deg
+from planning.plan import Viewpoint
+from planning.site.records import SiteModel
+
+AFTER_MS = 80
+"""Somebody who steps through viewpoints, or turns the sun, has come to rest."""
+
+WIDE_ENOUGH = 0.8
+"""Share of the wanted width with which a picture does: windows change their size by pixels, pictures need not."""
+
+MAX_KEPT = 6
+"""Fine pictures of up to 9 MB each, for going back and forth."""
+
+SEED = 0
+"""Of surroundings and panes: those that `scene render` makes unless it is told otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """A fine photo of a site."""
+
+    model: SiteModel
+    wish: PhotoWish
+
+    @property
+    def view(self) -> _Wanted:
+        """The same for pictures that differ in nothing but their size."""
+        return replace(self, wish=replace(self.wish, width_px=1))
+
+
+class PhotoDesk(QObject):
+    """Keeps the photo of a camera preview in step with everything that it depends on."""
+
+    def __init__(self, workspace: Workspace, preview: CameraPreview, parent: QObject) -> None:
+        super().__init__(parent)
+        self._workspace, self._preview = workspace, preview
+        self._wanted: _Wanted | None = None
+        self._refused: _Wanted | None = None
+        """The view of what failed or was cancelled."""
+        self._job: Job[tuple[SeenPhoto, QImage]] | None = None
+        self._job_view: _Wanted | None = None
+        self._is_given_up = False
+        self._shown: SeenPhoto | None = None
+        self._kept: OrderedDict[_Wanted, tuple[SeenPhoto, QImage]] = OrderedDict()
+        self._key: tuple[SiteModel, str] | None = None
+        self._seconds_per_px: float | None = None
+        self._effects: EffectsWindow | None = None
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.timeout.connect(self._go_on)
+        preview.shotChanged.connect(self.look)
+        preview.box.valueChanged.connect(self._try_again)
+        preview.box.light.valueChanged.connect(self.look)
+        preview.box.effects.clicked.connect(self.show_effects)
+        workspace.jobsChanged.connect(self._jobs_changed)
+        workspace.bridge.progressed.connect(self._show_progress)
+        workspace.unitsChanged.connect(self._show_units)
+
+    def shown(self) -> SeenPhoto | None:
+        """The photo that is shown, coarse or fine; None while lines are."""
+        return self._shown
+
+    def is_at_rest(self) -> bool:
+        """Whether nothing is being rendered, nor will be as things are."""
+        return self._job is None and not self._timer.isActive()
+
+    def show_effects(self) -> None:
+        """Open the table of what was decided about each effect."""
+        self.effects_window().show_beside()
+
+    def effects_window(self) -> EffectsWindow:
+        """The table; made when it is first wanted."""
+        if self._effects is None:
+            self._effects = EffectsWindow(self._preview)
+            self._effects.set_units(self._workspace.units)
+            self._effects.set_photo(self._shown)
+        return self._effects
+
+    # What is wanted
+
+    def look(self) -> None:
+        """Find out whether another photo is wanted now."""
+        wanted, before = self._wish(), self._wanted
+        if wanted == before:
+            return
+        self._wanted = wanted
+        if wanted is None or before is None or wanted.view != before.view:
+            self._show(*((None, None) if wanted is None else self._kept.get(wanted.view, (None, None))))
+        self._timer.start(AFTER_MS)
+
+    def _try_again(self) -> None:
+        """The user asks for it: what failed or was cancelled may be rendered after all."""
+        if self._refused is not None:
+            self._refused = None
+            self._preview.show_note("")
+        self._timer.start(AFTER_MS)
+
+    def _wish(self) -> _Wanted | None:
+        shot = self._preview.shot()
+        if shot is None:
+            return None
+        model, camera, pose = shot
+        self._preview.box.light.set_origin(model.site.origin)
+        east, north, up = map(float, pose.position_enu_m)
+        heading_deg = wrap_heading_deg(math.degrees(pose.heading_rad))
+        view = Viewpoint("photo", (east, north, up), heading_deg, math.degrees(pose.pitch_rad))
+        width = min(MAX_WIDTH_PX, max(LEAST_WIDTH_PX, self._preview.width_px()))
+        return _Wanted(model, PhotoWish("", self._preview.box.light.value(), SEED, view, camera, width))
+
+    def _go_on(self) -> None:
+        """Do what comes next for the photo that is wanted."""
+        wanted = self._wanted
+        view = None if wanted is None else wanted.view
+        others = [job for job in self._workspace.jobs() if job is not self._job]
+        if self._job is not None:
+            if others or view != self._job_view:
+                self._is_given_up = True
+                self._workspace.cancel(self._job, quietly=True)
+        elif wanted is None or view == self._refused or self._is_fine(wanted):
+            return
+        elif wanted.model.site.n_panels == 0:
+            self._preview.show_note(self.tr("This site has no panels yet, and nothing to mirror in them."))
+        elif others:
+            self._preview.show_note(self.tr("The photo waits for: {0}").format(others[0].name))
+        else:
+            self._start(wanted)
+
+    def _is_fine(self, wanted: _Wanted) -> bool:
+        shown = self._shown
+        return (
+            shown is not None and not shown.wish.is_quick and shown.wish.width_px >= WIDE_ENOUGH * wanted.wish.width_px
+        )
+
+    # Rendering
+
+    def _start(self, wanted: _Wanted) -> None:
+        wish, model = wanted.wish, wanted.model
+        quick = quick_width_px(wish.width_px, self._seconds_per_px)
+        if self._shown is None and quick < wish.width_px:
+            wish = replace(wish, width_px=quick, is_quick=True)
+        known = self._key[1] if self._key is not None and self._key[0] is model else None
+
+        def work(context: JobContext) -> tuple[SeenPhoto, QImage]:
+            asked = replace(wish, site_key=site_key(model) if known is None else known)
+            photo = context.apart(kept_photo, asked)
+            if photo is None:
+                photo = context.apart(site_photo, model, asked)
+            return photo, painted(photo.picture)
+
+        self._job_view, self._is_given_up = wanted.view, False
+        self._job = self._workspace.start(
+            self.tr("Render the photo"), work, lambda found: self._done(wanted, *found), self._failed
+        )
+
+    def _done(self, wanted: _Wanted, photo: SeenPhoto, image: QImage) -> None:
+        self._key = wanted.model, photo.wish.site_key
+        self._seconds_per_px = photo.seconds / (photo.picture.shape[0] * photo.picture.shape[1])
+        if not photo.wish.is_quick:
+            self._kept[wanted.view] = photo, image
+            self._kept.move_to_end(wanted.view)
+            while len(self._kept) > MAX_KEPT:
+                self._kept.popitem(last=False)
+        if self._wanted is not None and self._wanted.view == wanted.view:
+            self._show(photo, image)
+
+    def _failed(self, error: BaseException) -> None:
+        self._refused = self._job_view
+        if self._wanted is not None and self._wanted.view == self._refused:
+            words = self._workspace.words(str(error))
+            self._preview.show_note(self.tr("The photo could not be rendered: {0}").format(words))
+
+    def _jobs_changed(self) -> None:
+        job = self._job
+        if job is not None and job.state is not JobState.QUEUED and job not in self._workspace.jobs():
+            self._job = None
+            if job.state is JobState.CANCELLED and not self._is_given_up:
+                self._refused = self._job_view
+                self._preview.show_note(self.tr("The photo was cancelled; choose Photo again to render it."))
+        if self._wanted is not None:
+            # A job that has just begun is known only after this; one that has ended brings its result then, too.
+            self._timer.start(0)
+
+    # What is shown
+
+    def _show(self, photo: SeenPhoto | None, image: QImage | None) -> None:
+        self._shown = photo
+        self._preview.show_picture(image, np.zeros(0, np.int64) if photo is None else photo.panels)
+        self._preview.show_note("" if photo is None else self._note(photo))
+        if self._effects is not None:
+            self._effects.set_photo(photo)
+
+    def _note(self, photo: SeenPhoto) -> str:
+        if photo.is_walled_in:
+            return self.tr(
+                "The camera stands inside something here: a building opposite, a tree or an obstacle. Take the made-up "
+                "street away, or move the viewpoint."
+            )
+        return self.tr("Coarse picture; the fine one follows.") if photo.wish.is_quick else ""
+
+    def _show_progress(self, event: JobProgress) -> None:
+        if self._job is None or event.job_id != self._job.id or self._job.cancel_requested:
+            return
+        words = self._workspace.words(event.stage)
+        if event.total > 1:
+            words = self.tr("{0} ({1:.0f} %)").format(words, 100.0 * event.done / event.total)
+        warning = "" if self._shown is None or not self._shown.is_walled_in else self._note(self._shown) + "\n"
+        self._preview.show_note(warning + words)
+
+    def _show_units(self, units: UnitSystem) -> None:
+        if self._effects is not None:
+            self._effects.set_units(units)
+
+
+def painted(picture: NDArray[np.uint8]) -> QImage:
+    """A picture, shape (h, w, 3), blue, green, red, in the format that is painted fastest."""
+    height, width = picture.shape[:2]
+    data = np.ascontiguousarray(picture)
+    shared = QImage(data.data, width, height, 3 * width, QImage.Format.Format_BGR888)
+    return shared.convertToFormat(QImage.Format.Format_RGB32)

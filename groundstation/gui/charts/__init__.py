@@ -1,0 +1,1 @@
+"""Charts, whatever tab shows them."""

@@ -1,0 +1,253 @@
+"""Height and speed of one sortie over time or distance, with the photos and what limits the height."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QEvent, QPointF, QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from groundstation.gui.map.map_paint import sortie_colour
+from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.mission.profiles import HeightLimits, ProfileCurves, nearest_photo
+from groundstation.services.project.document import Item, ItemKind
+from groundstation.services.units import UnitSystem, length_unit, minutes_text, speed_unit
+
+TIME, DISTANCE = "time", "distance"
+
+AXIS_WIDTH_PX = 56
+"""Room for heights of three figures, so that charts do not jump when the units change."""
+
+
+class ProfileChart(QWidget):
+    """Draws curves. `bar` chooses what is shown and says what is under the pointer; put it where there is room.
+
+    Signals
+    -------
+    picked(Item)
+        The user clicked: the viewpoint whose photo is nearest in time.
+    """
+
+    picked = Signal(object)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._curves: tuple[ProfileCurves, ...] = ()
+        self._limits: HeightLimits | None = None
+        self._selection: Item | None = None
+        self._units = UnitSystem.METRIC
+        self._sortie, self._over, self._hover = ChoiceBox(), ChoiceBox(), QLabel()
+        self._over.addItem(self.tr("over time"), TIME)
+        self._over.addItem(self.tr("over distance"), DISTANCE)
+        self._hover.setProperty("role", "muted")
+        self._charts = pg.GraphicsLayoutWidget()
+        self._charts.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._charts.setAccessibleName(self.tr("Height and speed"))
+        self._height = self._charts.addPlot(row=0, col=0)
+        # Side by side: below the shared view there is width, not height.
+        self._speed = self._charts.addPlot(row=0, col=1)
+        self._charts.ci.layout.setColumnStretchFactor(0, 3)
+        self._charts.ci.layout.setColumnStretchFactor(1, 2)
+        self._charts.ci.setContentsMargins(2, 2, 8, 2)
+        self._speed.setXLink(self._height)
+        for plot in (self._height, self._speed):
+            plot.setMenuEnabled(False)
+            plot.hideButtons()
+            plot.setMouseEnabled(x=True, y=False)
+            plot.getAxis("left").setWidth(AXIS_WIDTH_PX)
+        self.bar = QWidget(self)
+        row = QHBoxLayout(self.bar)
+        row.setContentsMargins(0, 0, 0, 0)
+        for widget in (self._hover, self._sortie, self._over):
+            row.addWidget(widget)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self._charts, 1)
+        self._sortie.currentIndexChanged.connect(self._draw)
+        self._over.currentIndexChanged.connect(self._draw)
+        self._charts.scene().sigMouseMoved.connect(self._pointed)
+        self._charts.scene().sigMouseClicked.connect(lambda event: self._clicked(event.scenePos()))
+        self._draw()
+
+    def set_curves(self, curves: Sequence[ProfileCurves], limits: HeightLimits | None) -> None:
+        """Show the sorties of another plan, and what limits the height."""
+        chosen = self._sortie.currentData()
+        self._curves, self._limits = tuple(curves), limits
+        with QSignalBlocker(self._sortie):
+            self._sortie.clear()
+            for number, curve in enumerate(self._curves):
+                self._sortie.addItem(self.tr("Sortie {0}").format(curve.sortie), number)
+            self._sortie.setCurrentIndex(max(0, self._sortie.findData(chosen)) if self._curves else -1)
+        self._draw()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show heights, distances and speeds in other units."""
+        self._units = units
+        self._draw()
+
+    def set_selection(self, item: Item | None) -> None:
+        """Mark the photo of a viewpoint, in the chart of its sortie."""
+        self._selection = item
+        number = self._number_of(item)
+        if number is not None and number != self._sortie.currentIndex():
+            self._sortie.setCurrentIndex(number)
+        else:
+            self._mark()
+
+    def hover_text(self) -> str:
+        """What is said of the place under the pointer."""
+        return self._hover.text()
+
+    def plots(self) -> tuple[pg.PlotItem, pg.PlotItem]:
+        """The charts of height and speed."""
+        return self._height, self._speed
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Draw in the colours of another theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._draw()
+
+    def _curve(self) -> ProfileCurves | None:
+        index = self._sortie.currentIndex()
+        return self._curves[index] if 0 <= index < len(self._curves) else None
+
+    def _number_of(self, item: Item | None) -> int | None:
+        if item is None or item.kind is not ItemKind.VIEWPOINT:
+            return None
+        return next((number for number, curve in enumerate(self._curves) if item.id in curve.photo_ids), None)
+
+    def _draw(self) -> None:
+        found, curve = colours(), self._curve()
+        length, speed = length_unit(self._units), speed_unit(self._units)
+        self._charts.setBackground(found.base)
+        for plot in (self._height, self._speed):
+            plot.clear()
+            for side in ("left", "bottom"):
+                axis = plot.getAxis(side)
+                axis.setPen(found.line)
+                axis.setTextPen(found.text)
+                # Seconds and feet take no prefix such as "k".
+                axis.enableAutoSIPrefix(False)
+            plot.showGrid(x=True, y=True, alpha=0.25)
+        self._height.setLabel("left", self.tr("Height [{0}]").format(length.symbol))
+        self._speed.setLabel("left", self.tr("Speed [{0}]").format(speed.symbol))
+        over = self.tr("Time [min]") if self._is_over_time() else self.tr("Distance [{0}]").format(length.symbol)
+        for plot in (self._height, self._speed):
+            plot.setLabel("bottom", over)
+        if curve is not None and self._is_over_time() and curve.takeoff_landing_s > 0.0:
+            # Only under the wider chart is there room for it.
+            text = self.tr("Time [min]; take-off and landing add {0:.0f} s").format(curve.takeoff_landing_s)
+            self._height.setLabel("bottom", text)
+        self._hover.setText("" if curve else self.tr("No sortie to show: plan a flight first."))
+        self._marks: list[pg.InfiniteLine] = []
+        if curve is not None:
+            x, photo_x = self._x(curve), self._photo_x(curve)
+            pen = pg.mkPen(sortie_colour(curve.sortie), width=2)
+            self._height.plot(x, curve.height_m * length.factor, pen=pen)
+            self._height.plot(
+                photo_x,
+                curve.photo_height_m * length.factor,
+                pen=None,
+                symbol="o",
+                symbolSize=6,
+                symbolPen=found.base,
+                symbolBrush=sortie_colour(curve.sortie),
+            )
+            # Stop and go at hundreds of photos: thick lines would run into one another.
+            self._speed.plot(x, curve.speed_m_s * speed.factor, pen=pg.mkPen(sortie_colour(curve.sortie), width=1))
+            # Room for the names of the lines; a ceiling far above would flatten what is flown.
+            lowest = min(0.0, 0.0 if self._limits is None else self._limits.ground_m)
+            room = 0.25 * max(float(curve.height_m.max()) - lowest, 5.0)
+            shown = lowest - room, float(curve.height_m.max()) + room
+            self._height.setYRange(*(height_m * length.factor for height_m in shown), padding=0.0)
+            self._draw_limits(shown)
+            self._height.setXRange(float(x[0]), float(x[-1]), padding=0.01)
+            self._add_marks()
+        self._mark()
+
+    def _draw_limits(self, shown_m: tuple[float, float]) -> None:
+        limits, found = self._limits, colours()
+        if limits is None:
+            return
+        length = length_unit(self._units)
+        for height_m, name, colour, place, is_below in (
+            (limits.ground_m, self.tr("ground"), found.muted, 0.15, True),
+            (limits.floor_m, self.tr("airspace floor"), found.warning, 0.45, False),
+            (limits.ceiling_m, self.tr("airspace ceiling"), found.warning, 0.75, True),
+            (limits.legal_m, self.tr("legal ceiling"), found.error, 0.25, True),
+        ):
+            if not shown_m[0] <= height_m <= shown_m[1]:
+                continue
+            anchor = (0.5, 0.0 if is_below else 1.0)
+            line = pg.InfiniteLine(
+                height_m * length.factor,
+                angle=0,
+                pen=pg.mkPen(colour, width=1.5, style=Qt.PenStyle.DashLine),
+                label=self.tr("{0} {1}").format(name, length.text(height_m)),
+                labelOpts={"position": place, "color": colour, "anchors": [anchor, anchor]},
+            )
+            self._height.addItem(line, ignoreBounds=True)
+
+    def _add_marks(self) -> None:
+        for plot in (self._height, self._speed):
+            mark = pg.InfiniteLine(angle=90, pen=pg.mkPen(colours().accent, width=2))
+            mark.setVisible(False)
+            plot.addItem(mark, ignoreBounds=True)
+            self._marks.append(mark)
+
+    def _mark(self) -> None:
+        curve = self._curve()
+        at = None
+        if curve is not None and self._number_of(self._selection) == self._sortie.currentIndex():
+            at = self._photo_x(curve)[curve.photo_ids.index(self._selection.id)]
+        for mark in self._marks:
+            mark.setVisible(at is not None)
+            if at is not None:
+                mark.setValue(float(at))
+
+    def _is_over_time(self) -> bool:
+        return self._over.currentData() == TIME
+
+    def _x(self, curve: ProfileCurves) -> np.ndarray:
+        return curve.t_s / 60.0 if self._is_over_time() else curve.distance_m * length_unit(self._units).factor
+
+    def _photo_x(self, curve: ProfileCurves) -> np.ndarray:
+        if self._is_over_time():
+            return curve.photo_t_s / 60.0
+        return curve.photo_distance_m * length_unit(self._units).factor
+
+    def _sample_at(self, scene: QPointF) -> int | None:
+        """The sample under the pointer; None outside both charts."""
+        curve = self._curve()
+        plot = next((p for p in (self._height, self._speed) if p.sceneBoundingRect().contains(scene)), None)
+        if curve is None or plot is None:
+            return None
+        x = plot.vb.mapSceneToView(scene).x()
+        return int(np.argmin(np.abs(self._x(curve) - x)))
+
+    def _pointed(self, scene: QPointF) -> None:
+        sample, curve = self._sample_at(scene), self._curve()
+        if sample is None or curve is None:
+            return
+        length, speed = length_unit(self._units), speed_unit(self._units)
+        self._hover.setText(
+            self.tr("{0} min, {1} flown: {2} above take-off, {3}, nearest photo {4}").format(
+                minutes_text(float(curve.t_s[sample])),
+                length.text(float(curve.distance_m[sample])),
+                length.text(float(curve.height_m[sample])),
+                speed.text(float(curve.speed_m_s[sample])),
+                nearest_photo(curve, float(curve.t_s[sample])) or "–",
+            )
+        )
+
+    def _clicked(self, scene: QPointF) -> None:
+        sample, curve = self._sample_at(scene), self._curve()
+        if sample is None or curve is None:
+            return
+        viewpoint_id = nearest_photo(curve, float(curve.t_s[sample]))
+        if viewpoint_id is not None:
+            self.picked.emit(Item(ItemKind.VIEWPOINT, viewpoint_id))

@@ -1,0 +1,113 @@
+"""Quality against time of the running plan, with the bound above it and the time that is left."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from groundstation.gui.charts.curve_plot import Curve, CurvePlot
+from groundstation.services.units import per_cent
+from planning.base.progress import Clock, QualityPoint
+
+REDRAW_MS = 100
+"""Improvements can come a thousand times a second; the eye needs ten."""
+
+
+class QualityChart(QWidget):
+    """Covered sections over seconds as they come, the upper bound once it is known, and the time budget.
+
+    `enough` is the button "good enough, stop here".
+    """
+
+    def __init__(self, clock: Clock, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._clock = clock
+        self._points: list[QualityPoint] = []
+        self._bound: float | None = None
+        self._started_s: float | None = None
+        self._budget_s = 0.0
+        self.plot = CurvePlot(self.tr("time in s"), self.tr("covered sections"))
+        self._words, self._left = QLabel(), QLabel()
+        self._words.setWordWrap(True)
+        self.enough = QPushButton(self.tr("Good enough, stop here"))
+        self.enough.setToolTip(self.tr("Keep the best views found so far and plan the route"))
+        self.enough.setVisible(False)
+        below = QHBoxLayout()
+        below.addWidget(self._left, 1)
+        below.addWidget(self.enough)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(4, 4, 4, 4)
+        layout.addWidget(self.plot, 1)
+        layout.addWidget(self._words)
+        layout.addLayout(below)
+        self._redraw = QTimer(self)
+        self._redraw.setInterval(REDRAW_MS)
+        self._redraw.timeout.connect(self._draw)
+        self._draw()
+
+    def start(self, budget_s: float) -> None:
+        """A plan begins, with so much time."""
+        self._points, self._bound = [], None
+        self._started_s, self._budget_s = self._clock(), budget_s
+        self.enough.setVisible(True)
+        self.enough.setEnabled(True)
+        self._redraw.start()
+        self._draw()
+
+    def add_point(self, point: QualityPoint) -> None:
+        """Another improvement."""
+        self._points.append(point)
+
+    def set_bound(self, sections: float) -> None:
+        """No plan covers more than this."""
+        self._bound = sections
+
+    def finish(self) -> None:
+        """The plan ended, one way or another."""
+        self._started_s = None
+        self.enough.setVisible(False)
+        self._redraw.stop()
+        self._draw()
+
+    def show_history(self, points: tuple[QualityPoint, ...], bound: float | None) -> None:
+        """The curve of a plan that was made before."""
+        self._points, self._bound = list(points), bound
+        self._draw()
+
+    def text(self) -> str:
+        """What stands below the curve."""
+        return f"{self._words.text()} {self._left.text()}".strip()
+
+    def _draw(self) -> None:
+        times, values = [p.t_s for p in self._points], [p.value for p in self._points]
+        elapsed_s = None if self._started_s is None else self._clock() - self._started_s
+        # Room behind the last improvement, or a plan that was found in one go would have no curve.
+        end_s = max([*(1.05 * t_s for t_s in times[-1:]), 0.0 if elapsed_s is None else elapsed_s, 1.0])
+        if times and end_s > times[-1]:
+            times, values = [*times, end_s], [*values, values[-1]]
+        highest = max([*values, self._bound or 0.0, 1.0])
+        curve = Curve(np.array(times), np.array(values), 1.05 * end_s, 1.08 * highest, self._bound, elapsed_s)
+        self.plot.set_curve(curve)
+        self._say(values, elapsed_s)
+
+    def _say(self, values: list[float], elapsed_s: float | None) -> None:
+        if not values:
+            self._words.setText(self.tr("Quality against time appears here while a plan runs."))
+        elif elapsed_s is None and self._bound:
+            # The plan may have been edited since.
+            words = self.tr("The search found {0:.0f} sections, {1:.1f} % of the {2:.0f} that any flight could cover")
+            self._words.setText(words.format(values[-1], per_cent(values[-1], self._bound), self._bound))
+        elif self._bound:
+            self._words.setText(
+                self.tr("{0:.0f} sections covered, {1:.1f} % of the {2:.0f} that any flight could cover").format(
+                    values[-1], per_cent(values[-1], self._bound), self._bound
+                )
+            )
+        else:
+            self._words.setText(self.tr("{0:.0f} sections covered").format(values[-1]))
+        if elapsed_s is None:
+            self._left.clear()
+        else:
+            left_s = max(0.0, self._budget_s - elapsed_s)
+            self._left.setText(self.tr("at most {0:.0f} s left").format(left_s))

@@ -1,0 +1,155 @@
+"""What the embedded simulation shall take into account, and what it would take into account by itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, QSignalBlocker, Signal
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.widgets.effects_panel import EffectsPanel
+from groundstation.gui.widgets.inputs import ChoiceBox, Form, NumberBox, SpeedBox
+from groundstation.services.fly.connection import CALM, Simulation
+from groundstation.services.fly.link_choice import ConnectionChoice
+from groundstation.services.fly.sortie import LiveSortie, simulation_effects
+from groundstation.services.jobs.runner import JobContext
+from groundstation.services.plan.effects import EffectChoice
+from groundstation.services.units import UnitSystem
+from missions.simulator.scene import Conditions
+from planning.base.effects import Wish
+from planning.plan import Plan
+
+# What the embedded simulation flies in: wind, GNSS, and the effects that the flight calls for.
+
+MAX_WIND_M_S = 20.0
+
+
+class SimulationPage(QWidget):
+    """Edits `Conditions` and the wishes for effects.
+
+    Signals
+    -------
+    valueChanged()
+    """
+
+    valueChanged = Signal()  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._conditions = Conditions()
+        self._wishes: dict[str, Wish] = {}
+        self.wind, self.wind_from = SpeedBox(0.0, MAX_WIND_M_S), NumberBox(0.0, 360.0, 10.0, "\u00b0", 0)
+        self.fix, self.effects = ChoiceBox(), EffectsPanel()
+        for kind, text in (
+            ("rtk-fixed", self.tr("RTK fixed")),
+            ("rtk-float", self.tr("RTK float")),
+            ("single", self.tr("without RTK")),
+        ):
+            self.fix.addItem(text, kind)
+        form = Form()
+        form.addRow(self.tr("Wind"), self.wind)
+        form.addRow(self.tr("Wind from"), self.wind_from)
+        form.addRow(self.tr("GNSS"), self.fix)
+        layout = QVBoxLayout(self)
+        # The cards need the whole width beside a scroll bar.
+        for one in (layout, self.effects.layout()):
+            one.setContentsMargins(2, 4, 2, 4)
+        layout.addLayout(form)
+        layout.addWidget(self.effects, 1)
+        self.wind.valueChanged.connect(self._edited)
+        self.wind_from.valueChanged.connect(self._edited)
+        self.fix.currentIndexChanged.connect(self._edited)
+        self.effects.wishChanged.connect(self._wished)
+        self.setValue(self._conditions, {})
+
+    def value(self) -> tuple[Conditions, dict[str, Wish]]:
+        """Conditions, and wishes by the name of an effect."""
+        return self._conditions, dict(self._wishes)
+
+    def setValue(self, conditions: Conditions, wishes: dict[str, Wish]) -> None:  # noqa: N802
+        """Show other conditions."""
+        self._conditions, self._wishes = conditions, dict(wishes)
+        blockers = [QSignalBlocker(box) for box in (self.wind_from, self.fix)]
+        self.wind.setValue(conditions.wind_m_s)
+        self.wind_from.setValue(conditions.wind_from_deg)
+        self.fix.setCurrentIndex(self.fix.findData(conditions.fix))
+        del blockers
+
+    def set_effects(self, choices: tuple[EffectChoice, ...]) -> None:
+        """Show what was decided about each effect."""
+        self.effects.set_effects(choices)
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show speeds in other units."""
+        self.wind.set_units(units)
+        self.effects.set_units(units)
+
+    def _edited(self, *_value: object) -> None:
+        self._conditions = replace(
+            self._conditions,
+            wind_m_s=self.wind.value(),
+            wind_from_deg=self.wind_from.value(),
+            fix=self.fix.currentData(),
+        )
+        self.valueChanged.emit()
+
+    def _wished(self, effect: str, wish: Wish) -> None:
+        self._wishes[effect] = wish
+        self.valueChanged.emit()
+
+
+class SimulationDesk(QObject):
+    """Conditions and wishes of the next simulation.
+
+    Signals
+    -------
+    effectsChanged(tuple of EffectChoice)
+        What the simulation would take into account.
+    """
+
+    effectsChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, workspace: Workspace, parent: QObject) -> None:
+        super().__init__(parent)
+        self._workspace = workspace
+        self._looking_id = 0
+        self.conditions: Conditions = CALM
+        self.wishes: dict[str, Wish] = {}
+
+    def connection(self, sortie: LiveSortie, choice: ConnectionChoice, charge: float) -> Simulation:
+        """The simulation of a sortie, as it was chosen; `charge` of the battery that it begins with, 1 full."""
+        return Simulation(
+            sortie.case.plan,
+            sortie.case.site_model,
+            autopilot=choice.autopilot,
+            speed_up=choice.speed_up,
+            conditions=self.conditions,
+            wishes=dict(self.wishes),
+            charge=charge,
+        )
+
+    def choose(self, conditions: Conditions, wishes: dict[str, Wish], plan: Plan | None, number: int) -> None:
+        """Simulate this sortie in other conditions the next time."""
+        self.conditions, self.wishes = conditions, wishes
+        self.look(plan, number)
+
+    def look(self, plan: Plan | None, number: int) -> None:
+        """Find out what the simulation of a sortie, counted from 1, takes into account."""
+        site_model = self._workspace.document.site
+        is_busy = any(job.id == self._looking_id for job in self._workspace.jobs())
+        if plan is None or site_model is None or number > len(plan.sorties) or is_busy:
+            return
+        if site_model.site.n_panels == 0:
+            return
+        asked = (number, self.conditions, dict(self.wishes))
+
+        def work(_context: JobContext) -> tuple[EffectChoice, ...]:
+            return simulation_effects(plan, site_model, *asked)
+
+        def done(choices: tuple[EffectChoice, ...]) -> None:
+            self.effectsChanged.emit(choices)
+            if asked != (number, self.conditions, self.wishes):
+                self.look(plan, number)
+
+        self._looking_id = self._workspace.start(self.tr("Look at the flight"), work, done).id

@@ -1,0 +1,1 @@
+"""The 2-D map and what is drawn on it."""

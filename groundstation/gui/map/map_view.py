@@ -1,0 +1,355 @@
+"""The 2-D map: offline tiles or a metric grid, the site's footprint, and the plan's routes and viewpoints. No network.
+
+Site and plan are painted into a picture of their own (`MapLayer`): panning and zooming only move it, and once the map
+rests it is painted sharp again.
+"""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+
+import numpy as np
+from PySide6.QtCore import QEvent, QPointF, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import (
+    QColor,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+
+from groundstation.gui.application.translate import own_words
+from groundstation.gui.map.map_canvas import MapCanvas
+from groundstation.gui.map.map_layer import MapLayer
+from groundstation.gui.map.map_paint import (
+    paint_grid,
+    paint_north,
+    paint_note,
+    paint_ring,
+    paint_scale_bar,
+    paint_text_box,
+    paint_tiles,
+)
+from groundstation.gui.map.map_pick import find_item, place_of
+from groundstation.gui.map.tile_store import TileStore
+from groundstation.gui.map.viewport import Viewport
+from groundstation.gui.widgets.questions import choose_file
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.map.shapes import PlanShapes, SiteShapes, airspace_outline, plan_shapes, site_shapes
+from groundstation.services.map.tiles import MapTiles
+from groundstation.services.map.web_mercator import MAX_LAT_DEG, geodetic_from_world, world_from_geodetic
+from groundstation.services.project.document import Document, Item
+from groundstation.services.units import UnitSystem
+from planning.base.errors import InputError
+from planning.plan import Plan
+from planning.site.records import SiteModel
+
+MARGIN_PX = 64.0
+"""Around the site when all of it is shown: room for the scale bar and the note above it."""
+
+REST_MS = 60
+"""Without zooming for so long, the stretched picture is painted anew."""
+
+
+class MapView(MapCanvas):
+    """Shows what it is given; north is up.
+
+    Signals
+    -------
+    picked(Item or None)
+        The user clicked a thing, or nothing.
+    hovered(Item or None)
+    mapChanged(Path)
+        Another map file was opened.
+    refused(str)
+        A map file could not be opened, and why.
+    """
+
+    picked = Signal(object)
+    hovered = Signal(object)
+    mapChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
+    refused = Signal(str)
+    _shapesReady = Signal(object, object)  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._model: SiteModel | None = None
+        self._plan: Plan | None = None
+        self._site: SiteShapes | None = None
+        self._plan_shapes: PlanShapes | None = None
+        self._selection: Item | None = None
+        self._hover: Item | None = None
+        self._pointer: QPointF | None = None
+        self._units = UnitSystem.METRIC
+        self._refusal = ""
+        self._was_fitted = False
+        self._layer = MapLayer()
+        self._sharpen_soon = QTimer(self, interval=REST_MS, singleShot=True)
+        self._sharpen_soon.timeout.connect(self._sharpen)
+        self._tiles = TileStore(self)
+        self._tiles.tilesReady.connect(self.update)
+        self._shapesReady.connect(self._take_shapes)
+        self.clicked.connect(self._clicked)
+        self.pointed.connect(self._pointed)
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        self.setMinimumSize(200, 150)
+        self.setAccessibleName(self.tr("Map"))
+        self._add_buttons()
+
+    def set_document(self, document: Document) -> None:
+        """Show the site and the current plan of a document."""
+        self.set_site(document.site)
+        self.set_plan(None if document.current is None else document.current.plan)
+
+    def set_site(self, model: SiteModel | None) -> None:
+        """Show a site; its outlines come when they are computed. Another place is brought into view."""
+        if model is self._model:
+            return
+        is_elsewhere = model is None or self._model is None or model.site.origin != self._model.site.origin
+        self._model, self._was_fitted = model, self._was_fitted and not is_elsewhere
+        if is_elsewhere:
+            self._site = None
+        self._fit_once()
+        self._draw_plan_anew()
+        if model is None:
+            self._shapesReady.emit(None, None)
+        else:
+            threading.Thread(target=self._compute_shapes, args=(model,), name="map-shapes", daemon=True).start()
+
+    def set_plan(self, plan: Plan | None) -> None:
+        """Show a plan, or none."""
+        if plan is not self._plan:
+            self._plan = plan
+            self._draw_plan_anew()
+
+    def set_selection(self, item: Item | None) -> None:
+        """Mark a thing."""
+        if item != self._selection:
+            self._selection = item
+            self.update()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths in other units."""
+        self._units = units
+        self.update()
+
+    def open_map(self, path: Path) -> bool:
+        """Put tiles of a file under the site; False where it cannot be used, which `refused` tells."""
+        try:
+            source = MapTiles(path)
+        except InputError as error:
+            self._refusal = own_words(str(error), self._units)
+            self.update()
+            self.refused.emit(self._refusal)
+            return False
+        self._refusal = ""
+        self._tiles.set_source(source)
+        self.mapChanged.emit(path)
+        if self._model is None:
+            self._look_at_map()
+        self.update()
+        return True
+
+    def map_file(self) -> Path | None:
+        """The map that is shown."""
+        source = self._tiles.source()
+        return None if source is None else source.info.path
+
+    def look_at(self, item: Item) -> None:
+        """Bring a thing to the middle; near enough to see it."""
+        place = place_of(item, self._site, self._plan_shapes)
+        if place is not None:
+            fitted = self._viewport.fitted(place, margin_px=80.0, max_zoom=max(self._viewport.zoom, 19.0))
+            self.set_viewport(fitted)
+
+    def look_at_all(self) -> None:
+        """Bring the whole site into view."""
+        if self._site is not None:
+            self.set_viewport(self._viewport.fitted(self._site.extent(), MARGIN_PX))
+        else:
+            self._look_at_map()
+
+    def is_complete(self) -> bool:
+        """Whether everything that is in sight is drawn: outlines are there, and no tile is waited for."""
+        return (self._model is None) == (self._site is None) and not self._tiles.is_busy()
+
+    def note(self) -> str:
+        """What stands in the way of a map: a file that was refused, none, or one of another place; else empty."""
+        if self._refusal:
+            return self._refusal
+        if self._site is not None and not self._site.is_on_map:
+            return self.tr("This site lies beyond the end of web maps (85.05 degrees); use the 3-D view.")
+        source = self._tiles.source()
+        if source is None and self._model is None:
+            return self.tr("Open or import a site on the Site tab, or a map with “Map file”; no network is used.")
+        if source is None:
+            return self.tr('No map is loaded. "Map file" opens one (MBTiles); no network is used.')
+        if self._site is not None and not _covers(source.info.bounds_deg, self._viewport):
+            return self.tr('The map "{0}" does not cover this place.').format(source.info.name)
+        return ""
+
+    def close_view(self) -> None:
+        """End reading tiles; call before the widget goes away."""
+        self._tiles.close()
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """Room for a site."""
+        return QSize(500, 400)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """Paint tiles or grid, the layers, and the marks of every map."""
+        found, viewport = colours(), self._viewport
+        painter = QPainter(self)
+        painter.fillRect(event.rect(), QColor(found.scene))
+        source = self._tiles.source()
+        if source is not None:
+            levels = source.info.min_zoom, source.info.max_zoom
+            self._tiles.want(paint_tiles(painter, viewport, levels, self._tiles.picture, self._tiles.knows))
+        if self._site is not None and (source is None or not _covers(source.info.bounds_deg, viewport)):
+            paint_grid(painter, viewport, self._site.home, self._units, found.line)
+        self._paint_layer(painter)
+        self._paint_marks(painter)
+        painter.end()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Keep the centre; the first size shows the whole site."""
+        super().resizeEvent(event)
+        self._fit_once()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Paint in the colours of another theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._draw_anew()
+
+    def item_at(self, at: QPointF) -> Item | None:
+        """What is drawn at a point of the widget; the nearest of what is small comes before what is large."""
+        return find_item(np.array([at.x(), at.y()]), self._viewport, self._site, self._plan_shapes)
+
+    def pointer_text(self) -> str:
+        """Latitude and longitude under the pointer (WGS 84); empty where there is none."""
+        if self._pointer is None:
+            return ""
+        lat, lon = geodetic_from_world(*self._viewport.world(self._pointer.x(), self._pointer.y()))
+        return f"{abs(lat):.6f}° {'N' if lat >= 0 else 'S'}  {abs(lon):.6f}° {'E' if lon >= 0 else 'W'}"
+
+    def _add_buttons(self) -> None:
+        column = QVBoxLayout()
+        for text, tip, slot in (
+            ("+", self.tr("Nearer (+)"), lambda: self.zoom_by(1.0)),
+            ("−", self.tr("Further away (-)"), lambda: self.zoom_by(-1.0)),
+            (self.tr("Fit"), self.tr("Show the whole site (F)"), self.look_at_all),
+            (self.tr("Map file"), self.tr("Open an MBTiles file to put under the site"), self._choose_map),
+        ):
+            button = QToolButton(self)
+            button.setText(text)
+            button.setToolTip(tip)
+            button.setCursor(Qt.CursorShape.ArrowCursor)
+            button.clicked.connect(lambda _checked=False, slot=slot: slot())
+            column.addWidget(button, 0, Qt.AlignmentFlag.AlignRight)
+        column.addStretch(1)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(8, 8, 8, 8)
+        row.addStretch(1)
+        row.addLayout(column)
+
+    def _clicked(self, at: QPointF) -> None:
+        self.picked.emit(self.item_at(at))
+
+    def _pointed(self, at: QPointF | None) -> None:
+        self._pointer = at
+        item = None if at is None else self.item_at(at)
+        if item != self._hover:
+            self._hover = item
+            self.setToolTip("" if item is None else item.id)
+            self.hovered.emit(item)
+        self.update()
+
+    def _choose_map(self) -> None:
+        path = choose_file(self, self.tr("Open map"), self.tr("Offline maps (*.mbtiles);;All files (*)"))
+        if path is not None:
+            self.open_map(path)
+
+    def _compute_shapes(self, model: SiteModel) -> None:
+        self._shapesReady.emit(model, site_shapes(model))
+
+    def _take_shapes(self, model: SiteModel | None, shapes: SiteShapes | None) -> None:
+        if model is self._model:
+            self._site = shapes
+            self._fit_once()
+            self._draw_anew()
+
+    def _draw_plan_anew(self) -> None:
+        has_both = self._plan is not None and self._model is not None
+        self._plan_shapes = plan_shapes(self._plan, self._model.site.origin) if has_both else None
+        self._draw_anew()
+
+    def _draw_anew(self) -> None:
+        self._layer.forget()
+        self.update()
+
+    def _fit_once(self) -> None:
+        """Bring a new site into view, once the widget has its size."""
+        if self._was_fitted or self._model is None or not self.isVisible():
+            return
+        site = self._model.site
+        if self._site is not None:
+            self._was_fitted = True
+            self._viewport = self._viewport.fitted(self._site.extent(), MARGIN_PX)
+        elif abs(site.origin.lat_deg) < MAX_LAT_DEG:
+            # Outlines take a moment; the place is known at once.
+            self._viewport = self._viewport.fitted(airspace_outline(site), MARGIN_PX)
+
+    def showEvent(self, event: QEvent) -> None:  # noqa: N802
+        """The size is known now."""
+        super().showEvent(event)  # type: ignore[arg-type]
+        self._fit_once()
+
+    def _look_at_map(self) -> None:
+        source = self._tiles.source()
+        if source is not None and source.info.bounds_deg is not None:
+            west, south, east, north = source.info.bounds_deg
+            self.set_viewport(self._viewport.fitted(world_from_geodetic([south, north], [west, east])))
+
+    def _paint_layer(self, painter: QPainter) -> None:
+        if self._site is None or not self._site.is_on_map:
+            return
+        if not self._layer.is_usable():
+            self._sharpen()
+        elif not self._layer.is_sharp(self._viewport):
+            self._sharpen_soon.start()
+        self._layer.paint(painter, self._viewport)
+
+    def _sharpen(self) -> None:
+        if self._site is not None:
+            self._layer.make(
+                self._viewport, self._site, self._plan_shapes, colours(), self.font(), self.devicePixelRatioF()
+            )
+            self.update()
+
+    def _paint_marks(self, painter: QPainter) -> None:
+        found, viewport = colours(), self._viewport
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self._selection is not None and self._site is not None and self._site.is_on_map:
+            place = place_of(self._selection, self._site, self._plan_shapes)
+            if place is not None:
+                paint_ring(painter, viewport.screen(place.mean(axis=0)[None])[0], self._selection.id, found)
+        source = self._tiles.source()
+        if self._model is not None or source is not None:
+            paint_scale_bar(painter, viewport, self._units, found)
+            paint_north(painter, QPointF(28, 28), found)
+        if source is not None:
+            corner = QPointF(viewport.width_px, viewport.height_px)
+            paint_text_box(painter, corner, source.info.attribution, found, is_right=True)
+        paint_text_box(painter, QPointF(56, 34), self.pointer_text(), found)
+        paint_note(painter, viewport, self.note(), found)
+
+
+def _covers(bounds_deg: tuple[float, float, float, float] | None, viewport: Viewport) -> bool:
+    """Whether a map reaches the centre of what is in sight; True where its bounds are not known."""
+    if bounds_deg is None:
+        return True
+    west, south, east, north = bounds_deg
+    lat, lon = geodetic_from_world(*viewport.centre)
+    return south <= lat <= north and west <= lon <= east

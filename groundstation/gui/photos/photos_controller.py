@@ -1,0 +1,329 @@
+"""What the Photos tab works on: the photos that were read, the panels found in them, and their corrections."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from groundstation.gui.application.context import Workspace
+from groundstation.services.jobs.runner import JobContext
+from groundstation.services.photos.cards import PhotoCard, photo_cards
+from groundstation.services.photos.coverage import PhotoCoverage, photo_coverage
+from groundstation.services.photos.found_panels import PanelDraft, search_panels, solved_draft, with_found_panels
+from groundstation.services.photos.intake import PhotoIntake, counted_again, take_in_photos
+from groundstation.services.photos.poses import BetterPoses
+from groundstation.services.photos.repose import Reposed, repose
+from groundstation.services.photos.tradeoff import Trial, facade_trials
+from groundstation.services.project.document import Document
+from groundstation.services.project.history import History
+from planning.base.errors import GroundStationError
+from planning.base.findings import Severity
+from planning.plan import Plan
+from planning.site.records import Facade, SiteModel
+from reconstruction.panels.solving.facades_file import found_facades
+
+if TYPE_CHECKING:
+    from reconstruction.dataset.prepare import PreparedData
+
+PHOTOS_FOLDER = "photos"
+"""Of a project."""
+
+Edit = Callable[[PanelDraft], PanelDraft]
+
+_Basis = tuple[tuple[Facade, ...], Plan | None]
+"""What coverage is counted over: the panels, and the plan that was flown."""
+
+
+class PhotosDesk(QObject):
+    """Reads photos, searches them and keeps the history of corrections.
+
+    Signals
+    -------
+    photosChanged()
+        Others were read.
+    coverageChanged()
+        It was counted again, over other panels or against another plan.
+    draftChanged()
+        Panels were found, corrected or solved.
+    trialsChanged()
+        Another way of searching was measured.
+    stateChanged()
+        What can be done is different.
+    """
+
+    photosChanged = Signal()  # noqa: N815  (Qt's own way of naming)
+    coverageChanged = Signal()  # noqa: N815
+    draftChanged = Signal()  # noqa: N815
+    trialsChanged = Signal()  # noqa: N815
+    stateChanged = Signal()  # noqa: N815
+
+    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._workspace = workspace
+        self.folder: Path | None = None
+        self.intake: PhotoIntake | None = None
+        self.cards: tuple[PhotoCard, ...] = ()
+        self.trials: tuple[Trial, ...] = ()
+        self._history: History[PanelDraft] | None = None
+        self._busy: set[int] = set()
+        self._counted: _Basis = ((), None)
+        self._counting: _Basis = ((), None)
+        self._coverage: PhotoCoverage | None = None
+        workspace.documentChanged.connect(self._document_changed)
+        workspace.jobsChanged.connect(self._jobs_changed)
+
+    @classmethod
+    def of(cls, workspace: Workspace) -> PhotosDesk:
+        """The one of a workspace: it stays when the window is made anew."""
+        found = workspace.findChild(PhotosDesk)
+        return cls(workspace, workspace) if found is None else found
+
+    @property
+    def is_coverage_current(self) -> bool:
+        """Whether the coverage that was counted is of the panels and the plan that there are now."""
+        return self.intake is not None and self._counted == self._basis()
+
+    @property
+    def coverage(self) -> PhotoCoverage | None:
+        """What the photos show of the site's panels; None where that is not known, or has not been counted yet."""
+        model = self._workspace.document.site
+        if self._coverage is None and self.intake is not None and model is not None and self.is_coverage_current:
+            self._coverage = photo_coverage(self.intake, model.site)
+        return self._coverage if self.is_coverage_current else None
+
+    @property
+    def draft(self) -> PanelDraft | None:
+        """Panels as they are now; None before a search."""
+        return None if self._history is None else self._history.value
+
+    @property
+    def undo_label(self) -> str:
+        """What `undo` would take back."""
+        return "" if self._history is None else self._history.undo_label
+
+    @property
+    def redo_label(self) -> str:
+        """What `redo` would do again."""
+        return "" if self._history is None else self._history.redo_label
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether photos are read or searched, or corrections solved."""
+        return bool(self._busy)
+
+    def usual_folder(self) -> Path | None:
+        """The folder of photos that was chosen, or the project's."""
+        project = self._workspace.session.folder
+        if self.folder is not None:
+            return self.folder
+        return None if project is None else project / PHOTOS_FOLDER
+
+    def read(self, folder: Path) -> None:
+        """Read a folder of photos over the site."""
+        model, basis = self._workspace.document.site, self._basis()
+        if model is None:
+            self._workspace.say(Severity.ERROR, self.tr("Open or import a site first: photos are placed on it."))
+            return
+        flown = basis[1]
+        self.folder = folder
+
+        def work(context: JobContext) -> PhotoIntake:
+            return take_in_photos(folder, model, flown, monitor=context)
+
+        def done(intake: PhotoIntake) -> None:
+            if _is_same_place(model, self._workspace.document.site):
+                self._taken_in(intake, basis)
+
+        self._start(self.tr("Read photos"), work, done)
+
+    def make_data_set(self, folder: Path) -> None:
+        """Write what a model is trained on: these photos, their poses, and the panels of the site."""
+        model, intake = self._workspace.document.site, self.intake
+        if model is None or intake is None:
+            return
+
+        def work(context: JobContext) -> PreparedData:
+            from groundstation.services.photos.dataset import prepare_read
+
+            return prepare_read(intake, model, folder, context)
+
+        def done(prepared: PreparedData) -> None:
+            for found in prepared.findings:
+                self._workspace.say(found.severity, f"{found.place}: {self._workspace.words(found.message)}")
+            text = self.tr("The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}")
+            self._workspace.say(Severity.OK, text.format(len(prepared.photos), folder))
+
+        self._start(self.tr("Make the data set"), work, done)
+
+    def count(self) -> None:
+        """Count the coverage again where the panels or the plan are others now; once for each, should it fail."""
+        model, intake, basis = self._workspace.document.site, self.intake, self._basis()
+        if model is None or intake is None or self.is_busy or basis in (self._counted, self._counting):
+            return
+        if model.site.n_panels == 0:
+            return
+        self._counting = basis
+
+        def work(context: JobContext) -> PhotoIntake:
+            return counted_again(intake, model, basis[1], context)
+
+        def done(counted: PhotoIntake) -> None:
+            if self.intake is intake:
+                self.intake, self._counted, self._coverage = counted, basis, None
+                self.coverageChanged.emit()
+
+        self._start(self.tr("Count coverage"), work, done)
+
+    def change_poses(self, label: str, poses: Callable[[JobContext], BetterPoses]) -> None:
+        """Go on with other poses of the same photos; panels that were found stay, and are solved with them."""
+        model, intake, draft, basis = self._workspace.document.site, self.intake, self.draft, self._basis()
+        if model is None or intake is None:
+            return
+
+        def work(context: JobContext) -> Reposed:
+            return repose(intake, draft, poses(context), model, basis[1], context)
+
+        def done(reposed: Reposed) -> None:
+            if self.intake is intake and self.draft is draft:
+                self._taken_in(reposed.intake, basis)
+                if reposed.draft is not None:
+                    self._found(reposed.draft)
+
+        self._start(label, work, done)
+
+    def find(self) -> None:
+        """Search the photos for panels."""
+        model, intake = self._workspace.document.site, self.intake
+        if model is None or intake is None:
+            return
+
+        def work(context: JobContext) -> PanelDraft:
+            usable = [photo for photo, is_usable in zip(intake.photos, intake.usable, strict=True) if is_usable]
+            return search_panels(usable, intake.metadata, model, monitor=context)
+
+        def done(draft: PanelDraft) -> None:
+            if self.intake is intake:
+                self._found(draft)
+
+        self._start(self.tr("Find panels"), work, done)
+
+    def measure(self, facade_id: str) -> None:
+        """Search the photos of a facade in other ways, to see what accuracy costs."""
+        draft, intake = self.draft, self.intake
+        if draft is None or intake is None:
+            return
+
+        def work(context: JobContext) -> tuple[Trial, ...]:
+            return facade_trials(draft, intake.metadata, facade_id, context)
+
+        def done(trials: tuple[Trial, ...]) -> None:
+            if self.intake is intake:
+                self.trials = trials
+                self.trialsChanged.emit()
+
+        self._start(self.tr("Measure the search"), work, done)
+
+    def edit(self, label: str, edit: Edit) -> None:
+        """Correct the panels, as one step that can be undone; what cannot be is said."""
+        if self._history is None:
+            return
+        try:
+            draft = edit(self._history.value)
+        except GroundStationError as error:
+            self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
+            return
+        self._history.change(label, draft)
+        self._changed()
+
+    def undo(self) -> None:
+        """Take the last correction back."""
+        if self._history is not None:
+            self._history.undo()
+            self._changed()
+
+    def redo(self) -> None:
+        """Do it again."""
+        if self._history is not None:
+            self._history.redo()
+            self._changed()
+
+    def use(self) -> bool:
+        """Put the panels into the site in the place of its own; False where that cannot be done now."""
+        document, draft = self._workspace.document, self.draft
+        if document.site is None or draft is None or draft.unsolved:
+            return False
+        try:
+            model = with_found_panels(document.site, draft)
+        except GroundStationError as error:
+            self._workspace.say(Severity.ERROR, self._workspace.words(str(error)))
+            return False
+        facades = found_facades(draft.found, draft.photos)
+        self._workspace.change(self.tr("Use found panels"), replace(document, site=model, found_facades=facades))
+        return True
+
+    def _basis(self) -> _Basis:
+        model, entry = self._workspace.document.site, self._workspace.document.current
+        return (() if model is None else model.site.facades), (None if entry is None else entry.plan)
+
+    def _taken_in(self, intake: PhotoIntake, basis: _Basis) -> None:
+        self.intake, self.cards, self._history, self.trials = intake, photo_cards(intake), None, ()
+        self._counted = self._counting = basis
+        self._coverage = None
+        self.trialsChanged.emit()
+        self.photosChanged.emit()
+        self.draftChanged.emit()
+        self.stateChanged.emit()
+
+    def _found(self, draft: PanelDraft) -> None:
+        self._history, self.trials = History(draft), ()
+        self.trialsChanged.emit()
+        self._changed()
+
+    def _changed(self) -> None:
+        """Show the draft, and solve what was corrected beside it."""
+        draft = self.draft
+        self.draftChanged.emit()
+        self.stateChanged.emit()
+        if draft is None or not draft.unsolved:
+            return
+
+        def work(context: JobContext) -> PanelDraft:
+            return solved_draft(draft, context)
+
+        def done(solved: PanelDraft) -> None:
+            # Corrected again meanwhile: the newer draft has a job of its own.
+            if self._history is not None and self._history.value is draft:
+                self._history.amend(solved)
+                self.draftChanged.emit()
+
+        self._start(self.tr("Solve panels"), work, done)
+
+    def _start(self, name: str, work: Callable[[JobContext], object], done: Callable[..., None]) -> None:
+        self._busy.add(self._workspace.start(name, work, done).id)
+        self.stateChanged.emit()
+
+    def _jobs_changed(self) -> None:
+        running = {job.id for job in self._workspace.jobs()}
+        if not self._busy <= running:
+            self._busy &= running
+            self.stateChanged.emit()
+
+    def _document_changed(self, before: Document, after: Document) -> None:
+        """Photos that were read over another building, or another origin, mean nothing on this one."""
+        if not _is_same_place(before.site, after.site) and self.intake is not None:
+            self.folder, self.intake, self.cards, self._history, self.trials = None, None, (), None, ()
+            self.trialsChanged.emit()
+            self.photosChanged.emit()
+            self.draftChanged.emit()
+        self.stateChanged.emit()
+
+
+def _is_same_place(before: SiteModel | None, after: SiteModel | None) -> bool:
+    """Whether a site was edited or saved, which may make its building anew, and stayed where it is."""
+    if before is None or after is None or before.site.origin != after.site.origin:
+        return False
+    return before.building is after.building or before.site.name == after.site.name

@@ -1,0 +1,318 @@
+"""What happens on the Plan tab: planning as a job, plans taken in hand, edits by hand. It shows nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.plan.method_names import method_name
+from groundstation.services.jobs.runner import Job, JobContext, JobState
+from groundstation.services.plan.editing import KEEPING_METHODS, edit_effect, has_same_panels, with_edited_plan
+from groundstation.services.plan.places import item_of_place
+from groundstation.services.plan.plan_cache import Bench, Groundwork, PlanInHand, take_in_hand
+from groundstation.services.plan.planning import plan_document_site, reunited
+from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
+from groundstation.services.project.input_files import read_given_plan
+from planning import revision as edits
+from planning.base.errors import GroundStationError
+from planning.base.findings import Severity
+from planning.plan import Plan, Viewpoint
+from planning.planner import Planned
+from planning.request import PlanRequest
+from planning.revision import Revision
+from planning.site.records import SiteModel
+
+
+class PlanDesk(QObject):
+    """Plans, and keeps the current plan in hand.
+
+    Signals
+    -------
+    planningStarted(Job, float), planningEnded()
+        With the time budget in seconds.
+    inHandChanged(PlanInHand or None)
+        The current plan can be looked at and edited; None while it is not in hand, or there is none.
+    refused(str)
+        Why an edit was not carried out.
+    """
+
+    planningStarted = Signal(object, float)  # noqa: N815  (Qt's own way of naming)
+    planningEnded = Signal()  # noqa: N815
+    inHandChanged = Signal(object)  # noqa: N815
+    refused = Signal(str)
+
+    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._workspace = workspace
+        self._bench = Bench()
+        self._in_hand: PlanInHand | None = None
+        self._planning: Job[Planned] | None = None
+        self._taking: Job[PlanInHand] | None = None
+        self._not_taken = ""
+        workspace.documentChanged.connect(self._document_changed)
+        self._take_current()
+
+    @property
+    def in_hand(self) -> PlanInHand | None:
+        """The current plan, when it can be looked at and edited."""
+        return self._in_hand
+
+    @property
+    def is_planning(self) -> bool:
+        """Whether a plan is being made, or waits to be."""
+        return self._planning is not None
+
+    @property
+    def why_not_in_hand(self) -> str:
+        """Why the current plan could not be taken in hand; empty while it is, is about to be, or there is none."""
+        return self._not_taken
+
+    def set_request(self, request: PlanRequest) -> None:
+        """What the next plan is wanted to be."""
+        self._workspace.amend(replace(self._workspace.document, request=request))
+
+    def plan(self) -> None:
+        """Plan the site with what is wanted; locked viewpoints of the current plan are kept."""
+        document = self._workspace.document
+        site = document.site
+        if site is None or self._planning is not None:
+            return
+        current = document.current
+        locked = () if current is None else tuple(view for view in current.plan.viewpoints if view.locked)
+        if locked and document.request.method not in KEEPING_METHODS:
+            names = ", ".join(view.id for view in locked)
+            text = self.tr("Only “Greedy with proof” can keep viewpoints. Choose it, or release those kept: {0}")
+            self.refused.emit(text.format(names))
+            return
+        try:
+            request = replace(document.request, locked=locked)
+        except ValueError as error:
+            self.refused.emit(
+                self.tr("{0}; release some, or ask for more views").format(self._workspace.words(str(error)))
+            )
+            return
+        prepared = self._bench.prepared_for(request, site)
+
+        def work(context: JobContext) -> Planned:
+            return reunited(context.apart(plan_document_site, site, request, prepared), site, prepared)
+
+        def done(planned: Planned) -> None:
+            self._planned(planned, request, site)
+
+        job = self._workspace.start(self.tr("Plan"), work, done, lambda _error: self._planning_over())
+        self._planning = job
+        self.planningStarted.emit(job, request.time_budget_s)
+
+    def stop_here(self) -> None:
+        """Good enough: keep the best so far."""
+        if self._planning is not None:
+            self._planning.stop()
+
+    def job_ended(self) -> None:
+        """A job ended: somebody may have cancelled one of these."""
+        if self._planning is not None and self._planning.state is JobState.CANCELLED:
+            self._planning_over()
+        if self._taking is not None and self._taking.state is JobState.CANCELLED:
+            self._give_up(self.tr("It was not looked at. Choose it in the list of plans to do so."))
+
+    def choose(self, plan_id: str) -> None:
+        """Look at another plan, or again at one that could not be taken in hand."""
+        if plan_id == self._workspace.document.current_plan_id and self._not_taken:
+            self._take_current()
+        if plan_id != self._workspace.document.current_plan_id:
+            self._workspace.amend(replace(self._workspace.document, current_plan_id=plan_id))
+
+    def rename(self, plan_id: str, title: str) -> None:
+        """Give a plan another title."""
+        document = self._workspace.document
+        entry = document.entry(plan_id)
+        if entry is not None and title != entry.title:
+            current = document.current_plan_id
+            changed = replace(document.with_plan(replace(entry, title=title)), current_plan_id=current)
+            self._workspace.change(self.tr("Rename plan"), changed)
+
+    def remove(self, plan_id: str) -> None:
+        """Take a plan out of the project."""
+        self._workspace.change(self.tr("Remove plan"), self._workspace.document.without_plan(plan_id))
+
+    def open_plan(self, path: Path) -> None:
+        """Bring a plan file into the project."""
+
+        def opened(plan: Plan) -> None:
+            document = self._workspace.document
+            entry = PlanEntry(document.free_plan_id(), path.name.removesuffix(".json").removesuffix(".plan"), plan)
+            self._workspace.change(self.tr("Open plan"), document.with_plan(entry))
+
+        self._workspace.start(self.tr("Open plan"), lambda _context: read_given_plan(path), opened)
+
+    def set_viewpoint(self, viewpoint: Viewpoint) -> None:
+        """Move, turn, lock or unlock the viewpoint with this identifier, as it differs."""
+        if self._in_hand is None:
+            self._refuse_all()
+            return
+        old = self._in_hand.revision.viewpoint(viewpoint.id)
+        if old == viewpoint:
+            return
+        if old.locked != viewpoint.locked:
+            label = self.tr("Keep {0}") if viewpoint.locked else self.tr("Release {0}")
+            self._edit(label, viewpoint.id, lambda revision: edits.lock(revision, [viewpoint.id], viewpoint.locked))
+            return
+        if self._refuse_kept(viewpoint.id):
+            return
+        pose = viewpoint.position_enu_m, viewpoint.heading_deg, viewpoint.gimbal_pitch_deg
+        is_turn = old.position_enu_m == viewpoint.position_enu_m
+        label = self.tr("Turn {0}") if is_turn else self.tr("Move {0}")
+        self._edit(label, viewpoint.id, lambda revision: edits.move(revision, viewpoint.id, *pose))
+
+    def add_viewpoint(self, viewpoint: Viewpoint) -> None:
+        """Add a viewpoint where and as another one looks; it gets an identifier of its own, and is selected."""
+        in_hand = self._in_hand
+        if in_hand is None:
+            self._refuse_all()
+            return
+        new_id = edits.next_id(in_hand.plan)
+        pose = viewpoint.position_enu_m, viewpoint.heading_deg, viewpoint.gimbal_pitch_deg
+        if self._edit(self.tr("Add {0}"), new_id, lambda revision: edits.add(revision, *pose)):
+            self._workspace.select(Item(ItemKind.VIEWPOINT, new_id))
+
+    def delete_viewpoint(self, viewpoint_id: str) -> None:
+        """Delete a viewpoint."""
+        if not self._refuse_kept(viewpoint_id):
+            self._edit(self.tr("Delete {0}"), viewpoint_id, lambda revision: edits.delete(revision, [viewpoint_id]))
+
+    def aim(self, viewpoint_id: str, panel_id: str) -> None:
+        """Turn a viewpoint towards a panel."""
+
+        def turned(revision: Revision) -> Revision:
+            view = revision.viewpoint(viewpoint_id)
+            heading, pitch = edits.aim_at(revision, view.position_enu_m, panel_id)
+            return edits.move(revision, viewpoint_id, None, heading, pitch)
+
+        if not self._refuse_kept(viewpoint_id):
+            self._edit(self.tr("Aim {0}"), viewpoint_id, turned)
+
+    def _edit(self, label: str, viewpoint_id: str, edit: Callable[[Revision], Revision]) -> bool:
+        in_hand, document = self._in_hand, self._workspace.document
+        if in_hand is None or document.current is None:
+            self._refuse_all()
+            return False
+        try:
+            edited = in_hand.with_revision(edit(in_hand.revision))
+        except (GroundStationError, ValueError) as error:
+            self.refused.emit(self._workspace.words(str(error)))
+            return False
+        self._bench.keep(edited.plan, edited)
+        done, effect = label.format(viewpoint_id), edit_effect(in_hand.revision, edited.revision)
+        self._workspace.change(done, with_edited_plan(document, edited.revision))
+        text = self.tr("{0}: sections gained {1}, lost {2}; flight time {3:+.0f} s").format(
+            done, effect.gained, effect.lost, effect.added_s
+        )
+        self._workspace.say(Severity.NOTE, text)
+        for finding in effect.problems:
+            self._workspace.say(
+                finding.severity,
+                self._workspace.words(finding.message),
+                item_of_place(finding.place, self._workspace.document),
+                f"plan.{finding.code}.{finding.place}",
+            )
+        return True
+
+    def _refuse_kept(self, viewpoint_id: str) -> bool:
+        """Whether a viewpoint is to be left alone; says so, in the words of the window."""
+        entry = self._workspace.document.current
+        viewpoint = None if entry is None else entry.viewpoint(viewpoint_id)
+        if viewpoint is None or not viewpoint.locked:
+            return False
+        self.refused.emit(
+            self.tr("{0} stays as it is: switch off “Keep when planning again” before you change it.").format(
+                viewpoint_id
+            )
+        )
+        return True
+
+    def _refuse_all(self) -> None:
+        if self._workspace.document.current is None:
+            self.refused.emit(self.tr("There is no plan to change; plan a flight or open a plan first."))
+        else:
+            self.refused.emit(self._not_taken or self.tr("The plan is still being looked at; try again in a moment."))
+
+    def _planned(self, planned: Planned, request: PlanRequest, site: SiteModel) -> None:
+        self._planning_over()
+        document, plan = self._workspace.document, planned.plan
+        if not has_same_panels(site, document.site):
+            text = self.tr("The plan is not kept: it was made for “{0}”, which is no longer open.")
+            self._workspace.say(Severity.WARNING, text.format(site.site.name))
+            return
+        self._bench.keep_groundwork(Groundwork(planned.prepared))
+        title = self.tr("{0}, {1} views").format(method_name(plan.method), len(plan.viewpoints))
+        entry = PlanEntry(document.free_plan_id(), title, plan, request, planned.bound_for_views)
+        self._workspace.change(self.tr("Plan"), document.with_plan(entry))
+        coverage = plan.coverage
+        self._workspace.say(
+            Severity.OK,
+            self.tr("Views: {0}, sorties: {1}; covered {2} of at most {3} sections").format(
+                len(plan.viewpoints), len(plan.sorties), coverage.covered, coverage.reachable_upper_bound
+            ),
+        )
+        for finding in planned.findings:
+            about = f"plan.{finding.code}.{finding.place}"
+            self._workspace.say(finding.severity, self._workspace.words(finding.message), about=about)
+
+    def _planning_over(self) -> None:
+        self._planning = None
+        self.planningEnded.emit()
+
+    def _document_changed(self, before: Document, after: Document) -> None:
+        plan_before = None if before.current is None else before.current.plan
+        plan_after = None if after.current is None else after.current.plan
+        if plan_before is not plan_after or before.site is not after.site:
+            self._workspace.settle("plan.")
+            self._take_current()
+
+    def _take_current(self) -> None:
+        """Take the current plan in hand: at once where it was before, else by a job."""
+        document = self._workspace.document
+        entry, site = document.current, document.site
+        if self._taking is not None:
+            self._workspace.cancel(self._taking, quietly=True)
+            self._taking = None
+        self._not_taken = ""
+        if entry is None or site is None or site.site.n_panels == 0:  # nothing that an imported mission could show
+            self._set_in_hand(None)
+            return
+        plan = entry.plan
+        found = self._bench.find(plan, site)
+        self._set_in_hand(found)
+        if found is not None:
+            return
+        groundwork = self._bench.groundwork_for(plan, site)
+
+        def taken(in_hand: PlanInHand) -> None:
+            self._taking = None
+            self._bench.keep(plan, in_hand)
+            if self._is_current(plan):
+                self._set_in_hand(in_hand)
+
+        self._taking = self._workspace.start(
+            self.tr("Look at the plan"),
+            lambda context: take_in_hand(site, plan, groundwork, context),
+            taken,
+            lambda error: self._give_up(self._workspace.words(str(error))) if self._is_current(plan) else None,
+        )
+
+    def _is_current(self, plan: Plan) -> bool:
+        current = self._workspace.document.current
+        return current is not None and current.plan is plan
+
+    def _give_up(self, why: str) -> None:
+        self._taking, self._not_taken = None, why
+        self.inHandChanged.emit(None)
+
+    def _set_in_hand(self, in_hand: PlanInHand | None) -> None:
+        if in_hand is not self._in_hand:
+            self._in_hand = in_hand
+            self.inHandChanged.emit(in_hand)

@@ -1,0 +1,131 @@
+"""A list of findings, each with its severity, what was measured, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QEvent, QModelIndex, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QStandardItem, QStandardItemModel
+from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
+
+from groundstation.gui.application.translate import own_words
+from groundstation.gui.widgets.severity_icon import SIZE_PX, severity_icon
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.mission.finding_texts import SEVERITIES, by_severity, measured_text
+from groundstation.services.units import UnitSystem
+from planning.base.findings import Finding, Severity
+
+PLACE_ROLE = Qt.ItemDataRole.UserRole
+
+
+class FindingsList(QListView):
+    """The gravest first.
+
+    Signals
+    -------
+    placePicked(str)
+        The user wants to see the place of a finding.
+    """
+
+    placePicked = Signal(str)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._findings: tuple[Finding, ...] = ()
+        self._shown = frozenset(SEVERITIES)
+        self._units = UnitSystem.METRIC
+        self._placeholder = ""
+        self._rows = QStandardItemModel(self)
+        self.setModel(self._rows)
+        self.setWordWrap(True)
+        self.setIconSize(QSize(SIZE_PX, SIZE_PX))
+        self.setResizeMode(QListView.ResizeMode.Adjust)
+        # Long lists are laid out a batch at a time, so that the window answers meanwhile.
+        self.setLayoutMode(QListView.LayoutMode.Batched)
+        self.setBatchSize(200)
+        self.setSpacing(1)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
+        self.setAccessibleName(self.tr("Findings"))
+        self.clicked.connect(self._row_picked)
+        self.activated.connect(self._row_picked)
+
+    def set_findings(self, findings: Sequence[Finding]) -> None:
+        """Show findings."""
+        self._findings = by_severity(findings)
+        self._fill()
+
+    def set_shown(self, severities: Sequence[Severity]) -> None:
+        """Show only these severities."""
+        self._shown = frozenset(severities)
+        self._fill()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show values in other units."""
+        self._units = units
+        self._fill()
+
+    def set_placeholder(self, text: str) -> None:
+        """Say something where no finding is shown."""
+        self._placeholder = text
+        self.viewport().update()
+
+    def texts(self) -> tuple[str, ...]:
+        """What the rows say, from the top."""
+        return tuple(self._rows.item(row).text() for row in range(self._rows.rowCount()))
+
+    def severity_word(self, severity: Severity) -> str:
+        """A severity in the user's language."""
+        words = {
+            Severity.ERROR: self.tr("Error"),
+            Severity.WARNING: self.tr("Warning"),
+            Severity.NOTE: self.tr("Note"),
+            Severity.OK: self.tr("Kept"),
+        }
+        return words[severity]
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """The rows, or what is said instead."""
+        super().paintEvent(event)
+        if not self._rows.rowCount() and self._placeholder:
+            painter = QPainter(self.viewport())
+            painter.setPen(QColor(colours().muted))
+            room = self.viewport().rect().adjusted(12, 12, -12, -12)
+            painter.drawText(room, Qt.TextFlag.TextWordWrap | Qt.AlignmentFlag.AlignCenter, self._placeholder)
+            painter.end()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Draw the pictures in the colours of another theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._fill()
+
+    def _fill(self) -> None:
+        icons = {severity: severity_icon(severity, colours()) for severity in SEVERITIES}
+        self._rows.clear()
+        for finding in self._findings:
+            if finding.severity in self._shown:
+                row = QStandardItem(icons[finding.severity], self._text(finding))
+                row.setData(finding.place, PLACE_ROLE)
+                row.setToolTip(self.tr("Click to see the place") if finding.place else "")
+                self._rows.appendRow(row)
+
+    def _text(self, finding: Finding) -> str:
+        title = self.tr("{0} ({1})").format(self.severity_word(finding.severity), finding.code)
+        facts = []
+        if finding.value is not None:
+            facts.append(self.tr("measured {0}").format(self._measured(finding.value, finding.unit)))
+        if finding.limit is not None:
+            facts.append(self.tr("limit {0}").format(self._measured(finding.limit, finding.unit)))
+        if finding.place:
+            facts.append(self.tr("at {0}").format(own_words(finding.place, self._units)))
+        return "\n".join([title, own_words(finding.message, self._units), *([" · ".join(facts)] if facts else [])])
+
+    def _measured(self, value: float, unit: str) -> str:
+        return own_words(measured_text(value, unit, self._units), self._units)
+
+    def _row_picked(self, index: QModelIndex) -> None:
+        place = index.data(PLACE_ROLE)
+        if place:
+            self.placePicked.emit(place)

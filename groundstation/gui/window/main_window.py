@@ -1,0 +1,267 @@
+"""The main window: tabs along the pilot's work around one shared view, the job bar, messages, and the menus.
+
+It arranges; what happens in a tab is the tab's own matter, and what happens to the project is in `project_actions`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QAction, QCloseEvent, QShowEvent
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QMainWindow,
+    QScrollArea,
+    QSplitter,
+    QTabBar,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.loading import BackgroundImport
+from groundstation.gui.shared_view import Stage
+from groundstation.gui.tabs import Place, Tab, TabSpec, find_tabs
+from groundstation.gui.widgets.scrolling import CurrentStack, scrolled
+from groundstation.gui.widgets.tab_order import first_in, next_in_order
+from groundstation.gui.window.job_bar import JobBar
+from groundstation.gui.window.message_area import MessageArea
+
+SIDE_WIDTH_PX, DETAIL_WIDTH_PX = 300, 330
+BOTTOM_HEIGHT_PX = 190
+"""First sizes of what stands around the shared view, at 1280 x 720."""
+
+
+SCENE_MODULE = "groundstation.gui.view3d.scene_view"
+
+
+class MainWindow(QMainWindow):
+    """The window.
+
+    Signals
+    -------
+    tabShown(str)
+        Name of the tab that came to the front.
+    closing(QCloseEvent)
+        Ignore the event to stay.
+    """
+
+    tabShown = Signal(str)  # noqa: N815  (Qt's own way of naming)
+    closing = Signal(object)
+
+    def __init__(self, workspace: Workspace) -> None:
+        super().__init__()
+        self._workspace = workspace
+        self._specs = find_tabs()
+        self._tabs: dict[str, Tab] = {}
+        self._shown: TabSpec | None = None
+        self._was_shown = False
+        self._quick_buttons: list[QWidget] = []
+        self.stage = Stage(workspace)
+        self.stage.tabRequested.connect(self.show_tab)
+        self.messages = MessageArea(workspace)
+        self.job_bar = JobBar(workspace)
+        self._make_layout()
+        self._bar.currentChanged.connect(self._tab_chosen)
+
+    def _make_layout(self) -> None:
+        self._bar = QTabBar()
+        self._bar.setExpanding(False)
+        self._bar.setDrawBase(False)
+        self._bar.setUsesScrollButtons(True)
+        for number, spec in enumerate(self._specs):
+            self._bar.addTab(spec.shown_title())
+            self._bar.setTabToolTip(number, self.tr("{0} (Ctrl+{1})").format(spec.shown_tip(), number + 1))
+        self._left, self._right, self._bottom = CurrentStack(), CurrentStack(), CurrentStack()
+        # The left side is as high as the window: forms are long. The lists below need width more.
+        beside = 1280 - SIDE_WIDTH_PX
+        self._view_and_right = _splitter(
+            Qt.Orientation.Horizontal, (self.stage, self._right), (beside - DETAIL_WIDTH_PX, DETAIL_WIDTH_PX), 0
+        )
+        self._over_bottom = _splitter(
+            Qt.Orientation.Vertical, (self._view_and_right, self._bottom), (450, BOTTOM_HEIGHT_PX), 0
+        )
+        self._around = _splitter(Qt.Orientation.Horizontal, (self._left, self._over_bottom), (SIDE_WIDTH_PX, beside), 1)
+        self._pages = CurrentStack()
+        self._pages.addWidget(self._around)
+        page = QWidget()
+        layout = QVBoxLayout(page)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        self._top = QHBoxLayout()
+        self._top.addWidget(self._bar, 1)
+        layout.addLayout(self._top)
+        layout.addWidget(self._pages, 1)
+        below = QHBoxLayout()
+        below.addWidget(self.messages, 1)
+        below.addWidget(self.job_bar, 1)
+        layout.addLayout(below)
+        self.setCentralWidget(page)
+
+    def add_quick_actions(self, actions: Iterable[QAction]) -> None:
+        """Put large buttons for actions beside the tabs: what is needed everywhere must be hit by a finger."""
+        for action in actions:
+            button = QToolButton()
+            button.setDefaultAction(action)
+            self._top.addWidget(button)
+            self._quick_buttons.append(button)
+
+    def tab_names(self) -> tuple[str, ...]:
+        """Names of all tabs, in order."""
+        return tuple(spec.name for spec in self._specs)
+
+    def specs(self) -> tuple[TabSpec, ...]:
+        """All tabs, in order."""
+        return self._specs
+
+    def tab(self, name: str) -> Tab:
+        """A tab by its name; made when it was not yet."""
+        if name not in self._tabs:
+            spec = next(spec for spec in self._specs if spec.name == name)
+            made = self._tabs[name] = spec.make(self._workspace, self.stage)
+            if spec.place is Place.WHOLE_PAGE:
+                self._pages.addWidget(made.left)
+            else:
+                self._left.addWidget(scrolled(made.left))
+                if made.right is not None:
+                    self._right.addWidget(made.right)
+                if made.bottom is not None:
+                    self._bottom.addWidget(made.bottom)
+        return self._tabs[name]
+
+    def show_tab(self, name: str) -> None:
+        """Bring a tab to the front, and the keyboard to its first widget."""
+        self._bar.setCurrentIndex(self.tab_names().index(name))
+        if self._shown is None:
+            self._tab_chosen(self._bar.currentIndex())
+        first = first_in(self._tabs[name].left)
+        (self._bar if first is None else first).setFocus(Qt.FocusReason.ShortcutFocusReason)
+
+    def shown_tab(self) -> str:
+        """Name of the tab at the front."""
+        return "" if self._shown is None else self._shown.name
+
+    def _tab_chosen(self, index: int) -> None:
+        spec = self._specs[index]
+        if spec is self._shown:
+            return
+        if self._shown is not None:
+            self._tabs[self._shown.name].hidden()
+        tab = self.tab(spec.name)
+        self._shown = spec
+        if spec.place is Place.WHOLE_PAGE:
+            self._pages.setCurrentWidget(tab.left)
+        else:
+            self._pages.setCurrentWidget(self._around)
+            self._left.setCurrentWidget(_scroll_area_of(tab.left))
+            for stack, widget in ((self._right, tab.right), (self._bottom, tab.bottom)):
+                stack.setVisible(widget is not None)
+                if widget is not None:
+                    stack.setCurrentWidget(widget)
+        # Keys of a tab work while it is shown; which of its actions can be done is the tab's own matter.
+        for name, made in self._tabs.items():
+            for action in made.actions():
+                (self.addAction if name == spec.name else self.removeAction)(action)
+        tab.shown()
+        self.tabShown.emit(spec.name)
+
+    def focusNextPrevChild(self, next: bool) -> bool:  # noqa: A002, N802
+        """Take Tab through the window as it is read: tabs, form, view, details, lists, messages, jobs."""
+        regions = (
+            self._bar,
+            *self._quick_buttons,
+            self._pages if self._pages.currentWidget() is not self._around else self._left,
+            self.stage,
+            self._right,
+            self._bottom,
+            self.messages.sheet,
+            self.messages,
+            self.job_bar,
+        )
+        following = next_in_order(regions, self.focusWidget(), forward=next)
+        if following is None:
+            return False
+        following.setFocus(Qt.FocusReason.TabFocusReason if next else Qt.FocusReason.BacktabFocusReason)
+        return True
+
+    def layout_text(self) -> str:
+        """Sizes of everything that can be resized, as text for the settings."""
+        parts = (self.saveGeometry(), *(splitter.saveState() for splitter in self._splitters()))
+        return ";".join(bytes(part.toBase64().data()).decode() for part in parts)
+
+    def set_layout_text(self, text: str) -> None:
+        """Take sizes over that `layout_text` gave; texts of anything else change nothing."""
+        from PySide6.QtCore import QByteArray
+
+        parts = [QByteArray.fromBase64(part.encode()) for part in text.split(";")]
+        if len(parts) == 1 + len(self._splitters()):
+            self.restoreGeometry(parts[0])
+            for splitter, part in zip(self._splitters(), parts[1:], strict=True):
+                splitter.restoreState(part)
+
+    def _splitters(self) -> tuple[QSplitter, ...]:
+        return self._around, self._over_bottom, self._view_and_right
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Paint first; what takes long comes after."""
+        super().showEvent(event)
+        if not self._was_shown:
+            self._was_shown = True
+            modules = [spec.implementation for spec in self._specs if spec.implementation]
+            first = self._specs[max(0, self._bar.currentIndex())].implementation
+            modules.sort(key=lambda module: module != first)
+            self._loading = BackgroundImport([*modules[:1], SCENE_MODULE, *modules[1:]], self)
+            self._loading.imported.connect(self._imported)
+            QTimer.singleShot(0, self._loading, self._loading.start)
+
+    def _imported(self, module: str) -> None:
+        """Show the first tab, then the 3-D view, as they can be had."""
+        if self._shown is None:
+            self._tab_chosen(max(0, self._bar.currentIndex()))
+        if module == SCENE_MODULE:
+            self.stage.make_scene()
+
+    def retire(self) -> None:
+        """Make room for another window on the same workspace: jobs go on, nobody is asked."""
+        self._show_no_more()
+        self.stage.close_views()
+        self.hide()
+
+    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
+        """Ask those who have something to lose, end the jobs, free the 3-D view."""
+        event.accept()
+        self.closing.emit(event)
+        if event.isAccepted():
+            self.stage.closing.emit(event)
+        if not event.isAccepted():
+            return
+        self._workspace.close()
+        self._show_no_more()
+        self.stage.close_views()
+        super().closeEvent(event)
+
+    def _show_no_more(self) -> None:
+        """Bring no tab to the front any more: its menu may have gone before the row of tabs does."""
+        self._bar.blockSignals(True)
+
+
+def _splitter(
+    orientation: Qt.Orientation, widgets: tuple[QWidget, ...], sizes_px: tuple[int, ...], growing: int
+) -> QSplitter:
+    """Widgets beside or above each other; the `growing` one gets what the window has more than the first sizes."""
+    splitter = QSplitter(orientation)
+    for number, widget in enumerate(widgets):
+        splitter.addWidget(widget)
+        splitter.setStretchFactor(number, int(number == growing))
+    splitter.setSizes(list(sizes_px))
+    splitter.setHandleWidth(6)
+    splitter.setChildrenCollapsible(False)
+    return splitter
+
+
+def _scroll_area_of(widget: QWidget) -> QScrollArea:
+    area = widget.parentWidget().parentWidget()
+    assert isinstance(area, QScrollArea)
+    return area

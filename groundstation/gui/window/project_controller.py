@@ -1,0 +1,419 @@
+"""The desk: what happens to the project as a whole. New, open, save, autosave, recovery, settings, and the end.
+
+It owns the workspace and the window, and makes the window anew when the language changes: everything that matters is
+in the workspace, the window only shows it.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
+from PySide6.QtGui import QCloseEvent
+from PySide6.QtWidgets import QApplication
+
+from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.garbage import GarbageCollector
+from groundstation.gui.application.languages import Translations
+from groundstation.gui.application.loading import leave_modules_alone
+from groundstation.gui.widgets.questions import Answer, Questions, file_name
+from groundstation.gui.widgets.theme import apply_theme
+from groundstation.gui.window.main_window import MainWindow
+from groundstation.gui.window.menus import Menus
+from groundstation.services.jobs.runner import JobRunner
+from groundstation.services.jobs.worker import Worker
+from groundstation.services.project.document import Document
+from groundstation.services.project.folder import create_project, save_project
+from groundstation.services.project.lock import ProjectLock
+from groundstation.services.project.project_file import is_project
+from groundstation.services.project.project_session import Keeper, TakenProject
+from groundstation.services.project.recovery import Recovery, discard_recovery, find_recovery, find_unsaved, recover
+from groundstation.services.project.session import Session
+from groundstation.services.settings import Settings, settings_at_start, settings_path, write_settings
+from planning.base.errors import GroundStationError, InputError
+from planning.base.findings import Severity
+from planning.request import PlanRequest
+
+
+class Desk(QObject):
+    """One project at a time, in one window.
+
+    Signals
+    -------
+    opened()
+        Another project, or a new one, is on the desk.
+    autosaveFailed(str)
+    """
+
+    opened = Signal()
+    autosaveFailed = Signal(str)  # noqa: N815  (Qt's own way of naming)
+
+    def __init__(
+        self, application: QApplication, questions: Questions | None = None, worker: Worker | None = None
+    ) -> None:
+        super().__init__()
+        leave_modules_alone()
+        self._application = application
+        self._questions = Questions() if questions is None else questions
+        self._settings_problems: list[str] = []
+        self._settings = settings_at_start(settings_path(), self._settings_problems.append)
+        self._translations = Translations(application)
+        self._garbage = GarbageCollector(self, lambda: self.workspace.is_busy)
+        self._own_worker = Worker() if worker is None else None
+        self._worker = self._own_worker if worker is None else worker
+        self._runner = JobRunner(worker=self._worker)
+        self.keeper = Keeper(self.autosaveFailed.emit)
+        self.workspace = Workspace(Session(_first_document(self._settings)), self._runner, self)
+        self.workspace.set_units(self._settings.units)
+        self._dress()
+        self.window = self._make_window()
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self.autosave_now)
+        self.autosaveFailed.connect(lambda text: self._warn(text, "project.copy"))
+        self.workspace.documentChanged.connect(lambda *_: self._show_title())
+        self._start_timer()
+
+    # The window
+
+    def _make_window(self) -> MainWindow:
+        window = MainWindow(self.workspace)
+        self.menus = Menus(window, self.workspace, self)
+        window.closing.connect(self._window_closing)
+        window.stage.tilesChanged.connect(self._tiles_changed)
+        window.stage.sceneReady.connect(lambda _scene: self._scene_is_ready())
+        self._title_of(window)
+        return window
+
+    def show(self) -> None:
+        """Show the window as it was left; then say what the settings file has wrong and look for unsaved work."""
+        screen = self._application.primaryScreen().availableGeometry()
+        self.window.resize(min(1400, screen.width()), min(900, screen.height()))
+        self.window.set_layout_text(self._settings.window_layouts.get(self._layout_key(), ""))
+        self.window.show()
+        QTimer.singleShot(0, self._after_first_paint)
+
+    def _scene_is_ready(self) -> None:
+        self._garbage.settle()
+        threading.Thread(target=self._worker.start, name="start-worker", daemon=True).start()
+
+    def _after_first_paint(self) -> None:
+        for problem in self._settings_problems:
+            self.workspace.say(Severity.WARNING, self.workspace.words(problem), about=f"settings.{problem}")
+        if self._settings.map_tiles:
+            self.window.stage.set_tiles(Path(self._settings.map_tiles))
+        if self.workspace.session.folder is None:
+            self._offer_unsaved(find_unsaved())
+
+    def _change_language(self) -> None:
+        if self.workspace.jobs():
+            # Their results belong to widgets of this window.
+            text = self.tr("Something is running: the language changes when Reflight is started next.")
+            self.workspace.say(Severity.NOTE, text)
+            return
+        self._translations.use(self._settings.language)
+        self._rebuild_window()
+
+    def _rebuild_window(self) -> None:
+        old, shown = self.window, self.window.shown_tab()
+        layout, geometry = old.layout_text(), old.geometry()
+        old.retire()
+        self.window = self._make_window()
+        self.window.messages.take_over(old.messages)
+        self.window.setGeometry(geometry)
+        if shown:
+            self.window.show_tab(shown)
+        self.window.set_layout_text(layout)
+        self.window.show()
+        if self._settings.map_tiles:
+            self.window.stage.set_tiles(Path(self._settings.map_tiles))
+        old.deleteLater()
+
+    def _show_title(self) -> None:
+        self._title_of(self.window)
+
+    def _title_of(self, window: MainWindow) -> None:
+        session = self.workspace.session
+        site = session.document.site
+        name = session.folder.name if session.folder is not None else self.tr("New project")
+        if site is not None and session.folder is None:
+            name = site.site.name
+        window.setWindowTitle(f"{name}[*] - Reflight")
+        window.setWindowModified(not session.is_saved)
+
+    # Settings
+
+    def settings(self) -> Settings:
+        """As they are."""
+        return self._settings
+
+    def choose(self, **changes: Any) -> None:
+        """Change settings by name, take them over at once, and keep them."""
+        before, self._settings = self._settings, replace(self._settings, **changes)
+        if (before.theme, before.text_scale) != (self._settings.theme, self._settings.text_scale):
+            self._dress()
+        self.workspace.set_units(self._settings.units)
+        if before.language != self._settings.language:
+            self._change_language()
+        if before.autosave_s != self._settings.autosave_s:
+            self._start_timer()
+        self._keep_settings()
+
+    def open_map_tiles(self) -> None:
+        """Ask for a file with map tiles."""
+        name = self._questions.file(self.window, self.tr("Map tiles"), self.tr("Map tiles (*.mbtiles)"))
+        if name is not None:
+            self.window.stage.open_tiles(name)
+
+    def _tiles_changed(self, path: str) -> None:
+        self.choose(map_tiles=path)
+
+    def _dress(self) -> None:
+        self._translations.use(self._settings.language)
+        apply_theme(self._application, self._settings.theme, self._settings.text_scale)
+
+    def _keep_settings(self) -> None:
+        try:
+            write_settings(settings_path(), self._settings)
+        except InputError as error:
+            self.workspace.say(
+                Severity.WARNING,
+                self.tr("The settings could not be kept: {0}").format(self.workspace.words(str(error))),
+                about="settings.kept",
+            )
+        else:
+            self.workspace.settle("settings.kept")
+
+    def _layout_key(self) -> str:
+        size = self._application.primaryScreen().availableGeometry()
+        return f"{size.width()}x{size.height()}"
+
+    # Projects
+
+    def new_project(self) -> None:
+        """Start over, after asking about what is not saved."""
+        self._leave(lambda: self._put_on_desk(_first_document(self._settings), None))
+
+    def open_project(self) -> None:
+        """Ask for a folder, and open it."""
+        project = self.workspace.session.folder
+        beside = None if project is None else project.parent
+        folder = self._questions.folder(self.window, self.tr("Open project"), beside)
+        if folder is not None:
+            self.open_folder(folder)
+
+    def open_recent(self, folder: str) -> None:
+        """Open a project that was open before."""
+        if not Path(folder).is_dir():
+            self._settings = self._settings.without_recent(folder)
+            self.workspace.say(
+                Severity.ERROR,
+                self.tr("{0}: this folder is not there any more; was it moved or renamed?").format(folder),
+            )
+            return
+        self.open_folder(Path(folder))
+
+    def open_folder(self, folder: Path) -> None:
+        """Open a project, after asking about what is not saved."""
+
+        def open_it() -> None:
+            take = self.keeper.taking(folder)
+            self.workspace.start(self.tr("Open project"), lambda _context: take(), self._opened)
+
+        self._leave(open_it)
+
+    def open_path(self, path: Path) -> None:
+        """Open a project folder, its project.json, or a site file."""
+        if path.is_dir() or path.name == "project.json":
+            self.open_folder(path)
+            return
+        from groundstation.gui.site.site_opener import SiteOpener
+
+        SiteOpener(self.workspace, self.window).open_site(path)
+
+    def save(self, then: Callable[[], None] | None = None) -> None:
+        """Save where the project is kept, or ask where."""
+        folder = self.workspace.session.folder
+        if folder is None or not self.keeper.may_save:
+            self.save_as(then)
+        else:
+            self._save_in(folder, then)
+
+    def save_as(self, then: Callable[[], None] | None = None) -> None:
+        """Ask for a folder, and save there."""
+        session = self.workspace.session
+        site = session.document.site
+        name = self.tr("New project") if site is None else file_name(site.site.name)
+        beside = Path.home() if session.folder is None else session.folder.parent
+        folder = self._questions.new_folder(self.window, self.tr("Save project as"), beside / name)
+        if folder is not None:
+            self.save_in(folder, then)
+
+    def save_in(self, folder: Path, then: Callable[[], None] | None = None) -> None:
+        """Save as a new project in a folder."""
+        self._save_in(folder, then)
+
+    def _save_in(self, folder: Path, then: Callable[[], None] | None) -> None:
+        document = self.workspace.document
+        is_new = folder != self.workspace.session.folder or not is_project(folder)
+
+        def work(_context: object) -> Document:
+            if is_new:
+                return create_project(folder, document, site_source=document.site_source)
+            return save_project(folder, document, site_source=document.site_source)
+
+        def done(written: Document) -> None:
+            if is_new:
+                self._or_warn(lambda: self.keeper.take_saved(folder))
+            self.workspace.session.saved(document, written, folder)
+            self.workspace.settle("project.copy")
+            if self.workspace.session.is_saved:
+                self.keeper.drop_copy()
+            self._remember(folder)
+            self._show_title()
+            self.workspace.say(Severity.OK, self.tr("Saved in {0}").format(folder))
+            if then is not None:
+                then()
+
+        self.workspace.start(self.tr("Save"), work, done)
+
+    def _opened(self, taken: TakenProject) -> None:
+        project = taken.project
+        site_source = project.folder / project.record.site if project.record.site else None
+        self._put_on_desk(replace(project.document, site_source=site_source), project.folder, taken.lock)
+        if taken.problem:
+            self._warn(taken.problem, "project.lock")
+        for note in project.notes:
+            text = self.workspace.words(note.message)
+            self.workspace.say(note.severity, text, about=f"project.note.{text}")
+        self._remember(project.folder)
+        site = project.document.site
+        n_panels = 0 if site is None else site.site.n_panels
+        self.workspace.say(
+            Severity.OK,
+            self.tr("{0}: {1} panels, {2} plans").format(project.name, n_panels, len(project.document.plans)),
+        )
+        found = find_recovery(project.folder) if taken.lock is not None else None
+        if found is not None:
+            self._offer(found)
+
+    def _put_on_desk(self, document: Document, folder: Path | None, lock: ProjectLock | None = None) -> None:
+        self.keeper.hold(lock)
+        for topic in ("project.", "plan.", "job."):
+            self.workspace.settle(topic)
+        self.workspace.session.open(document, folder)
+        self._show_title()
+        self.opened.emit()
+
+    def _or_warn(self, action: Callable[[], None]) -> bool:
+        """Do something whose failure the user is told of; True where it was done."""
+        try:
+            action()
+        except GroundStationError as error:
+            self._warn(str(error))
+            return False
+        return True
+
+    def _warn(self, text: str, about: str = "") -> None:
+        """Show what a part without Qt warns of."""
+        self.workspace.say(Severity.WARNING, self.workspace.words(text), about=about)
+
+    def _remember(self, folder: Path) -> None:
+        self._settings = self._settings.with_recent(folder)
+        self._keep_settings()
+
+    # Unsaved work
+
+    def autosave_now(self) -> None:
+        """Have a copy written of what is not saved."""
+        if not self._or_warn(lambda: self.keeper.copy(self.workspace.session)):
+            self._timer.stop()
+
+    def _start_timer(self) -> None:
+        self._timer.stop()
+        if self._settings.autosave_s > 0.0:
+            self._timer.start(round(1000.0 * self._settings.autosave_s))
+
+    def _offer_unsaved(self, found: tuple[Recovery, ...]) -> None:
+        for recovery in found:
+            if self._offer(recovery):
+                return
+
+    def _offer(self, found: Recovery) -> bool:
+        """Ask whether unsaved work is wanted; True where it was taken over."""
+        if found.problem:
+            self._warn(found.problem)
+            self._discard(found)
+            return False
+        when = "" if found.saved_at is None else f"{found.saved_at.astimezone():%Y-%m-%d %H:%M}"
+        changes = tuple(map(self.workspace.words, found.changes)) if found.was_saved else ()
+        answer = self._questions.recover(self.window, when, changes, found.is_of_saved_state)
+        if answer is Answer.YES:
+            self._take_over(found)
+            return True
+        if answer is Answer.NO:
+            self._discard(found)
+        return False
+
+    def _take_over(self, found: Recovery) -> None:
+        """Go on with unsaved work; its copy stays until it is saved."""
+        document = replace(recover(found).document, site_source=None)
+        folder = self.workspace.session.folder
+        if folder is None and not self._or_warn(lambda: self.keeper.adopt(found.folder)):
+            return
+        self.workspace.session.open(document, folder, saved=False)
+        self._show_title()
+        self.opened.emit()
+        text = self.tr("Your work is back. It is not saved yet: Project > Save keeps it.")
+        self.workspace.say(Severity.OK, text)
+
+    def _discard(self, found: Recovery) -> None:
+        self._or_warn(lambda: discard_recovery(found))
+
+    # The end
+
+    def _leave(self, go_on: Callable[[], None]) -> None:
+        """Go on to something else, after asking about what is not saved."""
+        if self.workspace.session.is_saved:
+            go_on()
+            return
+        answer = self._questions.save_first(self.window)
+        if answer is Answer.YES:
+            self.save(go_on)
+        elif answer is Answer.NO:
+            self.keeper.drop_copy()
+            go_on()
+
+    def _window_closing(self, event: QCloseEvent) -> None:
+        if not self.workspace.session.is_saved:
+            answer = self._questions.save_first(self.window)
+            if answer is Answer.YES:
+                event.ignore()
+                self.save(self.window.close)
+                return
+            if answer is Answer.CANCEL:
+                event.ignore()
+                return
+        layouts = {**self._settings.window_layouts, self._layout_key(): self.window.layout_text()}
+        self._settings = replace(self._settings, window_layouts=layouts)
+        self._keep_settings()
+
+    def close(self) -> None:
+        """After the window has gone: let go of everything."""
+        self._timer.stop()
+        # With the window go the timers that would still start jobs.
+        self.window.deleteLater()
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
+        self._translations.remove()
+        self.keeper.close()
+        if self._own_worker is not None:
+            self._own_worker.close()
+        self._runner.shutdown()
+        self._garbage.close()
+
+
+def _first_document(settings: Settings) -> Document:
+    return Document(request=PlanRequest(profile_id=settings.default_profile))

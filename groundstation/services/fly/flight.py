@@ -1,0 +1,534 @@
+"""One vehicle on one link, from connecting to landing: flown on a thread of its own, told by events.
+
+The thread owns the link and the state machines of `groundstation.vehicle`; whoever watches gets frozen events and puts
+requests into a queue. Each request is answered by an event. A link that breaks is opened again for as long as it takes;
+the aircraft flies on meanwhile, and so does the sortie. Every frame goes into a telemetry log, every sortie into a
+flight file, also one that ends with the program.
+"""
+
+from __future__ import annotations
+
+import math
+import queue
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from groundstation.services.fly.connection import Connection, OpenedLink
+from groundstation.services.fly.coverage import LiveCoverage
+from groundstation.services.fly.events import (
+    Answered,
+    FlightChanged,
+    FlightEnded,
+    LinkChanged,
+    LinkProblem,
+    LinkState,
+    LiveEvent,
+    LiveView,
+    LogProblem,
+    PhotoCounted,
+    Request,
+    WarningCleared,
+    WarningRaised,
+)
+from groundstation.services.fly.link import WAIT_S, LoggedLink
+from groundstation.services.fly.options import USUAL, FlightSettings
+from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, allowed_requests, link_state, readouts
+from groundstation.services.fly.record import FlightKeeper
+from groundstation.services.fly.signing import signing_problem
+from groundstation.services.fly.sortie import LiveSortie
+from groundstation.vehicle.commands import CommandCall, CommandOutcome
+from groundstation.vehicle.modes import set_mode_command
+from groundstation.vehicle.preflight import OnBoard, is_ready, preflight_checks
+from groundstation.vehicle.setup import ParameterChange, message_requests
+from groundstation.vehicle.sortie.flight_run import FlightRun
+from groundstation.vehicle.sortie.run_records import ORDER_MODES, Phase, PilotOrder, RunOptions
+from groundstation.vehicle.state import VehicleState
+from groundstation.vehicle.telemetry import LocalFrame, folded
+from groundstation.vehicle.watch import PHOTO_LATE_S, FlightWarning, Watch
+from missions.flight.record import FlightRecord, TakenPhoto
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.drive import GROUND_HEARTBEAT, HEARTBEAT_EVERY_S
+from missions.mavlink.link import GROUND_STATION
+from missions.mavlink.messages import Address, Message, Received
+from planning.base.errors import GroundStationError, LinkError
+from planning.base.progress import Clock
+
+# Hears a vehicle while no sortie of ours is under way, and passes the pilot's orders on, as a state machine.
+
+ASK_EVERY_S = 10.0
+"""How often telemetry is asked for while no position comes: nobody acknowledges that here, and radios lose messages."""
+
+
+class Listener:
+    """Folds what is heard into a state.
+
+    Parameters
+    ----------
+    state
+        What is known already, as from a sortie that ended.
+    """
+
+    def __init__(self, frame: LocalFrame, state: VehicleState, own: Address = GROUND_STATION) -> None:
+        self.state, self._frame, self._own = state, frame, own
+        self.answers: tuple[CommandOutcome, ...] = ()
+        self._orders: deque[PilotOrder] = deque()
+        self._call: CommandCall | None = None
+        self._heartbeat_s = self._asked_s = -math.inf
+
+    def order(self, order: PilotOrder) -> None:
+        """Queue an order; it goes out with the next `receive` or `tick`."""
+        self._orders.append(order)
+
+    def receive(self, received: Received) -> list[Message]:
+        """Take a message."""
+        self.state = folded(self.state, received, self._frame)
+        sent = [] if self._call is None else self._call.receive(received)
+        return [*sent, *self._advance(received.time_s)]
+
+    def tick(self, now_s: float) -> list[Message]:
+        """Let time pass."""
+        sent = [] if self._call is None else self._call.tick(now_s)
+        return [*sent, *self._advance(now_s)]
+
+    def _advance(self, now_s: float) -> list[Message]:
+        sent: list[Message] = []
+        if self._call is not None and self._call.outcome is not None:
+            self.answers = (*self.answers, self._call.outcome)
+            self._call = None
+        if self._call is None and self._orders:
+            sent += self._begin(self._orders.popleft(), now_s)
+        if now_s >= self._heartbeat_s + HEARTBEAT_EVERY_S:
+            self._heartbeat_s = now_s
+            sent.append(GROUND_HEARTBEAT)
+            sent += self._ask(now_s)
+        return sent
+
+    def _begin(self, order: PilotOrder, now_s: float) -> list[Message]:
+        autopilot, address = self.state.autopilot, self.state.address
+        if autopilot is None or address is None:
+            return []
+        command = set_mode_command(autopilot, ORDER_MODES[order][autopilot], address.system, address.component)
+        self._call = CommandCall(order.value, command, self._own)
+        return self._call.start(now_s)
+
+    def _ask(self, now_s: float) -> list[Message]:
+        autopilot, address, motion = self.state.autopilot, self.state.address, self.state.motion
+        is_told = motion is not None and motion.age_s(now_s) < ASK_EVERY_S
+        if autopilot is None or address is None or is_told or now_s < self._asked_s + ASK_EVERY_S:
+            return []
+        self._asked_s = now_s
+        return list(message_requests(autopilot, address))
+
+
+# What is new since it was last looked: photos, answers and warnings, told once each.
+
+
+class FlightNews:
+    """Publishes what was not published before."""
+
+    def __init__(self, publish: Callable[[LiveEvent], None], coverage: LiveCoverage) -> None:
+        self._publish, self._coverage = publish, coverage
+        self.begin()
+
+    def begin(self) -> None:
+        """Another machine listens: its photos and answers count from nothing."""
+        self._n_photos = self._n_answers = 0
+        self._warnings: tuple[FlightWarning, ...] = ()
+
+    def photos(self, photos: Sequence[TakenPhoto], viewpoint_ids: Sequence[str]) -> None:
+        """Count the photos that are new, as of these views."""
+        for number, photo in enumerate(photos[self._n_photos :], self._n_photos + 1):
+            started_s = time.perf_counter()
+            counted, coverage = self._coverage.add(photo, viewpoint_ids), self._coverage
+            self._publish(
+                PhotoCounted(
+                    number=number,
+                    photo=photo,
+                    view_id="" if counted.view is None else counted.view.id,
+                    position_error_m=counted.position_error_m,
+                    heading_error_deg=counted.heading_error_deg,
+                    gimbal_pitch_error_deg=counted.gimbal_pitch_error_deg,
+                    n_new=counted.n_new,
+                    covered=coverage.covered,
+                    covered_planned=coverage.covered_planned,
+                    counts=coverage.counts(),
+                    seconds=time.perf_counter() - started_s,
+                )
+            )
+        self._n_photos = len(photos)
+
+    def new_answers(self, answers: Sequence[CommandOutcome]) -> Sequence[CommandOutcome]:
+        """Those that were not there when this was asked last."""
+        new, self._n_answers = answers[self._n_answers :], len(answers)
+        return new
+
+    def warnings(self, warnings: tuple[FlightWarning, ...]) -> None:
+        """Tell which appeared and which went."""
+        before, now = {warning.code for warning in self._warnings}, {warning.code for warning in warnings}
+        for warning in warnings:
+            if warning.code not in before:
+                self._publish(WarningRaised(warning))
+        for code in sorted(before - now):
+            self._publish(WarningCleared(code))
+        self._warnings = warnings
+
+
+# What becomes of the pilot's requests: the orders they are, when they are done, and what is said of them.
+
+REFUSALS = {
+    Request.UPLOAD: "nothing can be uploaded now: the vehicle must be heard, on the ground and disarmed",
+    Request.START: "the pre-flight list is not all well, or nothing was uploaded yet",
+    Request.PAUSE: "the vehicle does not fly its mission, so there is nothing to pause",
+    Request.RESUME: "the vehicle is not in flight, so there is nothing to resume",
+    Request.RETURN: "no vehicle was heard yet, so none can return",
+    Request.LAND: "no vehicle was heard yet, so none can land",
+    Request.DISCONNECT: "there is no link",
+}
+REACHED = {Request.UPLOAD: (Phase.CHECKING, Phase.READY), Request.START: (Phase.FLYING,)}
+"""Phases in which the run has done what was asked for."""
+
+DONE = {
+    Request.UPLOAD: "the mission is on board, read back and equal",
+    Request.START: "the aircraft flies its mission",
+}
+
+ORDERS = {
+    Request.PAUSE: PilotOrder.PAUSE,
+    Request.RESUME: PilotOrder.RESUME,
+    Request.RETURN: PilotOrder.RETURN,
+    Request.LAND: PilotOrder.LAND,
+}
+
+
+# Tells once, while a link is open, that its two ends do not sign alike.
+
+
+class SigningNews:
+    """Publishes what is wrong with the signing of a link when that changes to something."""
+
+    def __init__(self, publish: Callable[[LinkProblem], None]) -> None:
+        self._publish = publish
+        self._told = ""
+
+    def look(self, opened: OpenedLink | None, *, is_heard: bool) -> None:
+        """Look at what came in on a link; `is_heard`: an autopilot was."""
+        if opened is None or opened.counts is None:
+            return
+        text = signing_problem(opened.counts, is_signed=opened.is_signed, is_heard=is_heard)
+        if text and text != self._told:
+            self._publish(LinkProblem(text))
+        self._told = text
+
+
+VIEW_EVERY_S = 0.1
+"""Shortest time between two views, unless what a pilot reacts to has changed."""
+
+MAX_BATCH = 200
+"""Messages taken before the flight is shown again: none is behind by more than some milliseconds."""
+
+
+_Asked = Request | LiveSortie | FlightSettings | tuple[ParameterChange, ...] | str
+"""What crosses to the flight's thread; a text is the code of a check that the pilot overrules."""
+
+
+class LiveFlight:
+    """A vehicle that is connected, and the sorties that it flies.
+
+    Parameters
+    ----------
+    publish
+        Called with each event, on the flight's own thread; must return at once.
+    folder
+        Where telemetry log and flight file go; where it cannot be written, the user's data folder takes its place.
+    flown
+        Records of the same plan from before, such as on another battery; photos and coverage count on.
+    clock, unix_clock
+        Real time, also for simulations: the vehicle's own time runs ahead of it, and is in its messages.
+    """
+
+    def __init__(
+        self,
+        sortie: LiveSortie,
+        connection: Connection,
+        publish: Callable[[LiveEvent], None],
+        folder: Path,
+        *,
+        flown: tuple[FlightRecord, ...] = (),
+        settings: FlightSettings = USUAL,
+        clock: Clock = time.perf_counter,
+        unix_clock: Clock = time.time,
+    ) -> None:
+        self._connection, self._publish = connection, publish
+        self._settings, self._clock = settings, clock
+        self._asked: queue.SimpleQueue[_Asked] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._live, name="live-flight", daemon=True)
+        self._is_closing = False
+        self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock)
+        self._keeper = FlightKeeper(sortie.case, folder, flown)
+        self._link = LinkState.OPENING
+        self._view: LiveView | None = None
+        self._shown_s = -math.inf
+        self._coverage = LiveCoverage(sortie.case)
+        self._run: FlightRun | None = None
+        self._awaited: Request | None = None
+        self._ordered: deque[Request] = deque()
+        self._news = FlightNews(publish, self._coverage)
+        self._signing = SigningNews(publish)
+        self._put_in_hand(sortie, VehicleState())
+        for record in flown:
+            for photo in record.photos:
+                self._coverage.add(photo, self._plan_order())
+
+    # For whoever watches, from any thread
+
+    def start(self) -> None:
+        """Open the link, and go on until `close`."""
+        self._thread.start()
+
+    def request(self, request: Request) -> None:
+        """Ask for something; `Answered` says what became of it."""
+        self._asked.put(request)
+
+    def take_on(self, sortie: LiveSortie) -> None:
+        """Fly another sortie of the same plan next; passed over while one is under way."""
+        self._asked.put(sortie)
+
+    def set_settings(self, settings: FlightSettings) -> None:
+        """The pilot decided otherwise; parameters are set with the next upload."""
+        self._asked.put(settings)
+
+    def set_parameters(self, changes: tuple[ParameterChange, ...]) -> None:
+        """The pilot agrees that these parameters of the vehicle are set; passed over in flight."""
+        self._asked.put(changes)
+
+    def overrule(self, code: str) -> None:
+        """The pilot overrules a check before take-off, until the next upload."""
+        self._asked.put(code)
+
+    def close(self, timeout_s: float = 10.0) -> bool:
+        """Disconnect, keep what was flown; True where that was done in time. The aircraft goes on with what it does."""
+        self._is_closing = True
+        if self._thread.ident is not None:
+            self._thread.join(timeout_s)
+        return not self._thread.is_alive()
+
+    @property
+    def is_in_flight(self) -> bool:
+        """Whether the vehicle was armed when it was last heard."""
+        return self._view is not None and self._view.state.is_armed
+
+    # The thread
+
+    def _live(self) -> None:
+        problem = ""
+        self._wire.open_log()
+        try:
+            self._wire.open(self._sortie.orders)
+            while not self._is_closing:
+                self._take_requests()
+                self._serve()
+                self._notice()
+        except GroundStationError as error:
+            problem = str(error)
+        except Exception as error:
+            problem = f"the flight could not be watched any longer ({type(error).__name__}: {error}); please report it"
+            raise
+        finally:
+            self._keep_unfinished()
+            self._wire.close()
+            self._say_link(LinkState.CLOSED, problem)
+
+    def _serve(self) -> None:
+        """Take what came in, and let time pass; a broken link is opened again."""
+        try:
+            if self._wire.opened is None:
+                self._wire.open_again(self._sortie.orders)
+            for message in self._exchange():
+                self._wire.send(message)
+        except LinkError as error:
+            if self._wire.broke():
+                self._say_link(LinkState.LOST, str(error))
+
+    def _exchange(self) -> Iterator[Message]:
+        """What the machine wants to be sent, from what was received and the time; without a link only time passes."""
+        wait_s = WAIT_S
+        for _ in range(MAX_BATCH):
+            received = self._wire.receive(wait_s)
+            if received is None:
+                break
+            wait_s = 0.0
+            yield from self._machine.receive(received)
+        yield from self._machine.tick(self._clock())
+
+    @property
+    def _machine(self) -> FlightRun | Listener:
+        return self._listener if self._run is None else self._run
+
+    # Requests
+
+    def _take_requests(self) -> None:
+        while not self._asked.empty():
+            asked = self._asked.get()
+            if isinstance(asked, FlightSettings):
+                self._settle(asked)
+            elif isinstance(asked, LiveSortie):
+                if self._run is None or self._run.phase in BEFORE_TAKE_OFF:
+                    self._put_in_hand(asked, self._machine.state)
+            elif not isinstance(asked, Request):
+                if self._run is not None and self._run.phase in BEFORE_TAKE_OFF:
+                    self._agree(self._run, asked)
+            elif asked not in self._now().may:
+                self._publish(Answered(asked, False, REFUSALS[asked]))
+            else:
+                self._do(asked)
+
+    def _settle(self, settings: FlightSettings) -> None:
+        self._settings = settings
+        if self._run is not None:
+            self._run.options = replace(self._run.options, needs_rtk=settings.needs_rtk)
+
+    def _agree(self, run: FlightRun, asked: str | tuple[ParameterChange, ...]) -> None:
+        if isinstance(asked, str):
+            run.options = replace(run.options, overrules=run.options.overrules | {asked})
+        else:
+            run.set_parameters(asked)
+
+    def _do(self, request: Request) -> None:
+        if request is Request.DISCONNECT:
+            self._is_closing = True
+        elif request is Request.UPLOAD:
+            self._begin_run()
+        elif request is Request.START and self._run is not None:
+            self._awaited = request
+            self._run.begin()
+        elif request in ORDERS:
+            self._ordered.append(request)
+            self._machine.order(ORDERS[request])
+
+    def _begin_run(self) -> None:
+        settings, connection = self._settings, self._connection
+        options = RunOptions(
+            sets_parameters=connection.is_simulated,
+            starts_itself=False,
+            needs_rtk=settings.needs_rtk,
+        )
+        run = FlightRun(self._sortie.orders, options, connection.name)
+        run.state = replace(self._machine.state, photos=())
+        self._run, self._awaited = run, Request.UPLOAD
+        self._ordered.clear()
+        self._news.begin()
+        self._coverage.add_sortie(self._sortie.viewpoint_ids)
+        for message in run.start(self._clock()):
+            self._wire.send(message)
+
+    # What has happened
+
+    def _notice(self) -> None:
+        """Publish what is new."""
+        self._notice_link()
+        self._signing.look(self._wire.opened, is_heard=self._machine.state.heartbeat is not None)
+        machine, run = self._machine, self._run
+        self._news.photos(machine.state.photos, self._sortie.viewpoint_ids)
+        for outcome in self._news.new_answers(machine.answers):
+            self._answer(self._ordered.popleft(), outcome.is_accepted, outcome.text)
+        self._news.warnings(() if run is None else run.watch.warnings)
+        if run is not None:
+            awaited = self._awaited
+            if awaited is not None and run.phase in REACHED[awaited]:
+                self._answer(awaited, True, DONE[awaited])
+            if run.outcome is not None:
+                self._end_run(run)
+        now_s = self._clock()
+        if now_s >= self._shown_s + VIEW_EVERY_S:
+            self._show(now_s)
+
+    def _show(self, now_s: float) -> None:
+        self._shown_s = now_s
+        self._view = self._now()
+        self._publish(FlightChanged(self._view))
+
+    def _notice_link(self) -> None:
+        link = link_state(self._machine.state, self._clock(), is_open=self._wire.opened is not None)
+        if link is not self._link:
+            text = "the vehicle is heard again" if self._link is LinkState.LOST else ""
+            self._say_link(link, text if link is LinkState.ALIVE else "")
+
+    def _say_link(self, link: LinkState, text: str) -> None:
+        self._link = link
+        self._publish(LinkChanged(link, text))
+
+    def _answer(self, request: Request, is_accepted: bool, text: str) -> None:
+        if request is self._awaited:
+            self._awaited = None
+        self._publish(Answered(request, is_accepted, text))
+
+    def _end_run(self, run: FlightRun) -> None:
+        assert run.outcome is not None
+        error, record, awaited = run.outcome.error, run.outcome.record, self._awaited
+        if awaited is not None:
+            self._answer(awaited, False, str(error))
+        self._put_in_hand(self._sortie, run.state)
+        # The report takes a while: meanwhile nobody should take the aircraft for one in the air.
+        self._show(self._clock())
+        if awaited is not Request.UPLOAD:
+            self._end_flight(run, record, error)
+
+    def _end_flight(self, run: FlightRun, record: FlightRecord | None, error: GroundStationError | None) -> None:
+        """Keep what was flown, and tell."""
+        if record is None:
+            self._publish(FlightEnded(run.orders.number, error, None, None, None))
+        else:
+            self._publish(self._keeper.ended(run, record, error, self._wire.opened, self._wire.name))
+
+    def _keep_unfinished(self) -> None:
+        """Keep what was flown of a sortie that is not over."""
+        run = self._run
+        if run is not None and run.recorder is not None and run.phase is Phase.FLYING:
+            run.note("disconnected", "the ground station disconnected; the aircraft went on by itself")
+            record = run.recorder.record(run.orders.site, run.orders.number)
+            error = LinkError("disconnected in flight; the aircraft goes on by itself, what was recorded ends there")
+            self._end_flight(run, record, error)
+
+    # What is in hand
+
+    def _put_in_hand(self, sortie: LiveSortie, state: VehicleState) -> None:
+        """Listen, with this sortie to be flown next."""
+        orders = sortie.orders
+        frame = LocalFrame.of_home(orders.site.origin, orders.home_enu_m)
+        self._sortie, self._listener = sortie, Listener(frame, replace(state, photos=()))
+        self._run = self._awaited = None
+        self._ordered.clear()
+        self._news.begin()
+
+    def _plan_order(self) -> tuple[str, ...]:
+        return tuple(view_id for sortie in self._sortie.case.plan.sorties for view_id in sortie.viewpoint_ids)
+
+    def _now(self) -> LiveView:
+        """The flight as it stands."""
+        run, state, now_s = self._run, self._machine.state, self._clock()
+        orders, on_board = self._sortie.orders, OnBoard() if run is None else run.on_board
+        overrules: frozenset[str] = frozenset() if run is None else run.options.overrules
+        checks = preflight_checks(
+            state, orders, on_board, now_s, needs_rtk=self._settings.needs_rtk, overrules=overrules
+        )
+        phase, watch = (None, Watch()) if run is None else (run.phase, run.watch)
+        link = link_state(state, now_s, is_open=self._wire.opened is not None)
+        missing = [view_id for view_id, since_s in watch.passed_s if now_s - since_s > PHOTO_LATE_S]
+        return LiveView(
+            link=link,
+            silent_s=None if state.heartbeat is None else state.heartbeat.age_s(now_s),
+            phase=phase,
+            state=state,
+            checks=() if state.is_armed else checks,
+            warnings=watch.warnings,
+            on_board=on_board,
+            doing=("", 0.0, 0.0) if run is None else run.view().doing,
+            may=allowed_requests(link, phase, state, is_ready=is_ready(checks)),
+            readouts=readouts(state, orders.surroundings[state.autopilot or Autopilot.ARDUPILOT]),
+            view_states=self._coverage.states(self._sortie.viewpoint_ids, missing),
+            speed_up=self._connection.speed_up,
+        )

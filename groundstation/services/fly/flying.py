@@ -1,0 +1,380 @@
+"""Use cases of flying: a plan flown by the simulated vehicle, or by one at the end of a link; the result is a flight.
+
+A simulated flight is recorded as it truly was, not as its autopilot believed it to be: that is what a simulation can
+tell and a real flight cannot.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from groundstation.services.fly.ground_truth import TruthRecorder
+from groundstation.services.mission.files import within_item_limit
+from groundstation.services.project.input_files import read_given_plan, read_given_site
+from groundstation.services.project.project_file import check_not_index
+from groundstation.vehicle.duration import items_duration_s, timed_by_items
+from groundstation.vehicle.orders import SortieOrders, sortie_orders
+from groundstation.vehicle.preflight import OVERRULABLE
+from groundstation.vehicle.sortie.conduct import conduct
+from groundstation.vehicle.sortie.flight_run import FlightRun
+from groundstation.vehicle.sortie.run_records import RunOptions, RunOutcome, RunView
+from groundstation.vehicle.telemetry_log import TelemetryLog, new_log_path
+from missions.flight.flight_file import Flight, flight_of, write_flight
+from missions.flight.record import FlightEvent, FlightRecord
+from missions.flight.report import report_flight
+from missions.formats.encode import ExportOptions, default_autopilot
+from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.link import ChannelLink, open_link
+from missions.mavlink.signing import Signer
+from missions.mission.build import missions_from_plan
+from missions.simulator.build import make_airframe
+from missions.simulator.effects.link_loss import through_air
+from missions.simulator.scene import Conditions
+from missions.simulator.server import DirectLink
+from missions.simulator.vehicle import SimulatedVehicle
+from planning.base.effects import Decision, Wish
+from planning.base.errors import GroundStationError, InputError, MissionError, OperationCancelled
+from planning.base.findings import Finding
+from planning.base.json_file import check_output
+from planning.base.progress import QUIET, Monitor
+from planning.plan import Plan
+from planning.site.file import is_planned_on
+from planning.site.records import SiteModel, require_panels
+
+# Flying the vehicle at the end of a link: its telemetry log is always written, a broken link is opened again.
+
+
+def fly_link(
+    orders: SortieOrders,
+    url: str,
+    options: RunOptions,
+    log_folder: Path,
+    show: Callable[[RunView], None] | None = None,
+    started: Callable[[FlightRun], None] | None = None,
+    signer: Signer | None = None,
+    monitor: Monitor = QUIET,
+) -> tuple[FlightRun, RunOutcome, Path]:
+    """Fly a sortie: the run as it ended, how it ended, and its telemetry log.
+
+    Parameters
+    ----------
+    started
+        Called with the run before it begins: whoever keeps it may give it the pilot's orders from any thread.
+    signer
+        Signs what is sent, and lets nothing in that the vehicle did not sign; None: unsigned.
+
+    Raises
+    ------
+    InputError
+        The url is none, or the log cannot be made.
+    LinkError
+        The link cannot be opened.
+    """
+    run = FlightRun(orders, options, url)
+    log = TelemetryLog(new_log_path(log_folder, time.time(), f"sortie-{orders.number}"))
+
+    def opened() -> ChannelLink:
+        link = open_link(url, signer=signer)
+        link.observe(lambda frame, _sent, _time_s: log.write(frame, time.time()))
+        return link
+
+    told = ""
+
+    def look(view: RunView) -> None:
+        nonlocal told
+        if log.problem and log.problem != told:
+            run.note("log", log.problem)
+        told = log.problem
+        if show is not None:
+            show(view)
+
+    try:
+        link = opened()
+        if started is not None:
+            started(run)
+        outcome = conduct(run, link, time.perf_counter, reopen=opened, show=look, monitor=monitor)
+    finally:
+        log.close()
+    return run, outcome, log.path
+
+
+SIMULATED = "sim"
+"""Name of the link to the simulated vehicle in this process."""
+
+Show = Callable[[RunView], None]
+Between = Callable[[int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class FlightWish:
+    """How a plan shall be flown.
+
+    Parameters
+    ----------
+    link
+        `sim`, or a url as `missions.mavlink.link` lists them.
+    autopilot
+        None: of the plan's profile in the simulation, whatever is found at a link.
+    conditions, effects, seed
+        Of the simulation: weather and devices (None: the wind that the plan expects), `on`, `off` or `auto` by effect,
+        and of everything random.
+    speedup
+        Of the simulation against real time; None: as fast as it goes.
+    simulations_only
+        At a link: why only a vehicle is flown that says that it is a simulation; empty where any is.
+    sets_parameters
+        At a link: set the parameters of any vehicle; else those of a simulation, and tell what differs.
+    overrules
+        At a link: codes of checks before take-off that the pilot overrules.
+    raised_m
+        At a link: how much lower than planned the aircraft takes off; its heights above take-off are as much larger.
+    log_folder
+        For telemetry logs, which a flight over a link always has; None in the simulation.
+    signer
+        At a link: signs what is sent, and lets nothing in that the vehicle did not sign; None: unsigned.
+    """
+
+    link: str = SIMULATED
+    autopilot: Autopilot | None = None
+    conditions: Conditions | None = None
+    effects: Mapping[str, Wish] = field(default_factory=dict)
+    seed: int = 0
+    speedup: float | None = None
+    simulations_only: str = ""
+    sets_parameters: bool = False
+    needs_rtk: bool = False
+    overrules: frozenset[str] = frozenset()
+    raised_m: float = 0.0
+    log_folder: Path | None = None
+    signer: Signer | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlownSortie:
+    """One sortie: what the simulation took into account, and what was noted.
+
+    `expected_s` is how long the autopilot should take for its items, from lift-off to touch-down.
+    """
+
+    number: int
+    expected_s: float
+    effects: tuple[Decision, ...]
+    notes: tuple[FlightEvent, ...]
+    log: Path | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Flown:
+    """A flight with its report, its sorties, and what there is to say of the plan.
+
+    `error` is why sorties are missing at the end, None where none is.
+    """
+
+    flight: Flight
+    sorties: tuple[FlownSortie, ...]
+    findings: tuple[Finding, ...]
+    seconds: float
+    error: GroundStationError | None = None
+
+
+def fly_files(
+    plan_path: Path,
+    site_path: Path,
+    out: Path,
+    wish: FlightWish,
+    show: Show | None = None,
+    monitor: Monitor = QUIET,
+    between: Between | None = None,
+) -> Flown:
+    """Fly the plan in a file over the site in another, and write the flight.
+
+    Raises
+    ------
+    InputError, MissionError, InfeasibleError, LinkError
+        As `fly_plan`, or a file cannot be read or written; nothing is written then, but for what a vehicle at a link
+        had already flown.
+    """
+    check_not_index(out)
+    check_output(out, [plan_path, site_path])
+    flown = fly_plan(read_given_plan(plan_path), read_given_site(site_path), wish, show, monitor, between)
+    write_flight(out, flown.flight)
+    if flown.error is not None:
+        raise type(flown.error)(f"{flown.error}; what was flown before is in {out}") from flown.error
+    return flown
+
+
+def fly_plan(
+    plan: Plan,
+    site_model: SiteModel,
+    wish: FlightWish,
+    show: Show | None = None,
+    monitor: Monitor = QUIET,
+    between: Between | None = None,
+) -> Flown:
+    """Fly all sorties of a plan, one after the other.
+
+    Parameters
+    ----------
+    between
+        Called before each further sortie at a link, with its number: the time to change the battery.
+
+    Raises
+    ------
+    InputError
+        The plan is for another site, or an effect or a link has no such name.
+    MissionError, InfeasibleError
+        The plan cannot be flown as it stands.
+    LinkError
+        A sortie could not be flown to its end; the message says which, and why.
+    """
+    started_s = time.perf_counter()
+    check_site(plan, site_model)
+    planned = plan
+    autopilot = wish.autopilot or default_autopilot(plan.profile)
+    plan, findings = within_item_limit(plan, site_model, ExportOptions(autopilot=autopilot))
+    case = _Case(plan, site_model, wish, autopilot, show, monitor)
+    missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
+    flown: list[tuple[FlightRecord, FlownSortie]] = []
+    error: GroundStationError | None = None
+    for mission in missions:
+        if flown and between is not None and wish.link != SIMULATED:
+            between(mission.number)
+        try:
+            record, sortie, error = case.fly(sortie_orders(plan, site_model, mission, wish.raised_m))
+        except GroundStationError as failure:
+            # A real flight cannot be flown again for its record.
+            if not flown or wish.link == SIMULATED or isinstance(failure, OperationCancelled):
+                raise
+            error = failure
+            break
+        flown.append((record, sortie))
+        if error is not None:
+            break
+    records = tuple(record for record, _ in flown)
+    sorties = tuple(sortie for _, sortie in flown)
+    # The report compares with how long these items take: the plan's own durations are those of a DJI aircraft.
+    timed = timed_by_items(plan, {sortie.number: sortie.expected_s for sortie in sorties})
+    report = report_flight(timed, site_model, records, monitor=monitor)
+    flight = flight_of(planned, site_model, records, report)
+    return Flown(flight, sorties, findings, time.perf_counter() - started_s, error)
+
+
+def check_site(plan: Plan, site_model: SiteModel) -> None:
+    """Refuse a plan that was made for another site, and a site without panels.
+
+    Raises
+    ------
+    InputError
+        The plan says so itself, by its checksum or its origin; or the site has no panels.
+    """
+    require_panels(site_model.site)
+    is_other = not is_planned_on(plan.site_sha256, site_model)
+    if is_other or (plan.origin is not None and plan.origin != site_model.site.origin):
+        raise InputError(
+            f"the plan was made for the site '{plan.site}' as it was then, and this is "
+            f"{'another' if plan.site != site_model.site.name else 'a changed'} site '{site_model.site.name}'; "
+            "name the site file that it was made for, or plan again"
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Case:
+    """What all sorties of a flight have in common."""
+
+    plan: Plan
+    site_model: SiteModel
+    wish: FlightWish
+    autopilot: Autopilot
+    show: Show | None
+    monitor: Monitor
+
+    def fly(self, orders: SortieOrders) -> tuple[FlightRecord, FlownSortie, GroundStationError | None]:
+        """Fly one; an error says which it was, and is returned where an aircraft at a link has flown all the same."""
+        flies = self._simulate if self.wish.link == SIMULATED else self._fly_link
+        outcome, record, sortie = flies(orders)
+        place = f"sortie {orders.number}: " if len(self.plan.sorties) > 1 else ""
+        if outcome.error is not None:
+            error = type(outcome.error)(f"{place}{outcome.error}")
+            if record is None or self.wish.link == SIMULATED:
+                raise error from outcome.error
+            return record, sortie, error
+        if record is None:
+            raise MissionError(f"{place}nothing was recorded: the vehicle sent no positions in flight")
+        return record, sortie, None
+
+    def _simulate(self, orders: SortieOrders) -> tuple[RunOutcome, FlightRecord | None, FlownSortie]:
+        """Fly with a vehicle of this process, on a fresh battery."""
+        wish, origin = self.wish, self.site_model.site.origin
+        seed = wish.seed * 1000 + orders.number
+        conditions = wish.conditions or Conditions(wind_m_s=self.plan.rules.wind_m_s)
+        airframe, effects = make_airframe(
+            self.plan,
+            self.site_model,
+            self.plan.sorties[orders.number - 1],
+            conditions=conditions,
+            wishes=wish.effects,
+            home_enu_m=orders.home_enu_m,
+            seed=seed,
+            autopilot=self.autopilot,
+        )
+        vehicle = SimulatedVehicle(self.autopilot, airframe, origin, orders.home_enu_m)
+        direct = DirectLink(vehicle)
+        truth, pace = TruthRecorder(vehicle), _Pace(wish.speedup)
+        # Nothing real moves: what needs a pilot's word elsewhere is only told.
+        options = RunOptions(
+            autopilot=self.autopilot, sets_parameters=True, needs_rtk=wish.needs_rtk, overrules=OVERRULABLE
+        )
+        run = FlightRun(orders, options, "simulation")
+
+        def look(view: RunView) -> None:
+            truth.sample()
+            pace.keep(view.time_s)
+            if self.show is not None:
+                self.show(view)
+
+        link = through_air(direct, effects, conditions, lambda: vehicle.flight_s, seed)
+        outcome = conduct(run, link, direct.clock, show=look, monitor=self.monitor)
+        record = None if run.recorder is None else truth.record(run.recorder, orders)
+        if record is not None:
+            record = replace(record, vehicle=f"simulated {self.autopilot.product}", effects=effects)
+        expected_s = items_duration_s(orders, self.autopilot)
+        return outcome, record, FlownSortie(orders.number, expected_s, effects, outcome.notes, None)
+
+    def _fly_link(self, orders: SortieOrders) -> tuple[RunOutcome, FlightRecord | None, FlownSortie]:
+        """Fly the vehicle at the end of the link."""
+        wish = self.wish
+        if wish.log_folder is None:
+            raise ValueError("log_folder: a flight over a link is always logged")
+        options = RunOptions(
+            autopilot=wish.autopilot,
+            simulations_only=wish.simulations_only,
+            sets_parameters=wish.sets_parameters,
+            needs_rtk=wish.needs_rtk,
+            overrules=wish.overrules,
+        )
+        run, outcome, log = fly_link(
+            orders, wish.link, options, wish.log_folder, self.show, signer=wish.signer, monitor=self.monitor
+        )
+        found = run.state.autopilot or self.autopilot
+        sortie = FlownSortie(orders.number, items_duration_s(orders, found), (), outcome.notes, log)
+        return outcome, outcome.record, sortie
+
+
+class _Pace:
+    """Keeps simulated time from running ahead of real time by more than a factor."""
+
+    def __init__(self, speedup: float | None) -> None:
+        self._speedup = speedup
+        self._start_s: float | None = None
+
+    def keep(self, simulated_s: float) -> None:
+        """Wait until real time has come as far."""
+        if self._speedup is None:
+            return
+        now_s = time.perf_counter()
+        if self._start_s is None:
+            self._start_s = now_s - simulated_s / self._speedup
+        time.sleep(max(0.0, self._start_s + simulated_s / self._speedup - now_s))

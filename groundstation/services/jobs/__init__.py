@@ -1,0 +1,1 @@
+"""Long work: jobs on threads, and the process in which planning runs."""

@@ -1,0 +1,1 @@
+"""The map: shapes of site and plan, offline tiles, and Web Mercator."""

@@ -1,0 +1,191 @@
+"""Offline map tiles from MBTiles files (MBTiles 1.3: an SQLite database with tables `metadata` and `tiles`).
+
+Nothing in a file is trusted: queries are read-only and end after `MAX_QUERY_S`, values have a largest size, and a map
+that is not what it says is refused when it is opened, with what to do.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sqlite3
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from groundstation.services.map.web_mercator import MAX_ZOOM, Tile
+from planning.base.errors import InputError
+from planning.base.files import real_path
+
+MAX_QUERY_S = 2.0
+"""Longest that one query may take; with the index that the format asks for it takes under a millisecond."""
+
+MAX_TILE_BYTES = 4 * 2**20
+"""A 512 x 512 PNG in true colour that does not compress has 1 MiB."""
+
+MAX_METADATA = 200
+"""Rows of metadata that are looked at; the format knows about 15."""
+
+INSTRUCTIONS_PER_LOOK = 10_000
+"""SQLite instructions between two looks at the clock, well under a millisecond."""
+
+_HEADS = {
+    "png": re.compile(rb"\x89PNG\r\n\x1a\n"),
+    "jpg": re.compile(rb"\xff\xd8\xff"),
+    "webp": re.compile(rb"RIFF.{4}WEBP", re.S),
+}
+"""How the pictures begin that can be drawn."""
+
+_GZIP = b"\x1f\x8b"
+
+
+@dataclass(frozen=True, slots=True)
+class TileSetInfo:
+    """What a map file says about itself.
+
+    Parameters
+    ----------
+    bounds_deg
+        West, south, east, north; None where the file does not say, or says nonsense.
+    min_zoom, max_zoom
+        Levels that there are tiles of.
+    attribution
+        Whose data it is, without markup; must be shown with the map.
+    """
+
+    path: Path
+    name: str
+    image_format: str
+    min_zoom: int
+    max_zoom: int
+    bounds_deg: tuple[float, float, float, float] | None
+    attribution: str
+
+
+class MapTiles:
+    """One open map file. `image` may be called from any thread; `close` ends its use."""
+
+    def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
+        """Open a map file.
+
+        Raises
+        ------
+        InputError
+            The file is missing or damaged, no MBTiles file, holds vector tiles or no tiles, or is too slow to use.
+        """
+        self._path, self._clock, self._deadline_s = path, clock, math.inf
+        self._lock = threading.Lock()
+        if not path.is_file():
+            raise InputError(f"{path}: there is no such file; choose an MBTiles file")
+        # Immutable: no lock and no journal beside the file, which may be on a stick that is write-protected.
+        place = f"file:{quote(str(real_path(path)))}?mode=ro&immutable=1"
+        self._connection = sqlite3.connect(place, uri=True, check_same_thread=False)
+        try:
+            self._connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_TILE_BYTES)
+            self._connection.set_progress_handler(self._is_late, INSTRUCTIONS_PER_LOOK)
+            self._rows("PRAGMA trusted_schema = OFF")
+            self.info = self._read_info()
+        except BaseException:
+            self._connection.close()
+            raise
+
+    def image(self, tile: Tile) -> bytes | None:
+        """The picture of a tile; None where the file has none, or none that can be read."""
+        row_from_south = 2**tile.zoom - 1 - tile.row
+        try:
+            return self._tile_data("zoom_level = ? AND tile_column = ? AND tile_row = ?", (*tile[:2], row_from_south))
+        except InputError:
+            return None
+
+    def close(self) -> None:
+        """Close the file; asking for tiles afterwards finds none."""
+        with self._lock:
+            self._connection.close()
+
+    def _read_info(self) -> TileSetInfo:
+        metadata = self._metadata()
+        lowest, highest = (
+            self._rows(f"SELECT zoom_level FROM tiles ORDER BY zoom_level {order} LIMIT 1") for order in ("ASC", "DESC")
+        )
+        if not lowest:
+            raise InputError(f"{self._path}: the map has no tiles; export it again with the area of the site")
+        levels = lowest[0][0], highest[0][0]
+        if not all(isinstance(level, int) and 0 <= level <= MAX_ZOOM for level in levels):
+            raise InputError(
+                f"{self._path}: expected zoom levels from 0 to {MAX_ZOOM}, found {levels[0]!r} to {levels[1]!r}"
+            )
+        return TileSetInfo(
+            self._path,
+            _plain(metadata.get("name", "")) or self._path.stem,
+            self._image_format(metadata.get("format", "")),
+            *levels,
+            _bounds(metadata.get("bounds", "")),
+            _plain(metadata.get("attribution", "")),
+        )
+
+    def _metadata(self) -> dict[str, str]:
+        rows = self._rows(f"SELECT name, value FROM metadata LIMIT {MAX_METADATA}")
+        return {name: value for name, value in rows if isinstance(name, str) and isinstance(value, str)}
+
+    def _image_format(self, stated: str) -> str:
+        data = self._tile_data("1", ())
+        if stated.lower() == "pbf" or (data is not None and data.startswith(_GZIP)):
+            raise InputError(
+                f"{self._path}: the map holds vector tiles (pbf), which Reflight does not draw; export it with picture "
+                "tiles (PNG, JPEG or WebP)"
+            )
+        found = next((name for name, head in _HEADS.items() if head.match(data or b"")), None)
+        if found is None:
+            raise InputError(
+                f"{self._path}: expected tiles in PNG, JPEG or WebP, found something else"
+                f"{f' (the file says {stated!r})' if stated else ''}; export the map again"
+            )
+        return found
+
+    def _tile_data(self, where: str, arguments: tuple[int, ...]) -> bytes | None:
+        rows = self._rows(f"SELECT tile_data FROM tiles WHERE {where} LIMIT 1", arguments)
+        return rows[0][0] if rows and isinstance(rows[0][0], bytes) else None
+
+    def _rows(self, query: str, arguments: tuple[int, ...] = ()) -> list[tuple[Any, ...]]:
+        with self._lock:
+            self._deadline_s = self._clock() + MAX_QUERY_S
+            try:
+                return self._connection.execute(query, arguments).fetchall()
+            except sqlite3.OperationalError as error:
+                if self._is_late():
+                    raise InputError(
+                        f"{self._path}: looking a tile up takes more than {MAX_QUERY_S:g} s; the index on tiles is "
+                        "missing or the file is damaged; export the map again"
+                    ) from error
+                raise InputError(self._no_map(error)) from error
+            except (sqlite3.Error, UnicodeDecodeError, OverflowError) as error:
+                raise InputError(self._no_map(error)) from error
+
+    def _no_map(self, error: Exception) -> str:
+        return (
+            f"{self._path}: not a map in MBTiles format, or damaged ({error}); choose another file, or export the map "
+            "again"
+        )
+
+    def _is_late(self) -> bool:
+        return self._clock() > self._deadline_s
+
+
+def _plain(text: str) -> str:
+    """A text of a file without markup and control characters, no longer than a line."""
+    text = re.sub(r"<[^<>]*>", "", text).replace("&copy;", "©").replace("&amp;", "&")
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:200]
+
+
+def _bounds(text: str) -> tuple[float, float, float, float] | None:
+    """Bounds from "west,south,east,north"; None unless they are an area on the globe."""
+    try:
+        west, south, east, north = (float(part) for part in text.split(","))
+    except ValueError:
+        return None
+    is_area = -180.0 <= west < east <= 180.0 and -90.0 <= south < north <= 90.0
+    return (west, south, east, north) if is_area else None

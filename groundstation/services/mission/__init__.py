@@ -1,0 +1,1 @@
+"""Use cases of missions: files, comparison with the plan, waypoints, and the flight brief."""

@@ -1,0 +1,315 @@
+"""Plans that are open in the window to mission files and back: everything but the reading and writing of plan files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from groundstation.services.project.input_files import FileKind, expecting
+from groundstation.services.project.project_file import check_not_index
+from missions.formats.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot, encode
+from missions.formats.registry import read_missions, sortie_path, write_files
+from missions.mission.legs import distance_m
+from missions.mission.model import FileFormat, GeoPoint, ReadMission
+from missions.mission.to_plan import viewpoints_and_sorties
+from planning.aircraft.catalogue import DEFAULT_PROFILE, profile
+from planning.base.errors import GroundStationError, InputError
+from planning.base.files import real_path
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor
+from planning.checks import check_plan
+from planning.coverage.evaluate import coverage
+from planning.geo.frames import Origin
+from planning.geo.geoid import undulation_m
+from planning.geo.mesh import empty_mesh
+from planning.plan import Constraints, Coverage, FlightRules, Plan
+from planning.planner import share_out_anew
+from planning.site.file import is_planned_on, site_sha256
+from planning.site.records import MAX_DISTANCE_M, Airspace, Site, SiteModel
+from planning.viewpoints.prepare import prepare
+
+MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
+
+SUFFIXES = {
+    FileFormat.DJI_KMZ: (".kmz",),
+    FileFormat.MAVLINK_PLAN: (".plan",),
+    FileFormat.MAVLINK_WPL: (".waypoints", ".txt"),
+    FileFormat.KML: (".kml",),
+    FileFormat.CSV: (".csv",),
+}
+"""How the names of files end that other programs offer to open."""
+
+BARE_MARGIN_M = 40.0
+FLOOR_M = 2.0
+"""Of the airspace of a site made for missions alone, above home; as for imported buildings."""
+
+IMPORTED = "imported"
+"""Method written into plans that come from mission files."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreparedExport:
+    """Mission files that are ready to be written, or the reason why there are none.
+
+    Parameters
+    ----------
+    encoded
+        None where the plan cannot be exported so; `refusal` says why then.
+    findings
+        What the pilot should know first; those of the files come last.
+    """
+
+    encoded: EncodedFiles | None
+    findings: tuple[Finding, ...]
+    refusal: str = ""
+
+    @property
+    def n_files(self) -> int:
+        """Number of files that would be written."""
+        return 0 if self.encoded is None else len(self.encoded.contents)
+
+    @property
+    def can_be_written(self) -> bool:
+        """Whether an aircraft would take the files."""
+        errors = any(finding.severity is Severity.ERROR for finding in self.findings)
+        return self.encoded is not None and not errors
+
+
+def prepare_export(
+    plan: Plan, site_model: SiteModel, file_format: FileFormat, options: ExportOptions = DEFAULT_OPTIONS
+) -> PreparedExport:
+    """Mission files of a plan in memory, with everything that is to be said before they are written.
+
+    Nothing is raised for what the user can put right: the refusal is part of the result.
+    """
+    try:
+        findings = list(readiness(plan, site_model))
+        if file_format in MAVLINK_FORMATS:
+            plan, shared_out = within_item_limit(plan, site_model, options)
+            findings += shared_out
+        site = site_model.site
+        encoded = encode(plan, site.origin, site.home_enu_m, file_format, replace(options, site=site_model))
+    except GroundStationError as error:
+        return PreparedExport(None, (), str(error))
+    return PreparedExport(encoded, (*findings, *encoded.findings))
+
+
+def export_paths(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
+    """The files that writing to `path` makes."""
+    return tuple(sortie_path(path, number) for number in range(1, prepared.n_files + 1))
+
+
+def write_export(prepared: PreparedExport, path: Path) -> tuple[Path, ...]:
+    """Write prepared mission files, all or none.
+
+    Raises
+    ------
+    InputError, MissionError
+        A file cannot be written, or an aircraft would refuse the mission.
+    """
+    if prepared.encoded is None:
+        raise ValueError(f"nothing to write: {prepared.refusal}")
+    check_not_index(path)
+    return write_files(prepared.encoded, path)
+
+
+def in_order_of_sorties(paths: Sequence[Path]) -> tuple[Path, ...]:
+    """Mission files by name, those of one export as its sorties: `roof.plan`, `roof-2.plan`, `roof-10.plan`.
+
+    File dialogs give them in another order (`roof-10.plan` first), and the order is that of the flight.
+    """
+
+    def key(path: Path) -> tuple[Path, str, int]:
+        name, dash, number = path.stem.rpartition("-")
+        is_further = bool(dash) and number.isascii() and number.isdigit()
+        return (path.parent, name, int(number)) if is_further else (path.parent, path.stem, 1)
+
+    return tuple(sorted(paths, key=key))
+
+
+def readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
+    """What the pilot must know of a plan before it flies on this site."""
+    if not is_planned_on(plan.site_sha256, site_model):
+        text = (
+            f"the site file of '{site_model.site.name}' has changed since this plan was made; what the mission takes "
+            "from it (return height, fences) is as it is now"
+        )
+        yield Finding(Severity.WARNING, "site-changed", text)
+    errors = [found for found in check_plan(plan, site_model) if found.severity is Severity.ERROR]
+    if errors:
+        text = (
+            f"this plan is not ready to fly ({len(errors)} findings of the pre-flight check, the first: "
+            f"{errors[0].message})"
+        )
+        yield Finding(Severity.WARNING, "not-ready", text, errors[0].place, float(len(errors)), 0.0, "findings")
+
+
+def within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions) -> tuple[Plan, tuple[Finding, ...]]:
+    """The plan, its views shared out anew where a sortie has more than the autopilot keeps."""
+    from missions.mavlink.items import photos_that_fit
+
+    autopilot = options.autopilot or default_autopilot(plan.profile)
+    limit = photos_that_fit(autopilot)
+    longest = max((len(sortie.viewpoint_ids) for sortie in plan.sorties), default=0)
+    if longest <= limit:
+        return plan, ()
+    anew = _shared_out(plan, site_model, limit)
+    text = (
+        f"{autopilot} keeps the items of about {limit} photos, but a sortie of this plan has {longest}; the same views "
+        f"were shared out among {len(anew.sorties)} sorties for these files"
+    )
+    return anew, (Finding(Severity.WARNING, "item-limit", text, "", float(longest), float(limit), "photos"),)
+
+
+@lru_cache(maxsize=2)
+def _shared_out(plan: Plan, site_model: SiteModel, max_views: int) -> Plan:
+    """Sharing out takes seconds and ends by the clock: kept, so that all files of one plan fly the same sorties."""
+    return share_out_anew(plan, site_model, max_views)
+
+
+def read_mission_files(paths: Sequence[Path], *, strict: bool = False) -> tuple[ReadMission, ...]:
+    """The sorties of mission files of one flight.
+
+    Parameters
+    ----------
+    strict
+        Refuse what an aircraft would refuse.
+
+    Raises
+    ------
+    InputError, MissionError
+        A file cannot be read, or is given twice.
+    """
+    resolved = [real_path(path) for path in paths]
+    for number, path in enumerate(paths):
+        if resolved[number] in resolved[:number]:
+            raise InputError(f"{path}: this mission file is named twice; name the file of each sortie once")
+    return tuple(mission for path in paths for mission in _read_given_missions(path, strict))
+
+
+def _read_given_missions(path: Path, strict: bool) -> tuple[ReadMission, ...]:
+    with expecting(FileKind.MISSION, path):
+        return read_missions(path, strict=strict)
+
+
+def bare_site(missions: Sequence[ReadMission]) -> tuple[SiteModel, tuple[Finding, ...]]:
+    """A site of missions alone, without building or panels, to look at where they fly.
+
+    Home is where the first mission takes off as its file says, else below its first waypoint. The airspace reaches
+    `BARE_MARGIN_M` further than the missions. Where the file does not say how high the take-off lies, heights above
+    take-off count from sea level, and other heights from just below the lowest of them; a finding tells.
+
+    Raises
+    ------
+    InputError
+        The missions are too far apart for one site.
+    """
+    first = missions[0]
+    start, findings = first.waypoints[0], []
+    heights_m = [w.height_ellipsoid_m for m in missions for w in m.waypoints if w.height_ellipsoid_m is not None]
+    takeoff = first.takeoff
+    if (
+        takeoff is not None
+        and distance_m(takeoff.lat_deg, takeoff.lon_deg, start.lat_deg, start.lon_deg) < MAX_DISTANCE_M
+    ):
+        home = takeoff
+    else:
+        geoid_m = float(undulation_m(start.lat_deg, start.lon_deg))
+        home = GeoPoint(start.lat_deg, start.lon_deg, min(heights_m) - FLOOR_M if heights_m else geoid_m)
+        text = (
+            "its file does not say where it takes off, so home is below its first waypoint, at an assumed height; what "
+            "depends on that height is only to look at"
+        )
+        findings.append(Finding(Severity.WARNING, "bare-site", text, first.name))
+    origin = Origin(round(home.lat_deg, 9), round(home.lon_deg, 9), round(home.height_ellipsoid_m, 3))
+    here = (0.0, 0.0, 0.0)
+    parts = viewpoints_and_sorties(missions, origin, here)
+    path = np.array([point for sortie in parts.sorties for point in sortie.path_enu_m])
+    low, high = path.min(axis=0) - BARE_MARGIN_M, path.max(axis=0) + BARE_MARGIN_M
+    low[2] = min(FLOOR_M, float(path[:, 2].min()))
+    box = [(round(float(x), 3), round(float(y), 3), round(float(z), 3)) for x, y, z in (low, high)]
+    site = Site(
+        name=first.path.stem,
+        origin=origin,
+        facades=(),
+        airspace=Airspace(box[0], box[1], 0.0),
+        home_enu_m=here,
+        is_bare=True,
+    )
+    return SiteModel(site, empty_mesh(), (), site_sha256(site)), tuple(findings)
+
+
+def missions_as_plan(
+    paths: Sequence[Path],
+    site_model: SiteModel,
+    profile_id: str = DEFAULT_PROFILE,
+    constraints: Constraints = Constraints(),
+    monitor: Monitor = QUIET,
+    *,
+    strict: bool = False,
+) -> tuple[Plan, tuple[Finding, ...]]:
+    """Mission files of one flight as a plan, with the coverage that it has on this site.
+
+    Parameters
+    ----------
+    strict
+        Refuse missions that an aircraft would refuse.
+
+    Raises
+    ------
+    InputError, MissionError
+        A file cannot be read, is given twice, or belongs to another place.
+    InfeasibleError
+        Nothing on this site can be covered under the constraints.
+    """
+    monitor.report("reading the mission", 0, 1)
+    return plan_of_missions(read_mission_files(paths, strict=strict), site_model, profile_id, constraints, monitor)
+
+
+def plan_of_missions(
+    missions: Sequence[ReadMission],
+    site_model: SiteModel,
+    profile_id: str = DEFAULT_PROFILE,
+    constraints: Constraints = Constraints(),
+    monitor: Monitor = QUIET,
+) -> tuple[Plan, tuple[Finding, ...]]:
+    """Missions that were read as a plan; on a site without panels there is nothing that they could cover.
+
+    Raises
+    ------
+    InputError
+        They belong to another place.
+    InfeasibleError
+        Nothing on this site can be covered under the constraints.
+    """
+    chosen, rules = profile(profile_id), FlightRules()
+    site = site_model.site
+    parts = viewpoints_and_sorties(missions, site.origin, site.home_enu_m, rules, chosen.aircraft)
+    plan = Plan(
+        site=site.name,
+        site_sha256=site_model.sha256,
+        method=IMPORTED,
+        seed=0,
+        camera=chosen.camera,
+        aircraft=chosen.aircraft,
+        constraints=replace(constraints, occlusion="off"),
+        viewpoints=parts.viewpoints,
+        sorties=parts.sorties,
+        coverage=Coverage(0, 0, 0),
+        origin=site.origin,
+        home_enu_m=site.home_enu_m,
+        rules=rules,
+        profile=chosen.id,
+    )
+    if site.n_panels == 0:
+        return plan, parts.findings
+    prepared = prepare(site_model, chosen.camera, constraints, monitor=monitor)
+    found = coverage(prepared.problem.model, parts.viewpoints, prepared.problem.reachability)
+    return (
+        replace(plan, constraints=prepared.constraints, coverage=found, effects=prepared.effects),
+        parts.findings,
+    )

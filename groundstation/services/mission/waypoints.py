@@ -1,0 +1,156 @@
+"""The waypoints of a plan as a pilot reads them: where, how high in which reference, when, looking where."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.errors import InfeasibleError
+from planning.geo.frames import Origin, Vec3
+from planning.motion.sortie_timing import photo_vertices, sortie_flight_path
+from planning.motion.timing import motion_limits, stopping_times_s
+from planning.plan import Plan, Sortie, Viewpoint
+
+
+class HeightShown(StrEnum):
+    """What absolute heights on screen are measured from; each has its name, none is just "altitude"."""
+
+    LOCAL = "local"
+    """Zero of the site's own frame."""
+    AMSL = "amsl"
+    """Mean sea level: the EGM96 geoid."""
+    ELLIPSOID = "ellipsoid"
+    """WGS 84, as GNSS receivers count."""
+
+
+@dataclass(frozen=True, slots=True)
+class WaypointRow:
+    """One photo, or one vertex of a path without any.
+
+    Parameters
+    ----------
+    sortie
+        Number from 1; 0 for viewpoints that are in no sortie.
+    vertex
+        Of the sortie's path, 0 at take-off, so that leg k ends at vertex k; None where the path misses the viewpoint.
+    viewpoint
+        None where no photo is taken.
+    lat_deg, lon_deg, height_ellipsoid_m, altitude_amsl_m
+        None for plans that do not say where they lie.
+    height_above_takeoff_m
+        Above the first point of the sortie, as a difference of heights in the local frame's vertical where the plan
+        does not say where it lies; None without a path.
+    leg_m
+        Length of the leg that ends here; 0 for a second photo at one place.
+    arrival_s
+        After lift-off, by the plan's time model with a stop at every vertex, as missions are flown; None where the
+        path cannot be flown so.
+    """
+
+    sortie: int
+    vertex: int | None
+    viewpoint: Viewpoint | None
+    position_enu_m: Vec3
+    leg_m: float | None = None
+    arrival_s: float | None = None
+    lat_deg: float | None = None
+    lon_deg: float | None = None
+    height_ellipsoid_m: float | None = None
+    altitude_amsl_m: float | None = None
+    height_above_takeoff_m: float | None = None
+
+    def height_m(self, shown: HeightShown) -> float | None:
+        """Height in one of the references; None where it is not known."""
+        match shown:
+            case HeightShown.LOCAL:
+                return self.position_enu_m[2]
+            case HeightShown.AMSL:
+                return self.altitude_amsl_m
+            case HeightShown.ELLIPSOID:
+                return self.height_ellipsoid_m
+
+
+def waypoint_rows(plan: Plan, origin: Origin | None = None) -> tuple[WaypointRow, ...]:
+    """All waypoints in the order of flight, from take-off to landing; last the viewpoints that are in no sortie.
+
+    `origin` is that of the site, for plans that do not say where they lie.
+    """
+    by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
+    stops: list[_Stop] = []
+    for number, sortie in enumerate(plan.sorties, 1):
+        stops += _sortie_stops(number, sortie, by_id, plan)
+    flown = {viewpoint_id for sortie in plan.sorties for viewpoint_id in sortie.viewpoint_ids}
+    stops += [_Stop(0, None, view, view.position_enu_m) for view in plan.viewpoints if view.id not in flown]
+    return _placed(stops, plan.origin or origin)
+
+
+class _Stop(NamedTuple):
+    """The part of a row that needs no place on the globe."""
+
+    sortie: int
+    vertex: int | None
+    viewpoint: Viewpoint | None
+    position_enu_m: Vec3
+    leg_m: float | None = None
+    arrival_s: float | None = None
+
+
+def _sortie_stops(number: int, sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Iterator[_Stop]:
+    views = [by_id[viewpoint_id] for viewpoint_id in sortie.viewpoint_ids]
+    path, vertices = sortie.path_enu_m, photo_vertices(sortie, by_id)
+    if vertices is None or len(path) < 2:
+        # The path misses photos: they are listed all the same, for the findings name them.
+        yield from (_Stop(number, None, view, view.position_enu_m) for view in views)
+        return
+    at: list[list[Viewpoint]] = [[] for _ in path]
+    for view, vertex in zip(views, vertices, strict=True):
+        at[vertex].append(view)
+    arrivals = iter(_arrivals_s(sortie, by_id, plan))
+    for vertex, (point, photos) in enumerate(zip(path, at, strict=True)):
+        leg_m = math.dist(path[vertex - 1], point) if vertex else 0.0
+        for nth, photo in enumerate(photos or [None]):
+            yield _Stop(number, vertex, photo, point, 0.0 if nth else leg_m, next(arrivals, None))
+
+
+def _arrivals_s(sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Sequence[float]:
+    """Arrival at each vertex, photos that share one following each other; empty in wind that cannot be flown in."""
+    try:
+        flown = sortie_flight_path(sortie, by_id, plan.aircraft, plan.rules)
+        limits = motion_limits(plan.aircraft, plan.rules)
+    except InfeasibleError:
+        return ()
+    return () if flown is None else [float(t) for t in stopping_times_s(flown[0], limits)]
+
+
+def _placed(stops: Sequence[_Stop], origin: Origin | None) -> tuple[WaypointRow, ...]:
+    """Rows: stops with their places on the globe and their heights."""
+    points = np.array([stop.position_enu_m for stop in stops], np.float64).reshape(-1, 3)
+    takeoff_row = {stop.sortie: index for index, stop in enumerate(stops) if stop.vertex == 0}
+    if origin is None:
+        above = _above_takeoff_m(stops, points[:, 2], takeoff_row)
+        return tuple(
+            WaypointRow(*stop, height_above_takeoff_m=above_m) for stop, above_m in zip(stops, above, strict=True)
+        )
+    from planning.geo.enu import geodetic_from_enu
+    from planning.geo.geoid import amsl_from_ellipsoid_m
+
+    lat, lon, height = geodetic_from_enu(origin, points)
+    amsl = amsl_from_ellipsoid_m(lat, lon, height)
+    above = _above_takeoff_m(stops, height, takeoff_row)
+    placed = zip(lat.tolist(), lon.tolist(), height.tolist(), amsl.tolist(), above, strict=True)
+    return tuple(WaypointRow(*stop, *place) for stop, place in zip(stops, placed, strict=True))
+
+
+def _above_takeoff_m(
+    stops: Sequence[_Stop], heights_m: NDArray[np.float64], takeoff_row: dict[int, int]
+) -> list[float | None]:
+    return [
+        float(height - heights_m[takeoff_row[stop.sortie]]) if stop.sortie in takeoff_row else None
+        for stop, height in zip(stops, heights_m, strict=True)
+    ]

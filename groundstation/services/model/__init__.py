@@ -1,0 +1,1 @@
+"""Use cases of finished models: objects, records, pictures, metrics and exports."""

@@ -1,0 +1,381 @@
+"""Use case of exporting a model: a scene of objects, or a trained model, into the formats of other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from planning.base.errors import InputError
+from planning.base.files import read_given
+from planning.base.folders import check_ending, check_folder_name
+from planning.base.json_file import check_output
+from planning.base.progress import QUIET, Monitor, Stop, Trace
+
+if TYPE_CHECKING:
+    from reconstruction.exports.compression import Compressed, Compression
+    from reconstruction.objects.gs_scene import GsScene
+    from reconstruction.training.model.saved import TrainedModel
+
+Preset = Literal["small", "balanced", "fine"]
+
+
+class ModelFormat(StrEnum):
+    """What a model can be written as."""
+
+    WEB = "web"
+    GLTF = "gltf"
+    TILES = "3d-tiles"
+    USD = "usd"
+    PLY = "ply"
+    PLY_2DGS = "ply-2dgs"
+    SPZ = "spz"
+    SPZ_4 = "spz-4"
+    SOG = "sog"
+    MESH = "mesh"
+    CITYJSON = "cityjson"
+    IFC = "ifc"
+
+
+ENDINGS: Mapping[ModelFormat, str] = {
+    ModelFormat.GLTF: ".glb",
+    ModelFormat.USD: ".usdc",
+    ModelFormat.PLY: ".ply",
+    ModelFormat.PLY_2DGS: ".ply",
+    ModelFormat.SPZ: ".spz",
+    ModelFormat.SPZ_4: ".spz",
+    ModelFormat.SOG: ".sog",
+    ModelFormat.MESH: ".glb",
+    ModelFormat.CITYJSON: ".city.json",
+    ModelFormat.IFC: ".ifc",
+}
+"""Of files by format; what is not here is a folder."""
+
+OTHER_ENDINGS: Mapping[ModelFormat, tuple[str, ...]] = {
+    ModelFormat.USD: (".usda", ".usd"),
+    ModelFormat.CITYJSON: (".json",),
+}
+"""That files of a format may have as well."""
+
+WITH_PRESETS = frozenset({ModelFormat.SPZ, ModelFormat.SPZ_4, ModelFormat.SOG, ModelFormat.TILES})
+"""Formats whose size a preset decides."""
+
+OF_ALL_PARTS = frozenset({ModelFormat.IFC})
+"""Formats that always have the whole building."""
+
+WITHOUT_COLOURS = frozenset({ModelFormat.MESH, ModelFormat.CITYJSON, ModelFormat.IFC})
+"""Formats of panels alone, for which no colours of Gaussians are asked."""
+
+Gaussians = Literal["numbers", "spz", "points"]
+
+TWO_LAYERS = "CesiumJS: show gaussians.json and panels.json as two layers"
+NO_CESIUM = (
+    "CesiumJS stops at Gaussians that are not compressed: for it, show panels.json alone, or write --gaussians spz"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ModelExport:
+    """What is wanted.
+
+    Parameters
+    ----------
+    baked
+        Whether what panels mirror is put into their Gaussians' colours, for programs that mirror nothing.
+    degree
+        Of the harmonics that are written, 0 to 3; None: as the format has it by itself.
+    preset
+        Of compressed formats, and of Gaussians as `spz`.
+    components
+        Names of those that are wanted; None for all.
+    gaussians
+        Of glTF and 3D Tiles: as numbers, compressed, or coloured points in their place; None: as the format has them by
+        itself.
+    """
+
+    format: ModelFormat
+    baked: bool = True
+    degree: int | None = None
+    preset: Preset = "balanced"
+    components: tuple[str, ...] | None = None
+    gaussians: Gaussians | None = None
+
+    def __post_init__(self) -> None:
+        if self.degree is not None and self.degree not in (0, 1, 2, 3):
+            raise ValueError(f"degree: expected 0 to 3, got {self.degree}")
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenModel:
+    """What was written, and what its reader should know."""
+
+    path: Path
+    n_bytes: int
+    notes: tuple[str, ...] = ()
+
+
+def with_ending(path: Path, kind: ModelFormat) -> Path:
+    """A file's path with the ending of its format, where it has none."""
+    ending = ENDINGS.get(kind, "")
+    return path if path.suffix or not ending else path.with_name(path.name + ending)
+
+
+def check_name(out: Path, kind: ModelFormat) -> None:
+    """Refuse a name that says that something else is in the file, or that a folder is one.
+
+    Raises
+    ------
+    InputError
+        It does, or the file could not be written.
+    """
+    if kind not in ENDINGS:
+        check_folder_name(out)
+        return
+    check_ending(out, (ENDINGS[kind], *OTHER_ENDINGS.get(kind, ())))
+    check_output(out)
+
+
+def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor = QUIET) -> WrittenModel:
+    """Write a model, with the records that lie beside it where the format has a place for them.
+
+    Raises
+    ------
+    InputError
+        The folder holds no model, or a file cannot be read or written.
+    """
+    check_name(out, wanted.format)
+    if wanted.format is ModelFormat.IFC:
+        return _ifc(folder, out)
+    whole, trained = _read(folder, monitor)
+    scene, notes = _shown(whole, trained, wanted, monitor)
+    attributes, rows = _records(folder)
+    writer = WRITERS[wanted.format]
+    notes += writer(_Export(scene, trained, folder, out, wanted, attributes, rows, monitor))
+    return WrittenModel(out, _size(out), tuple(notes))
+
+
+def export_apart(
+    folder: Path, out: Path, wanted: ModelExport, *, stop: Stop, trace: Trace, monitor: Monitor
+) -> WrittenModel:
+    """`export_model`, as a process beside the window's calls it; it gets no better by and by, so it is not stopped."""
+    return export_model(folder, out, wanted, monitor)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Export:
+    """What a writer needs."""
+
+    scene: GsScene
+    trained: TrainedModel
+    folder: Path
+    out: Path
+    wanted: ModelExport
+    attributes: Mapping[str, Mapping[str, Any]]
+    rows: tuple[Mapping[str, Any], ...]
+    monitor: Monitor
+
+    def degree(self, usual: int) -> int:
+        """That was wished for, else the format's own."""
+        return usual if self.wanted.degree is None else self.wanted.degree
+
+
+def _read(folder: Path, monitor: Monitor) -> tuple[GsScene, TrainedModel]:
+    from groundstation.services.model.objects import scene_of
+    from reconstruction.objects.organise import put_together
+
+    scene = scene_of(folder, monitor)
+    return scene, put_together(scene, folder)
+
+
+def _shown(whole: GsScene, trained: TrainedModel, wanted: ModelExport, monitor: Monitor) -> tuple[GsScene, list[str]]:
+    """The components that are wanted, with what panels show in their colours."""
+    from dataclasses import replace
+
+    from reconstruction.exports.baked import baked, needs_baking
+    from reconstruction.training.methods.shader import Shader
+
+    scene, notes = whole, list[str]()
+    if wanted.components is not None:
+        known = [component.name for component in whole.components]
+        unknown = next((name for name in wanted.components if name not in known), None)
+        if unknown is not None:
+            raise InputError(f"--components: there is no component '{unknown}'; known are {', '.join(known)}")
+        chosen = tuple(component for component in whole.components if component.name in wanted.components)
+        scene = replace(whole, components=chosen)
+    if wanted.format in WITHOUT_COLOURS:
+        return scene, notes
+    if not needs_baking(trained.model):
+        if type(trained.model.shader) is not Shader:
+            notes.append(
+                "what this method's shading adds is not in the file: its Gaussians have their own colours only"
+            )
+    elif wanted.baked:
+        scene = baked(scene, trained.model, monitor)
+        notes.append("mirrored light is in the colours, as harmonics of degree 3: blurred, and it stays on the panes")
+    else:
+        notes.append("panels show their own colour only, and mirror nothing")
+    return scene, notes
+
+
+def _records(folder: Path) -> tuple[dict[str, dict[str, Any]], tuple[Mapping[str, Any], ...]]:
+    """Attributes by object, and all records as plain rows; none where there is no book."""
+    from groundstation.services.model.facility_records import open_records, plain_records, records_path
+    from reconstruction.records.queries import attributes_by_object
+
+    if not records_path(folder).is_file():
+        return {}, ()
+    with open_records(folder) as book:
+        found, attributes = plain_records(book), attributes_by_object(book)
+    return attributes, tuple({"global_id": global_id, **row} for global_id, each in found.items() for row in each)
+
+
+def _ifc(folder: Path, out: Path) -> WrittenModel:
+    from groundstation.services.model.facility_records import export_ifc
+    from groundstation.services.model.scene_records import book_of_scene, user_name
+
+    with book_of_scene(folder, user_name()) as book:
+        done = export_ifc(book, out)
+    return WrittenModel(out, _size(out), done.notes)
+
+
+def _web(export: _Export) -> list[str]:
+    from contextlib import nullcontext
+
+    from groundstation.services.model.facility_records import open_records, records_path
+    from reconstruction.exports.web.page import WebOptions, write_web
+    from reconstruction.exports.web.sky import sky_light
+    from reconstruction.records.stored_files import DOCUMENT_FILE, stored_path
+
+    has_records = records_path(export.folder).is_file()
+    with open_records(export.folder) if has_records else nullcontext() as book:
+
+        def content_of(name: str) -> bytes | None:
+            try:
+                return None if book is None else read_given(stored_path(book, name), DOCUMENT_FILE)
+            except InputError:
+                return None
+
+        options = WebOptions(
+            degree=export.degree(2),
+            is_baked=export.wanted.baked,
+            sky=sky_light(export.trained.model.sky),
+            content_of=content_of,
+        )
+        page = write_web(export.scene, export.out, export.rows, options, export.monitor)
+    told = (
+        (page.n_strays, "{0} records of objects that the model lacks are left out"),
+        (
+            page.n_missing,
+            "{0} files of records are missing or changed: the page says so; copy them back beside the records",
+        ),
+        (page.n_damaged, "{0} pictures of records cannot be read: the page says so; attach them again"),
+        (page.n_large, "{0} documents are too large for the page, which names them; pass them on by themselves"),
+    )
+    return [text.format(n) for n, text in told if n]
+
+
+def _gltf(export: _Export) -> list[str]:
+    from reconstruction.exports.gltf import GltfOptions, write_gltf
+
+    gaussians = export.wanted.gaussians or "numbers"
+    options = GltfOptions(sh_degree=export.degree(3), gaussians=gaussians, compression=_compression(export))
+    write_gltf(export.scene, export.out, options, export.attributes, export.monitor)
+    return []
+
+
+def _tiles(export: _Export) -> list[str]:
+    from reconstruction.exports.tiles3d import TilesOptions, write_tiles
+
+    place: Literal["earth", "local"] = "local" if export.scene.origin is None else "earth"
+    gaussians = export.wanted.gaussians or "spz"
+    options = TilesOptions(
+        sh_degree=export.degree(3), place=place, gaussians=gaussians, compression=_compression(export)
+    )
+    write_tiles(export.scene, export.out, options, export.attributes, export.monitor)
+    notes = [] if place == "earth" else ["the place on Earth is not known: tiles stay in the site's own frame"]
+    return notes + {"spz": [TWO_LAYERS], "numbers": [NO_CESIUM], "points": []}[gaussians]
+
+
+def _usd(export: _Export) -> list[str]:
+    from reconstruction.exports.usd import UsdOptions, write_usd
+
+    write_usd(export.scene, export.out, UsdOptions(sh_degree=export.degree(3)), export.attributes, export.monitor)
+    return []
+
+
+def _ply(export: _Export) -> list[str]:
+    from reconstruction.exports.ply_export import write_ply
+
+    kind: Literal["2dgs", "3dgs"] = "2dgs" if export.wanted.format is ModelFormat.PLY_2DGS else "3dgs"
+    done = write_ply(export.scene, export.out, kind, degree=export.degree(3), monitor=export.monitor)
+    return _left_out(done)
+
+
+def _spz(export: _Export) -> list[str]:
+    from reconstruction.exports.spz.writing import write_spz
+
+    version: Literal[3, 4] = 4 if export.wanted.format is ModelFormat.SPZ_4 else 3
+    compression = _compression(export)
+    return _left_out(write_spz(export.scene, export.out, compression, monitor=export.monitor, version=version))
+
+
+def _sog(export: _Export) -> list[str]:
+    from reconstruction.exports.sog.writing import write_sog
+
+    return _left_out(write_sog(export.scene, export.out, _compression(export), monitor=export.monitor))
+
+
+def _mesh(export: _Export) -> list[str]:
+    from reconstruction.exports.mesh import write_mesh
+
+    write_mesh(export.scene, export.trained.model, export.out, attributes=export.attributes, monitor=export.monitor)
+    return ["each panel is a picture of its front: mirror images in it belong to that view alone"]
+
+
+def _cityjson(export: _Export) -> list[str]:
+    from reconstruction.exports.cityjson import write_cityjson
+
+    write_cityjson(export.scene, export.out, export.attributes, export.monitor)
+    return []
+
+
+WRITERS: dict[ModelFormat, Callable[[_Export], list[str]]] = {
+    ModelFormat.WEB: _web,
+    ModelFormat.GLTF: _gltf,
+    ModelFormat.TILES: _tiles,
+    ModelFormat.USD: _usd,
+    ModelFormat.PLY: _ply,
+    ModelFormat.PLY_2DGS: _ply,
+    ModelFormat.SPZ: _spz,
+    ModelFormat.SPZ_4: _spz,
+    ModelFormat.SOG: _sog,
+    ModelFormat.MESH: _mesh,
+    ModelFormat.CITYJSON: _cityjson,
+}
+
+
+def _compression(export: _Export) -> Compression:
+    from dataclasses import replace
+
+    from reconstruction.exports.compression import PRESETS
+
+    found = PRESETS[export.wanted.preset]
+    return replace(found, degree=export.degree(found.degree))
+
+
+def _left_out(done: Compressed) -> list[str]:
+    found = []
+    if done.n_left_out:
+        found.append(f"{done.n_left_out} Gaussians that nobody sees are left out")
+    if done.n_resized:
+        found.append(f"{done.n_resized} Gaussians are larger or smaller than the format has, and have its nearest size")
+    return found
+
+
+def _size(path: Path) -> int:
+    """Bytes of a file, or of all files of a folder."""
+    if path.is_file():
+        return path.stat().st_size
+    return sum(each.stat().st_size for each in path.rglob("*") if each.is_file())

@@ -1,0 +1,84 @@
+"""Use case after the second flight: its photos and the site's panels become the data set that is reconstructed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from groundstation.services.photos.intake import PhotoIntake
+from groundstation.services.photos.poses import RefinedOutcome, RefineWish, better_poses, refined_summary, still_true
+from groundstation.services.project.input_files import read_given_site
+from planning.base.findings import Finding
+from planning.base.progress import QUIET, Monitor
+from planning.photos.folder import read_photos
+from planning.photos.places import PhotoHeights
+from planning.site.records import SiteModel
+from reconstruction.dataset.prepare import PreparedData, PrepareParameters, prepare
+from reconstruction.photos.poses import pose_photos
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreparedFiles:
+    """A data set that was written.
+
+    Parameters
+    ----------
+    findings
+        About the photos, their poses and the data set.
+    refined
+        What refining the poses brought; None where they were not refined.
+    """
+
+    data: PreparedData
+    findings: tuple[Finding, ...]
+    refined: RefinedOutcome | None
+
+
+def prepare_files(
+    folder: Path,
+    site: Path,
+    out: Path,
+    parameters: PrepareParameters | None = None,
+    *,
+    heights: PhotoHeights = "auto",
+    colmap: Path | None = None,
+    refine: RefineWish | None = None,
+    monitor: Monitor = QUIET,
+) -> PreparedFiles:
+    """Write the data set of a folder of photos.
+
+    Raises
+    ------
+    InputError
+        Photos, site or COLMAP model cannot be used, poses cannot be refined, or the data set cannot be written.
+    """
+    model = read_given_site(site)
+    read = read_photos(folder, monitor)
+    posed = pose_photos(read.photos, model.site, folder, heights=heights)
+    better = better_poses(posed, folder, colmap, refine, monitor)
+    prepared = prepare(better.photos, model, out, parameters, monitor)
+    findings = (*read.findings, *still_true(posed.findings, better), *better.findings, *prepared.findings)
+    return PreparedFiles(prepared, findings, better.refined)
+
+
+def prepare_read(intake: PhotoIntake, model: SiteModel, out: Path, monitor: Monitor = QUIET) -> PreparedData:
+    """Write the data set of photos that were read already, with the poses that they have by now.
+
+    Raises
+    ------
+    InputError
+        The site has no panels, there are no photos with a pose, none can be read, or the data set cannot be written.
+    """
+    return prepare(intake.photos, model, out, monitor=monitor)
+
+
+def prepared_summary(prepared: PreparedFiles) -> dict[str, Any]:
+    """For `--json`."""
+    data = prepared.data
+    return {
+        "dataset": str(data.folder),
+        "photos": len(data.photos),
+        "effects": {decision.effect: str(decision) for decision in data.decisions},
+        **({} if prepared.refined is None else {"refined": refined_summary(prepared.refined)}),
+    }

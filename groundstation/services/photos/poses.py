@@ -1,0 +1,261 @@
+"""Poses of photos for all that is done with them: their own, those of a COLMAP model, or refined ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.colmap.folder import read_model
+from reconstruction.colmap.georeference import georeference, posed_photos
+from reconstruction.colmap.pycolmap_run import RefineParameters, load_colmap
+from reconstruction.colmap.refine import refine_poses
+from reconstruction.colmap.refined_folder import (
+    KeptRefinement,
+    check_refined_folder,
+    fingerprint,
+    is_refined_folder,
+    read_refined,
+    write_refined,
+)
+from reconstruction.colmap.verdict import judge_poses
+from reconstruction.photos.poses import PhotoSet
+
+LENS_UNKNOWN = "lens-distortion-unknown"
+"""Code of the finding that advises to refine cameras."""
+
+REFINED_SUFFIX = ".refined"
+"""Of the folder beside that of the photos."""
+
+
+@dataclass(frozen=True, slots=True)
+class RefineWish:
+    """That poses are to be refined.
+
+    Parameters
+    ----------
+    folder
+        Where refined poses are kept; None for beside the photos. What is there is taken if it is of the same photos.
+    max_image_size_px
+        What photos are reduced to; None for the usual, and for whatever was kept.
+    """
+
+    folder: Path | None = None
+    max_image_size_px: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.max_image_size_px is not None and self.max_image_size_px < 1:
+            raise ValueError(f"max_image_size_px: expected at least 1, got {self.max_image_size_px}")
+
+    def kept_in(self, photos: Path) -> Path:
+        """Folder of refined poses, for a folder of photos.
+
+        Raises
+        ------
+        InputError
+            The photos are the root of a drive, which nothing can lie beside.
+        """
+        if self.folder is not None:
+            return self.folder
+        whole = photos.absolute()
+        if not whole.name:
+            raise InputError(
+                f"{photos}: is a whole drive, and refined poses cannot lie beside it; copy the photos first"
+            )
+        return whole.with_name(whole.name + REFINED_SUFFIX)
+
+
+@dataclass(frozen=True, slots=True)
+class RefinedOutcome:
+    """What a refinement has brought.
+
+    Parameters
+    ----------
+    folder
+        Where it is kept.
+    n_refined, n_photos
+        Photos with refined poses, and all.
+    moved_m, turned_deg
+        By how much they differ from their own poses: in the middle, and at most.
+    reprojection_px
+        Mean distance of image points from where the model has them.
+    not_joined
+        Names of photos that found no place in the model.
+    was_kept
+        Whether it had been computed before.
+    """
+
+    folder: Path
+    n_refined: int
+    n_photos: int
+    moved_m: tuple[float, float]
+    turned_deg: tuple[float, float]
+    reprojection_px: float
+    not_joined: tuple[str, ...]
+    was_kept: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BetterPoses:
+    """Photos to go on with.
+
+    Parameters
+    ----------
+    refined
+        None where nothing was refined.
+    """
+
+    photos: tuple[PosedPhoto, ...]
+    findings: tuple[Finding, ...] = ()
+    refined: RefinedOutcome | None = None
+
+
+def better_poses(
+    posed: PhotoSet,
+    folder: Path,
+    colmap: Path | None = None,
+    refine: RefineWish | None = None,
+    monitor: Monitor = QUIET,
+) -> BetterPoses:
+    """The photos' own poses, or better ones where they are asked for.
+
+    A COLMAP model is brought into the site's frame by the photos' own poses; photos that are not in it are left out.
+    Refined poses are judged photo by photo, and photos without a refined pose that is believed keep their own.
+
+    Parameters
+    ----------
+    folder
+        Of the photos.
+    colmap
+        Folder of a COLMAP model, also one that `refine` kept.
+
+    Raises
+    ------
+    InputError
+        The model cannot be read, does not fit the photos, or cannot be kept; or pycolmap is not installed.
+    ReconstructionError
+        The photos do not fit together.
+    """
+    if refine is not None:
+        return refined_poses(posed.photos, folder, refine, monitor)
+    if colmap is None:
+        return BetterPoses(posed.photos)
+    if is_refined_folder(colmap):
+        kept = read_refined(colmap, posed.photos)
+        if kept.photos_sha256 == fingerprint(posed.photos):
+            return _judged(posed.photos, kept, colmap, was_kept=True)
+    model = read_model(colmap)
+    reference = georeference(model, posed.photos)
+    times = {photo.name: photo.taken_at for photo in posed.photos}
+    better = posed_photos(model, reference.enu_from_model, folder, times)
+    known = (photo for photo in better if photo.name in times)
+    photos = tuple(replace(photo, pose=replace(photo.pose, covariance=reference.usual_covariance)) for photo in known)
+    return BetterPoses(photos, reference.findings)
+
+
+def refined_poses(
+    photos: Sequence[PosedPhoto], folder: Path, wish: RefineWish, monitor: Monitor = QUIET
+) -> BetterPoses:
+    """Poses refined with COLMAP, or those that were kept of the same photos.
+
+    Parameters
+    ----------
+    photos
+        With their own poses.
+    folder
+        What the photos' names are paths below.
+
+    Raises
+    ------
+    InputError
+        There are too few photos, pycolmap is not installed, or the result cannot be kept.
+    ReconstructionError
+        The photos do not fit together.
+    """
+    where = wish.kept_in(folder)
+    kept = _kept(where, photos, wish)
+    if kept is not None:
+        return _judged(photos, kept, where, was_kept=True)
+    load_colmap()  # what is missing is said before anything is compared
+    check_refined_folder(where)
+    parameters = RefineParameters()
+    if wish.max_image_size_px is not None:
+        parameters = replace(parameters, max_image_size_px=wish.max_image_size_px)
+    refinement = refine_poses(photos, folder, parameters, monitor)
+    write_refined(where, refinement, photos, parameters)
+    return _judged(photos, read_refined(where, photos), where, was_kept=False)
+
+
+def still_true(findings: Sequence[Finding], better: BetterPoses) -> tuple[Finding, ...]:
+    """Findings about the photos' own cameras that hold for these poses: refined lenses are known."""
+    if better.refined is None or better.refined.n_refined < better.refined.n_photos:
+        return tuple(findings)
+    return tuple(finding for finding in findings if finding.code != LENS_UNKNOWN)
+
+
+def refined_summary(outcome: RefinedOutcome) -> dict[str, Any]:
+    """For `--json`."""
+    return {
+        "folder": str(outcome.folder),
+        "photos": outcome.n_refined,
+        "of": outcome.n_photos,
+        "moved_m_median": outcome.moved_m[0],
+        "moved_m_largest": outcome.moved_m[1],
+        "turned_deg_median": outcome.turned_deg[0],
+        "turned_deg_largest": outcome.turned_deg[1],
+        "reprojection_px": outcome.reprojection_px,
+        "not_joined": list(outcome.not_joined),
+        "was_kept": outcome.was_kept,
+    }
+
+
+def _kept(where: Path, photos: Sequence[PosedPhoto], wish: RefineWish) -> KeptRefinement | None:
+    """What was computed before of the same photos, and in the size that is wished for."""
+    if not is_refined_folder(where):
+        return None
+    try:
+        kept = read_refined(where, photos)
+    except InputError as error:
+        raise InputError(f"{error}; remove the folder {where} to have the poses refined again") from error
+    size = wish.max_image_size_px
+    is_same = kept.photos_sha256 == fingerprint(photos)
+    return kept if is_same and size in (None, kept.parameters.max_image_size_px) else None
+
+
+def _judged(photos: Sequence[PosedPhoto], kept: KeptRefinement, where: Path, *, was_kept: bool) -> BetterPoses:
+    judged = judge_poses(photos, kept.photos)
+    outcome = RefinedOutcome(
+        where,
+        sum(judged.is_refined),
+        len(photos),
+        _middle_and_most(judged.moved_m),
+        _middle_and_most(judged.turned_deg),
+        kept.reprojection_px,
+        kept.left_out,
+        was_kept,
+    )
+    return BetterPoses(judged.photos, (_outcome_finding(outcome), *kept.findings, *judged.findings), outcome)
+
+
+def _outcome_finding(outcome: RefinedOutcome) -> Finding:
+    if not outcome.n_refined:
+        text = f"none of the {outcome.n_photos} photos has a refined pose; all keep their own"
+        return Finding(Severity.WARNING, "poses-refined", text, "", 0.0, None, "photos")
+    (usual_m, most_m), (usual_deg, most_deg) = outcome.moved_m, outcome.turned_deg
+    text = (
+        f"{outcome.n_refined} of {outcome.n_photos} photos have refined poses and lenses, moved by {usual_m:.3f} m and "
+        f"turned by {usual_deg:.2f} degrees in the middle, by {most_m:.3f} m and {most_deg:.2f} degrees at most; image "
+        f"points are off by {outcome.reprojection_px:.2f} px"
+    )
+    return Finding(Severity.NOTE, "poses-refined", text, "", float(outcome.n_refined), None, "photos")
+
+
+def _middle_and_most(values: np.ndarray) -> tuple[float, float]:
+    return (float(np.median(values)), float(values.max())) if len(values) else (0.0, 0.0)

@@ -1,0 +1,1 @@
+"""Use cases of plans: making, editing, comparing, judging and closing them."""

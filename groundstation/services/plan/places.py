@@ -1,0 +1,57 @@
+"""From the place that a finding names to the thing in the window that it means."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from groundstation.services.project.document import Document, Item, ItemKind, exists
+
+_NAMED = {
+    "home": ItemKind.HOME,
+    "take-off": ItemKind.HOME,
+    "airspace": ItemKind.AIRSPACE,
+    "building": ItemKind.BUILDING,
+}
+
+_KIND_NAMES = frozenset(kind.value for kind in ItemKind)
+
+_BY_ID = (
+    ItemKind.VIEWPOINT,
+    ItemKind.PANEL,
+    ItemKind.FACADE,
+    ItemKind.OBSTACLE,
+    ItemKind.NO_FLY,
+    ItemKind.RALLY,
+)
+"""Kinds that a bare identifier may mean, in this order: findings name viewpoints and panels far more often."""
+
+
+def item_of_place(place: str, document: Document) -> Item | None:
+    """The thing that the place of a finding means in a document; None where it names nothing there.
+
+    Places go from large to small ("sortie 2, leg 5", "sortie 1, v0012", "no-fly/road"). The smallest part that the
+    document has is taken, so that a place inside a mission file still leads to its sortie. Viewpoints, sorties and legs
+    are those of the current plan.
+    """
+    return next((item for item in _meanings(place.strip()) if exists(document, item)), None)
+
+
+def _meanings(place: str) -> Iterator[Item]:
+    """Everything that a place may mean, the most precise first."""
+    leg = re.search(r"\bsortie (\d+), leg (\d+)\b", place)
+    if leg is not None:
+        yield Item(ItemKind.LEG, f"{leg[1]}/{leg[2]}")
+    kind_name, slash, identifier = place.partition("/")
+    if slash and kind_name in _KIND_NAMES:
+        yield Item(ItemKind(kind_name), identifier)
+    parts = [part.strip() for part in place.split(",")]
+    # Identifiers may hold a comma: the whole comes first.
+    for name in (place, *reversed(parts)):
+        sortie = re.fullmatch(r"sortie (\d+)", name)
+        if sortie is not None:
+            yield Item(ItemKind.SORTIE, sortie[1])
+        if name in _NAMED:
+            yield Item(_NAMED[name])
+        for kind in _BY_ID:
+            yield Item(kind, name)

@@ -1,0 +1,192 @@
+"""What looking at plans, editing them and planning again have in common, kept so that it is computed once.
+
+Preparing a site takes seconds (what can be reached is proven), taking a plan in hand a fraction of one; an edit then
+takes milliseconds. A `Bench` is a value that lives in the window's thread; `take_in_hand` is for jobs and gives a
+`PlanInHand` that the bench keeps.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.aircraft.catalogue import profile
+from planning.base.progress import QUIET, Monitor
+from planning.checks.measures import pose_of
+from planning.coverage.sections import NOT_SEEN
+from planning.insight.reasons import SectionReasons, section_reasons
+from planning.insight.sampling import PanelSampling, panel_sampling
+from planning.insight.sections import PlanInsight, assembled
+from planning.plan import Camera, Constraints, Plan, viewpoint_arrays
+from planning.request import PlanRequest
+from planning.revision import Revision, revise
+from planning.site.records import SiteModel
+from planning.viewpoints.prepare import Prepared, is_same_place, prepare, settled
+
+MAX_IN_HAND = 40
+"""Plans kept: undo goes back through so many edits without computing anything; each shares most with the others."""
+
+MAX_GROUNDWORKS = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Groundwork:
+    """A prepared site and why parts of it cannot be seen; the same for all plans with one camera and constraints.
+
+    Planning leaves it without the reasons; they are found when a plan is taken in hand.
+    """
+
+    prepared: Prepared
+    reasons: SectionReasons | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanInHand:
+    """A plan that can be looked at and edited."""
+
+    groundwork: Groundwork
+    revision: Revision
+    insight: PlanInsight
+
+    @property
+    def plan(self) -> Plan:
+        """The plan."""
+        return self.revision.plan
+
+    def with_revision(self, revision: Revision) -> PlanInHand:
+        """After an edit."""
+        return replace(self, revision=revision, insight=insight_of(revision, self.insight.reasons, self))
+
+
+class Bench:
+    """The plans that were in hand, the last ones first to be found."""
+
+    def __init__(self) -> None:
+        self._in_hand: OrderedDict[int, tuple[Plan, PlanInHand]] = OrderedDict()
+        self._groundworks: list[Groundwork] = []
+
+    def find(self, plan: Plan, site_model: SiteModel) -> PlanInHand | None:
+        """A plan that is in hand on this site; None where it must be taken first.
+
+        Plans are told apart by being one object, as the document's history keeps them; the record inside may be
+        another one, equal to it.
+        """
+        found = self._in_hand.get(id(plan))
+        if found is None or not is_same_place(found[1].groundwork.prepared.site_model, site_model):
+            return None
+        self._in_hand.move_to_end(id(plan))
+        return found[1]
+
+    def keep(self, plan: Plan, in_hand: PlanInHand) -> None:
+        """Remember a plan, under the object that the document has."""
+        self._in_hand[id(plan)] = (plan, in_hand)
+        self._in_hand.move_to_end(id(plan))
+        while len(self._in_hand) > MAX_IN_HAND:
+            self._in_hand.popitem(last=False)
+        self.keep_groundwork(in_hand.groundwork)
+
+    def keep_groundwork(self, groundwork: Groundwork) -> None:
+        """Remember a prepared site."""
+        others = [kept for kept in self._groundworks if kept.prepared is not groundwork.prepared]
+        self._groundworks = [groundwork, *others][:MAX_GROUNDWORKS]
+
+    def groundwork_for(self, plan: Plan, site_model: SiteModel) -> Groundwork | None:
+        """Groundwork on which a plan can be taken in hand."""
+        return next((kept for kept in self._groundworks if _fits(kept.prepared, plan, site_model)), None)
+
+    def prepared_for(self, request: PlanRequest, site_model: SiteModel) -> Prepared | None:
+        """A prepared site with which a request can be planned."""
+        camera = profile(request.profile_id).camera
+        wanted = (site_model, camera, request.constraints, request.precision, request.seed)
+        return next((kept.prepared for kept in self._groundworks if not kept.prepared.unfit_for(*wanted)), None)
+
+
+def take_in_hand(
+    site_model: SiteModel, plan: Plan, groundwork: Groundwork | None, monitor: Monitor = QUIET
+) -> PlanInHand:
+    """Measure a plan and find out what it leaves unseen and why.
+
+    Parameters
+    ----------
+    groundwork
+        What is known of the site, for this plan's camera and constraints; None where nothing is.
+
+    Raises
+    ------
+    InfeasibleError
+        Home cannot be used, or no allowed viewpoint sees any panel.
+    """
+    if groundwork is None:
+        prepared = prepare(site_model, plan.camera, plan.constraints, seed=plan.seed, monitor=monitor)
+        groundwork = Groundwork(prepared)
+    reasons = groundwork.reasons
+    if reasons is None:
+        reasons = section_reasons(site_model, groundwork.prepared, monitor=monitor)
+    monitor.report("measuring the plan", 0, 1)
+    revision = revise(plan, groundwork.prepared)
+    return PlanInHand(Groundwork(groundwork.prepared, reasons), revision, insight_of(revision, reasons))
+
+
+def insight_of(revision: Revision, reasons: SectionReasons, before: PlanInHand | None = None) -> PlanInsight:
+    """What a plan in hand covers, from what is measured on it already; `before` is the same plan before an edit."""
+    prepared, plan = revision.prepared, revision.plan
+    if before is None:
+        sections, sampling = _measured(revision)
+    else:
+        sections, sampling = _measured_since(revision, before)
+    counts = revision.counts.astype(np.int32)
+    return assembled(prepared.site_model, prepared, plan, sections, counts, sampling, reasons)
+
+
+def _measured(revision: Revision) -> tuple[NDArray[np.int16], PanelSampling]:
+    """What each view covers, and pixel sizes of all panels."""
+    model, viewpoints = revision.prepared.problem.model, revision.plan.viewpoints
+    sections = np.full((len(viewpoints), len(model.frames)), NOT_SEEN, np.int16)
+    for number in range(len(viewpoints)):
+        _fill_row(sections, number, revision)
+    return sections, panel_sampling(model.frames, model.camera, viewpoint_arrays(viewpoints).positions_enu_m, sections)
+
+
+def _fill_row(sections: NDArray[np.int16], number: int, revision: Revision) -> None:
+    elements = revision.elements_of_pose(revision.plan.viewpoints[number])
+    panel, section = np.divmod(elements, revision.prepared.problem.model.grid.n_sections)
+    sections[number, panel] = section
+
+
+def _measured_since(revision: Revision, before: PlanInHand) -> tuple[NDArray[np.int16], PanelSampling]:
+    """As `_measured`, where only what an edit changed is computed: new views, and the panels that these see or saw."""
+    model, viewpoints = revision.prepared.problem.model, revision.plan.viewpoints
+    known = {pose_of(viewpoint): row for row, viewpoint in enumerate(before.plan.viewpoints)}
+    rows = np.array([known.get(pose_of(viewpoint), -1) for viewpoint in viewpoints], np.int64)
+    is_kept, is_gone = rows >= 0, np.ones(len(before.plan.viewpoints), bool)
+    is_gone[rows[is_kept]] = False
+    sections = np.full((len(viewpoints), len(model.frames)), NOT_SEEN, np.int16)
+    sections[is_kept] = before.insight.sections[rows[is_kept]]
+    for number in np.flatnonzero(~is_kept).tolist():
+        _fill_row(sections, number, revision)
+    seen = np.concatenate([sections[~is_kept], before.insight.sections[is_gone]]) != NOT_SEEN
+    touched = np.flatnonzero(seen.any(axis=0))
+    positions = viewpoint_arrays(viewpoints).positions_enu_m
+    part = panel_sampling(model.frames, model.camera, positions, sections, touched)
+    merged = {}
+    for name in (field.name for field in fields(PanelSampling)):
+        merged[name] = getattr(before.insight.sampling, name).copy()
+        merged[name][touched] = getattr(part, name)
+    return sections, PanelSampling(**merged)
+
+
+def _fits(prepared: Prepared, plan: Plan, site_model: SiteModel) -> bool:
+    camera: Camera = prepared.problem.model.camera
+    wanted: Constraints = settled(
+        replace(plan.constraints, occlusion=prepared.constraints.occlusion), site_model, camera
+    )
+    occlusion = plan.constraints.occlusion
+    return (
+        is_same_place(prepared.site_model, site_model)
+        and plan.camera == camera
+        and wanted == prepared.constraints
+        and occlusion in ("auto", prepared.constraints.occlusion)
+    )

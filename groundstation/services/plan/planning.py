@@ -1,0 +1,250 @@
+"""Use cases around plans: plan a flight over a site and write it, check a plan against its site."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from groundstation.services.mission.preflight import preflight
+from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay
+from groundstation.services.project.input_files import read_given_plan, read_given_site
+from groundstation.services.project.project_file import check_not_index
+from planning.aircraft.catalogue import profile
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.base.jit import is_compiled
+from planning.base.json_file import check_output
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+from planning.checks.flight_rules import sharpness
+from planning.checks.geometry_rules import low_flight_allowed
+from planning.insight.flight_profile import lowest_flight
+from planning.plan import Plan, Viewpoint, write_plan
+from planning.planner import Planned, plan_flight
+from planning.request import PlanRequest
+from planning.routing.three_opt import kick
+from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel
+from planning.viewpoints.prepare import Prepared
+from planning.viewpoints.shortfall import WhyOpen
+
+
+def plan_site(
+    site_path: Path,
+    request: PlanRequest,
+    out: Path | None,
+    *,
+    started_s: float | None = None,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Planned:
+    """Plan a flight over the site in a file, and write the plan where `out` says.
+
+    A finding says so where the plan has less than was asked for. `started_s` is as in `planning.planner.plan_flight`.
+
+    Raises
+    ------
+    InputError, InfeasibleError
+        As `planning.planner.plan_flight`, or the plan cannot be written where it should go; nothing is written then.
+    """
+    if out is not None:
+        check_not_index(out)
+        check_output(out, [site_path])
+    planned = plan_document_site(
+        read_given_site(site_path), request, started_s=started_s, stop=stop, trace=trace, monitor=monitor
+    )
+    if out is not None:
+        write_plan(out, planned.plan)
+    return planned
+
+
+def plan_document_site(
+    site_model: SiteModel,
+    request: PlanRequest,
+    prepared: Prepared | None = None,
+    *,
+    started_s: float | None = None,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Planned:
+    """Plan a flight over an open site; a finding says so where the plan has less than was asked for.
+
+    Parameters
+    ----------
+    prepared
+        What an earlier plan left; used where it fits the request and was not cut short, else the site is prepared anew.
+
+    Raises
+    ------
+    InputError, InfeasibleError
+        As `planning.planner.plan_flight`.
+    """
+    camera = profile(request.profile_id).camera
+    wanted = (site_model, camera, request.constraints, request.precision, request.seed)
+    if prepared is not None and (prepared.is_cut_short or prepared.unfit_for(*wanted)):
+        prepared = None
+    compiled_s = _compile_once(monitor)
+    if started_s is not None:
+        started_s += compiled_s
+    planned = plan_flight(
+        site_model, request, prepared=prepared, started_s=started_s, stop=stop, trace=trace, monitor=monitor
+    )
+    findings = [*planned.findings, *_shortfalls(request, planned)]
+    if compiled_s > 0.0:
+        text = f"compiled for this computer in {compiled_s:.0f} s, once; the time budget began behind it"
+        findings.append(Finding(Severity.NOTE, "compiled", text, "", compiled_s, None, "s"))
+    return replace(planned, findings=tuple(findings))
+
+
+def _compile_once(monitor: Monitor) -> float:
+    """Compile the kernels of planning where this computer has none yet; returns how long that took, s.
+
+    `make setup` does it for who works on the sources. Who installs the program has it done with the first plan: it
+    takes longer than many a time budget.
+    """
+    if is_compiled(kick):
+        return 0.0
+    from planning.warm_up import compile_kernels
+
+    monitor.report("compiling for this computer, once", 0, 1)
+    started_s = time.perf_counter()
+    compile_kernels()
+    return time.perf_counter() - started_s
+
+
+def reunited(planned: Planned, site_model: SiteModel, prepared: Prepared | None) -> Planned:
+    """What another process planned, with the site and the preparation of this one in place of their copies.
+
+    The window tells sites and preparations apart by being one object, which spares it comparing them.
+    """
+    if prepared is None or prepared.is_cut_short:
+        prepared = replace(planned.prepared, site_model=site_model)
+    return replace(planned, prepared=prepared)
+
+
+def locked_viewpoints(plan_path: Path) -> tuple[Viewpoint, ...]:
+    """The locked viewpoints of a plan file.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or none of its viewpoints is locked.
+    """
+    locked = tuple(viewpoint for viewpoint in read_given_plan(plan_path).viewpoints if viewpoint.locked)
+    if not locked:
+        raise InputError(
+            f'{plan_path}: none of the viewpoints is locked; expected some with "locked": true, which the Plan tab\'s '
+            "lock sets"
+        )
+    return locked
+
+
+def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
+    plan = planned.plan
+    lowest_m = plan.constraints.min_height_above_ground_m
+    if lowest_m is not None and lowest_m < MIN_HEIGHT_ABOVE_GROUND_M:
+        yield low_flight_allowed(lowest_m)
+    yield from _too_coarse(plan)
+    if planned.n_left_out:
+        n_left_out = planned.n_left_out
+        text = f"{n_left_out} views were left out, since the time did not last for ways to them; allow it more time"
+        yield Finding(Severity.WARNING, "time-budget", text, "", float(n_left_out), 0.0, "views")
+    n_views = len(plan.viewpoints)
+    if request.n_views is not None and n_views < request.n_views and not planned.n_left_out:
+        text = (
+            f"{n_views} views instead of the {request.n_views} asked for: more would show nothing new or could not be "
+            "flown"
+        )
+        yield Finding(Severity.NOTE, "fewer-views", text, "", float(n_views), float(request.n_views), "views")
+    n_sorties, n_batteries = len(plan.sorties), request.n_batteries
+    if n_batteries is not None and n_sorties < n_batteries:
+        text = f"takes {n_sorties} of {n_batteries} batteries: more views would show nothing new or could not be flown"
+        yield Finding(Severity.NOTE, "fewer-sorties", text, "", float(n_sorties), float(n_batteries), "sorties")
+    if request.share is None:
+        return
+    share = plan.coverage.covered / max(plan.coverage.reachable_upper_bound, 1)
+    if share < request.share:
+        text = f"covers {100.0 * share:.2f} % of what is possible at most, {100.0 * request.share:g} % were asked for"
+        if request.method != "greedy":
+            advice = "the method flies a pattern of its own"
+            text = f"{text}; {advice}"
+        yield Finding(Severity.WARNING, "less-coverage", text, "", share, request.share)
+        if request.method == "greedy":
+            yield from why_open(planned)
+
+
+def _too_coarse(plan: Plan) -> Iterator[Finding]:
+    found, wanted_mm = plan.coverage, plan.constraints.wanted_gsd_mm
+    if found.sharp is not None and found.coarsest_gsd_mm is not None and wanted_mm and found.sharp < found.covered:
+        yield sharpness(found.covered - found.sharp, found.covered, found.coarsest_gsd_mm, wanted_mm)
+
+
+def why_open(planned: Planned) -> Iterator[Finding]:
+    """Which sections stay open, by what keeps them from being covered."""
+    plan, panels = planned.plan, planned.prepared.site_model.site.panels
+    time_helps = "allow it more time" if planned.prepared.is_cut_short else "more time does not help"
+    texts = {
+        WhyOpen.UNDECIDED: "have no place from which they are known to be seen, and no proof that there is none, so "
+        f"that they count as possible; {time_helps}",
+        WhyOpen.CUT_OFF: "are only seen from places to which no way from home was found that keeps "
+        f"{plan.constraints.min_distance_m:g} m from everything; move home, or lower the minimum distance",
+        WhyOpen.SPACING: f"are only seen from places less than {plan.aircraft.min_waypoint_spacing_m:g} m from other "
+        f"viewpoints, which {plan.aircraft.name} refuses; more time does not help",
+        WhyOpen.SEARCH: "can be covered; allow it more time",
+    }
+    for why, text in texts.items():
+        on = [panels[each.panel].id for each in planned.open_sections if each.why is why]
+        if on:
+            message = f"{len(on)} sections (on {len(set(on))} panels, the first is '{on[0]}') {text}"
+            yield Finding(Severity.WARNING, f"open-{why}", message, on[0], float(len(on)), 0.0, "sections")
+
+
+def check_files(
+    plan_path: Path, site_path: Path, day: FlightDay = UNKNOWN_DAY, monitor: Monitor = QUIET
+) -> tuple[Finding, ...]:
+    """All findings on a plan file and its site file, for a day of which something is known or not."""
+    return preflight(read_given_plan(plan_path), read_given_site(site_path), day, monitor).findings
+
+
+def planned_summary(planned: Planned, seconds: float) -> dict[str, Any]:
+    """What `plan --json` prints."""
+    plan, site = planned.plan, planned.prepared.site_model.site
+    panels, low = site.panels, lowest_flight(plan, site.home_enu_m, site.airspace.ground_z_m)
+    return {
+        "views": len(plan.viewpoints),
+        "covered": plan.coverage.covered,
+        "total": plan.coverage.total,
+        "reachable_upper_bound": plan.coverage.reachable_upper_bound,
+        "sharp": plan.coverage.sharp,
+        "wanted_gsd_mm": plan.constraints.wanted_gsd_mm,
+        "coarsest_gsd_mm": plan.coverage.coarsest_gsd_mm,
+        "undecided": planned.n_undecided,
+        "bound_for_views": planned.bound_for_views,
+        "occlusion": plan.constraints.occlusion,
+        "method": plan.method,
+        "sorties": len(plan.sorties),
+        "duration_s": round(plan.duration_s, 1),
+        "length_m": round(sum(sortie.length_m for sortie in plan.sorties), 1),
+        "lowest_height_m": None if low is None else round(low.lowest_m, 2),
+        "below_10_m_s": None if low is None or low.below_s is None else round(low.below_s, 1),
+        "depth": msgspec.to_builtins(planned.depth),
+        "effects": msgspec.to_builtins(plan.effects),
+        "open": [
+            {"panel": panels[each.panel].id, "section": each.section, "why": each.why.value}
+            for each in planned.open_sections
+        ],
+        "findings": [finding_summary(finding) for finding in planned.findings],
+        "seconds": round(seconds, 3),
+        "seconds_by_stage": {stage: round(value, 3) for stage, value in planned.seconds.items()},
+    }
+
+
+def finding_summary(finding: Finding) -> dict[str, Any]:
+    """A finding as JSON."""
+    content: dict[str, Any] = msgspec.to_builtins(finding)
+    return content

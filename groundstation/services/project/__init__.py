@@ -1,0 +1,1 @@
+"""Projects: the document with its history, and the folder that it is kept in."""

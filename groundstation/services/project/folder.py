@@ -1,0 +1,381 @@
+"""Projects: a folder with a site, the plans made for it and what belongs to them (docs/projects.md)."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import msgspec
+
+from groundstation.services.project.document import Document
+from groundstation.services.project.facades import facades_to_write, read_project_facades
+from groundstation.services.project.migration import FORMAT, VERSION, free_name
+from groundstation.services.project.plans import plan_file, read_entry, read_request
+from groundstation.services.project.project_file import (
+    FOLDERS,
+    PLANS_FOLDER,
+    SITE_FOLDER,
+    PlanRecord,
+    ProjectIndex,
+    ProjectRecord,
+    index_bytes,
+    is_project,
+    project_folder,
+    read_index,
+)
+from groundstation.services.project.site import is_plain, mesh_names, site_files, spare_meshes
+from groundstation.services.project.store import (
+    PROJECT_FILE,
+    current_content,
+    digest,
+    has_digest,
+    holds,
+    in_words,
+    leftovers,
+    may_replace,
+    remove,
+    replace_together,
+    settle,
+)
+from planning.base.errors import InputError
+from planning.base.files import read_given, real_path
+from planning.base.findings import Finding, Severity
+from planning.base.json_file import JSON_FILE
+from planning.request import PlanRequest
+from planning.site.file import site_of
+from planning.site.records import SiteModel
+
+# Writing a project: what of it has changed, and what nothing uses any more afterwards.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SiteToWrite:
+    """The site of a project as it will be written.
+
+    Parameters
+    ----------
+    file, sha256
+        Of the site file, as in project.json.
+    model
+        As a reader will find it.
+    meshes
+        Names of all meshes.
+    files
+        Content of the site file, where it is not there yet.
+    created
+        Content of mesh files that are not there yet; both by path relative to the project.
+    """
+
+    file: str
+    sha256: str
+    model: SiteModel
+    meshes: set[str]
+    files: Mapping[str, bytes]
+    created: Mapping[str, bytes]
+
+
+def site_to_write(folder: Path, site: SiteModel, before: ProjectRecord, sources: Sequence[Path]) -> SiteToWrite:
+    """What to write for a site; nothing where the project holds it already.
+
+    Parameters
+    ----------
+    before
+        The project as it is in the folder.
+    sources
+        Site files outside the project that the site may come from.
+    """
+    known = [folder / before.site] if before.site else []
+    stored = site_files(site, folder / SITE_FOLDER, [*known, *sources])
+    file = _site_file(folder, before, stored.content)
+    return SiteToWrite(
+        file=file,
+        sha256=digest(stored.content),
+        model=stored.model,
+        meshes=mesh_names(stored.content),
+        files={} if holds(folder / file, stored.content) else {file: stored.content},
+        created={f"{SITE_FOLDER}/{name}": content for name, content in stored.meshes.items()},
+    )
+
+
+def _site_file(folder: Path, before: ProjectRecord, content: bytes) -> str:
+    """Where the site file goes: where it is, or to a name in its proper folder that nothing has."""
+    is_in_place = before.site.rpartition("/")[0] == SITE_FOLDER
+    if is_in_place and may_replace(folder / before.site, before.site_sha256, content):
+        return before.site
+    number = 1
+    while (folder / (file := f"{SITE_FOLDER}/site{'' if number == 1 else f'-{number}'}.json")).exists():
+        number += 1
+    return file
+
+
+def write_project(
+    folder: Path,
+    present: ProjectIndex | None,
+    record: ProjectRecord,
+    files: Mapping[str, bytes],
+    site: SiteToWrite | None,
+) -> None:
+    """Write what has changed, keep a project.json of an older version, then remove what only the old project used.
+
+    Parameters
+    ----------
+    present
+        The project as it is in the folder.
+    files
+        Content of site and plan files that changes, by path relative to the project.
+
+    Raises
+    ------
+    InputError
+        Something cannot be written; the project is as it was then.
+    """
+    meshes = set() if site is None else site.meshes
+    created = {} if site is None else dict(site.created)
+    content = index_bytes(record, {} if present is None else present.content)
+    if present is not None and present.written == content and not files and not created:
+        return
+    unused = [] if present is None else _unused(folder, present, record, meshes)
+    if present is not None and 0 < present.version < VERSION:
+        created[_backup_name(folder, present)] = present.written
+    with in_words(folder):
+        for file in (*files, *created):
+            (folder / file).parent.mkdir(parents=True, exist_ok=True)
+    replace_together(folder, files, content, created)
+    with contextlib.suppress(OSError):  # the project is saved; what cannot be cleared away only takes room
+        remove(unused)
+        remove(spare_meshes(folder / SITE_FOLDER, meshes))
+        remove(leftovers(folder, (SITE_FOLDER, PLANS_FOLDER), record.checksums()))
+
+
+def _backup_name(folder: Path, present: ProjectIndex) -> str:
+    taken = {path.name.removesuffix(".json") for path in folder.iterdir()}
+    return free_name(f"{PROJECT_FILE.removesuffix('.json')}.v{present.version}", taken) + ".json"
+
+
+def _unused(folder: Path, present: ProjectIndex, record: ProjectRecord, meshes: set[str]) -> list[Path]:
+    """Files that the project wrote itself and will not use any more.
+
+    Files that are not as the project wrote them (damaged, changed by another program) and all outside its own folders
+    are not its to remove; nor is anything of an older version.
+    """
+    if present.version != VERSION:
+        return []
+    kept = {record.site, record.facades, *(plan.file for plan in record.plans)}
+    own = {
+        file: folder / file
+        for file, sha256 in present.record.checksums().items()
+        if file.startswith((f"{SITE_FOLDER}/", f"{PLANS_FOLDER}/")) and has_digest(folder / file, sha256)
+    }
+    unused = [path for file, path in own.items() if file not in kept]
+    old_site = own.get(present.record.site)
+    if old_site is not None:
+        old_meshes = mesh_names(read_given(old_site, JSON_FILE)) - meshes
+        unused += [old_site.with_name(name) for name in sorted(old_meshes) if is_plain(name)]
+    return unused
+
+
+ATTEMPTS = 30
+"""To read a project that is being saved meanwhile; a save takes tenths of a second, and the next is seconds later."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenedProject:
+    """A project as it was read.
+
+    Parameters
+    ----------
+    record
+        What its project.json says, in the present shape: the files it consists of.
+    notes
+        What the user should know: plans left out, migration, a folder that cannot be written.
+    version
+        Format of the folder; see `groundstation.services.project.migration`.
+    """
+
+    folder: Path
+    name: str
+    document: Document
+    record: ProjectRecord
+    notes: tuple[Finding, ...]
+    version: int
+
+
+def open_project(path: Path) -> OpenedProject:
+    """Read a project; nothing is written.
+
+    Parameters
+    ----------
+    path
+        Its folder, or its project.json.
+
+    Raises
+    ------
+    InputError
+        There is no project, a newer version wrote it, project.json is wrong or the site cannot be read; the message
+        names the file. A plan that cannot be read is left out, with a note.
+    """
+    folder = project_folder(path)
+    for _ in range(ATTEMPTS - 1):
+        index = read_index(folder)
+        try:
+            opened = _opened(folder, index)
+        except InputError:
+            if read_index(folder).written == index.written:
+                raise
+        else:
+            if read_index(folder).written == index.written:
+                return opened
+        # It was saved while it was being read: what was read may be half of each.
+    return _opened(folder, read_index(folder))
+
+
+def _opened(folder: Path, index: ProjectIndex) -> OpenedProject:
+    record = index.record
+    notes = [*_migration_notes(folder, index)]
+    if not os.access(folder, os.W_OK):
+        text = f"{folder}: this folder cannot be written; changes can only be saved as another project"
+        notes.append(Finding(Severity.WARNING, "read-only", text))
+    site = None if not record.site else _read_site(folder, record)
+    entries = []
+    for plan in record.plans:
+        entry, found = read_entry(folder, plan)
+        notes += found
+        entries += [] if entry is None else [entry]
+    ids = [entry.id for entry in entries]
+    current = record.current_plan_id if record.current_plan_id in ids else (ids[-1] if ids else "")
+    request, found = read_request(record.request, "the next plan")
+    notes += found
+    facades, found = read_project_facades(folder, record)
+    notes += found
+    document = Document(
+        site, tuple(entries), current, PlanRequest() if request is None else request, found_facades=facades
+    )
+    return OpenedProject(folder, record.name or real_path(folder).name, document, record, tuple(notes), index.version)
+
+
+def _migration_notes(folder: Path, index: ProjectIndex) -> Iterator[Finding]:
+    if index.version == 0:
+        text = (
+            f"{folder}: there is no {PROJECT_FILE} here, so '{index.record.site}' and the plans beside it (found: "
+            f"{len(index.record.plans)}) were taken as a project; saving makes it one, with copies of its own"
+        )
+        yield Finding(Severity.NOTE, "loose-files", text)
+    elif index.version < VERSION:
+        text = (
+            f"{folder}: this project is in format '{FORMAT}{index.version}'; saving brings it to '{FORMAT}{VERSION}' "
+            f"and keeps the old {PROJECT_FILE} beside it"
+        )
+        yield Finding(Severity.NOTE, "old-format", text)
+
+
+def _read_site(folder: Path, record: ProjectRecord) -> SiteModel:
+    try:
+        path, written = current_content(folder, record.site, record.site_sha256)
+        return site_of(written, path)
+    except InputError as error:
+        raise InputError(
+            f"{error}; a project cannot be opened without its site: put the file back from a copy, or make a new "
+            "project with 'project new' and add the plans to it"
+        ) from error
+
+
+def create_project(folder: Path, document: Document, *, name: str = "", site_source: Path | None = None) -> Document:
+    """Make a new project; returns the document as `save_project` does.
+
+    Parameters
+    ----------
+    folder
+        Made where it is missing. Other files in it stay untouched.
+    site_source
+        As for `save_project`.
+
+    Raises
+    ------
+    InputError
+        There is a project already, or the folder cannot be made or written.
+    """
+    if is_project(folder):
+        raise InputError(f"{folder}: there is a project here already; open it, or name another folder")
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: expected a folder for the project, found a file; name another folder")
+    made = [path for path in (folder, *(folder / part for part in FOLDERS)) if not path.exists()]
+    try:
+        with in_words(folder):
+            for path in made:
+                path.mkdir(parents=True, exist_ok=True)
+        return save_project(folder, document, name=name, site_source=site_source)
+    except BaseException:
+        for path in reversed(made):
+            with contextlib.suppress(OSError):  # what cannot be removed holds something, or was never made
+                path.rmdir()
+        raise
+
+
+def save_project(folder: Path, document: Document, *, name: str = "", site_source: Path | None = None) -> Document:
+    """Write a document as a project, whole or not at all; only files that have changed are written.
+
+    A file that another program has changed since the last save is not replaced: what belongs there gets another name.
+
+    Parameters
+    ----------
+    folder
+        Of the project; exists.
+    name
+        Of the project; empty to leave it as it is (a new project is called like its folder).
+    site_source
+        Site file that the document's site was read from, where it is neither the project's own nor the document's
+        `site_source`. While the site has not changed, its file is taken over byte for byte, so that plans made for it
+        still know it by its checksum.
+
+    Returns
+    -------
+    document
+        As it was written: the site has the checksum of its file, and names and coordinates of its meshes as the mesh
+        files hold them. The very same object where nothing of it is different.
+
+    Raises
+    ------
+    InputError
+        Something cannot be written (the project is as it was then), holds NaN or infinity, or the project in the
+        folder cannot be read or is of a newer version.
+    """
+    present = _present(folder)
+    if present is not None:
+        settle(folder, present.record.checksums())
+    before = ProjectRecord() if present is None else present.record
+    sources = [source for source in (site_source, document.site_source) if source is not None]
+    site = None if document.site is None else site_to_write(folder, document.site, before, sources)
+    files = {} if site is None else dict(site.files)
+    facades = facades_to_write(folder, "" if site is None else site.file, document.found_facades, before)
+    files |= facades.files
+    plans: list[PlanRecord] = []
+    for entry in document.plans:
+        plan, content = plan_file(folder, entry, before, {plan.file for plan in plans})
+        plans.append(plan)
+        if content is not None:
+            files[plan.file] = content
+    record = ProjectRecord(
+        name=name or before.name or real_path(folder).name,
+        site="" if site is None else site.file,
+        site_sha256="" if site is None else site.sha256,
+        plans=tuple(plans),
+        current_plan_id=document.current_plan_id,
+        request=msgspec.to_builtins(document.request),
+        facades=facades.file,
+        facades_sha256=facades.sha256,
+    )
+    write_project(folder, present, record, files, site)
+    return document if site is None or site.model is document.site else replace(document, site=site.model)
+
+
+def _present(folder: Path) -> ProjectIndex | None:
+    """The project in a folder as it is now: also loose files, which a first save takes over; None for neither."""
+    try:
+        return read_index(folder)
+    except InputError:
+        if is_project(folder):
+            raise
+        return None

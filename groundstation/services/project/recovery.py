@@ -1,0 +1,227 @@
+"""After a crash: finding the copy of unsaved work that `autosave` made, and taking it over."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+
+from groundstation.services.project.autosave import AUTOSAVE_FOLDER, HEADER_FILE, UNSAVED_FOLDER, AutosaveHeader
+from groundstation.services.project.document import Document, PlanEntry
+from groundstation.services.project.folder import OpenedProject, open_project
+from groundstation.services.project.lock import ProjectInUse, lock_holder, lock_project
+from groundstation.services.project.project_file import is_project, read_index
+from groundstation.services.project.site import same_site
+from groundstation.services.project.store import in_words
+from groundstation.services.settings import data_folder
+from planning.base.errors import InputError
+from planning.base.json_file import read_json, to_record
+
+REMAINS_S = 3600.0
+"""A place that was made so long ago is in use, or never will be."""
+
+DAMAGED_FOLDER = ".autosave-damaged"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recovery:
+    """A copy of work that was not saved when Reflight ended.
+
+    Parameters
+    ----------
+    folder
+        Of the project, or the place of work that never had one.
+    saved_at
+        When the copy was written; None where that cannot be read.
+    changes
+        What is different from the project as it is saved, for the user.
+    is_of_saved_state
+        Whether the project has stayed as it was when the work began; recovering takes other changes back where not.
+    copy
+        The copy as it was read; None where it is damaged.
+    problem
+        What is wrong with a damaged copy; empty for one that is whole.
+    """
+
+    folder: Path
+    saved_at: datetime | None
+    changes: tuple[str, ...]
+    is_of_saved_state: bool
+    copy: OpenedProject | None
+    problem: str = ""
+
+    @property
+    def was_saved(self) -> bool:
+        """Whether there is a project that the work was to be saved in."""
+        return is_project(self.folder)
+
+
+def find_recovery(folder: Path) -> Recovery | None:
+    """The copy of unsaved work in a project's folder, damaged or not; never raises for one that is damaged.
+
+    None where there is none, where it differs in nothing from the project, and where another Reflight that is running
+    has the project open: the copy is its own then.
+    """
+    place = folder / AUTOSAVE_FOLDER
+    if not (place / HEADER_FILE).exists():
+        return None
+    holder = lock_holder(folder)
+    if holder is not None and not holder.is_this_process:
+        return None
+    try:
+        header, copy = _read(place)
+    except InputError:
+        return _looked_at_again(folder)
+    return _recovery(folder, header, copy)
+
+
+def _read(place: Path) -> tuple[AutosaveHeader, OpenedProject]:
+    header = to_record(read_json(place / HEADER_FILE, names_files=True), AutosaveHeader, place / HEADER_FILE)
+    return header, open_project(place)
+
+
+def _looked_at_again(folder: Path) -> Recovery | None:
+    """What to say of a copy that could not be read: another Reflight may just have been writing or clearing it."""
+    place = folder / AUTOSAVE_FOLDER
+    try:
+        with _held(folder):
+            if not (place / HEADER_FILE).exists():
+                return None
+            header, copy = _read(place)
+    except ProjectInUse:
+        return None
+    except InputError as error:
+        problem = f"{error}; this copy of unsaved work is damaged and cannot be taken over"
+        return Recovery(folder, None, (), False, None, problem)
+    return _recovery(folder, header, copy)
+
+
+@contextlib.contextmanager
+def _held(folder: Path) -> Iterator[None]:
+    """Nobody else writes here meanwhile; where nothing can be written at all, nobody does.
+
+    Raises
+    ------
+    ProjectInUse
+        Another Reflight has it open.
+    """
+    lock = None
+    try:
+        lock = lock_project(folder)
+    except ProjectInUse as error:
+        if not error.holder.is_this_process:
+            raise
+    except InputError:
+        pass
+    try:
+        yield
+    finally:
+        if lock is not None:
+            lock.release()
+
+
+def _recovery(folder: Path, header: AutosaveHeader, copy: OpenedProject) -> Recovery | None:
+    changes = _changes(folder, copy)
+    if not changes:
+        return None
+    saved_at = datetime.fromisoformat(header.saved_at)
+    return Recovery(folder, saved_at, changes, header.based_on == _saved_state(folder), copy)
+
+
+def find_unsaved() -> tuple[Recovery, ...]:
+    """Copies of work that never had a project, from the user's data folder, oldest first."""
+    places = [place for place in sorted((data_folder() / UNSAVED_FOLDER).glob("*")) if place.is_dir()]
+    for place in places:
+        _clear_remains(place)
+    found = [find_recovery(place) for place in places]
+    return tuple(recovery for recovery in found if recovery is not None)
+
+
+def recover(recovery: Recovery) -> OpenedProject:
+    """The unsaved work, to be opened as changes of its project that are not saved yet. The copy stays where it is.
+
+    Raises
+    ------
+    InputError
+        The copy is damaged.
+    """
+    if recovery.copy is None:
+        raise InputError(recovery.problem)
+    return replace(recovery.copy, folder=recovery.folder)
+
+
+def discard_recovery(recovery: Recovery) -> None:
+    """Clear a copy away that is not wanted; a damaged one is kept aside as `.autosave-damaged`, in place of the last.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written.
+    """
+    place = recovery.folder / AUTOSAVE_FOLDER
+    with _held(recovery.folder), in_words(place):
+        if recovery.problem:
+            shutil.rmtree(recovery.folder / DAMAGED_FOLDER, ignore_errors=True)
+            place.replace(recovery.folder / DAMAGED_FOLDER)
+        elif recovery.folder.parent == data_folder() / UNSAVED_FOLDER:
+            (place / HEADER_FILE).unlink(missing_ok=True)
+            shutil.rmtree(recovery.folder)
+        else:
+            (place / HEADER_FILE).unlink(missing_ok=True)
+            shutil.rmtree(place)
+
+
+def _clear_remains(place: Path) -> None:
+    """Remove what is left of a place without a copy, of a Reflight that ended while it made or cleared it."""
+    with contextlib.suppress(OSError, InputError):
+        is_old = time.time() - place.stat().st_mtime > REMAINS_S
+        if is_old and not (place / AUTOSAVE_FOLDER / HEADER_FILE).exists() and not (place / DAMAGED_FOLDER).exists():
+            with lock_project(place):
+                shutil.rmtree(place)
+
+
+def _saved_state(folder: Path) -> str:
+    try:
+        return read_index(folder).sha256
+    except InputError:
+        return ""
+
+
+def _changes(folder: Path, copy: OpenedProject) -> tuple[str, ...]:
+    try:
+        saved = open_project(folder).document
+    except InputError as error:
+        if copy.document.site is None and not copy.document.plans:
+            return ()
+        if not is_project(folder):
+            return ("all of it: it was never saved as a project",)
+        return (f"all of it: the project that was saved cannot be opened ({error})",)
+    left_out = {note.place for note in copy.notes if note.code == "plan-left-out"}
+    return tuple(_differences(saved, copy.document, left_out))
+
+
+def _differences(before: Document, after: Document, left_out: set[str]) -> list[str]:
+    found = [] if same_site(before.site, after.site) else ["the site"]
+    for entry in after.plans:
+        known = before.entry(entry.id)
+        if known is None:
+            found.append(f"plan '{entry.title}' is new")
+        elif not _same_entry(known, entry):
+            found.append(f"plan '{entry.title}' was changed")
+    for entry in before.plans:
+        if after.entry(entry.id) is None and entry.id not in left_out:
+            found.append(f"plan '{entry.title}' was removed")
+    return found if before.request == after.request else [*found, "what is asked of the next plan"]
+
+
+def _same_entry(one: PlanEntry, other: PlanEntry) -> bool:
+    return (one.title, one.plan, one.request, one.bound_for_views) == (
+        other.title,
+        other.plan,
+        other.request,
+        other.bound_for_views,
+    )

@@ -1,0 +1,264 @@
+"""What the process of models does (`reconstruct_process`): trains, and shows models and photos.
+
+One thread does the work; another reads what is asked. Between two steps of a training, and while it pauses, what is
+looked at is rendered by the first, so that nothing looks at a model while it changes. Looking comes before learning: a
+picture is waited for, a step is not.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import queue
+import signal
+import sys
+import threading
+import time
+from contextlib import suppress
+from typing import IO, TYPE_CHECKING, Any
+
+from groundstation.services.reconstruct.folders import note_training
+from groundstation.services.reconstruct.messages import (
+    AskScene,
+    BreakOff,
+    Chosen,
+    Devices,
+    Ended,
+    Look,
+    Measured,
+    Organise,
+    Pause,
+    Phase,
+    Probe,
+    SceneMade,
+    Stage,
+    Stepped,
+    Stop,
+    Train,
+    WatchErrors,
+)
+from groundstation.services.reconstruct.render_queue import Darkroom
+from planning.base.errors import GroundStationError, OperationCancelled
+from planning.base.progress import Trace
+
+if TYPE_CHECKING:
+    from reconstruction.training.callbacks import Visit
+
+REPORT_S = 0.1
+"""Shortest time between two reports of one stage, and of two steps."""
+
+LAST_S = 30.0
+"""For keeping the state of a training after the window has gone."""
+
+
+class _Wishes:
+    """What the window wants now; written by the thread that reads, asked by the one that works."""
+
+    def __init__(self) -> None:
+        self.orders: queue.SimpleQueue[Train | AskScene | Organise | None] = queue.SimpleQueue()
+        """None: there is something to look at, or the window has gone."""
+        self.pause, self.stop, self.cancel, self.gone = (threading.Event() for _ in range(4))
+        self.errors: WatchErrors | None = None
+        self._looks: dict[tuple[type, str], Look | Probe] = {}
+        self._lock = threading.Lock()
+
+    def read(self, source: IO[bytes]) -> None:
+        """Read until the other side closes the pipe."""
+        with suppress(EOFError, OSError):
+            while True:
+                self._take(pickle.load(source))
+        self.gone.set()
+        self.cancel.set()
+        self.pause.clear()
+        self.orders.put(None)
+        time.sleep(LAST_S)
+        os._exit(0)
+
+    def next_look(self) -> Look | Probe | None:
+        """The look or probe that was asked for first, of those that no newer one has replaced."""
+        with self._lock:
+            place = next(iter(self._looks), None)
+            return None if place is None else self._looks.pop(place)
+
+    def _take(self, message: Any) -> None:
+        match message:
+            case Look() | Probe():
+                with self._lock:
+                    self._looks[type(message), message.place] = message
+                self.orders.put(None)
+            case WatchErrors():
+                self.errors = message
+                self.orders.put(None)
+            case Train() | AskScene():
+                for event in (self.pause, self.stop, self.cancel):
+                    event.clear()
+                self.orders.put(message)
+            case Organise():
+                self.orders.put(message)
+            case Pause(is_on):
+                (self.pause.set if is_on else self.pause.clear)()
+            case Stop():
+                self.stop.set()
+                self.pause.clear()
+            case BreakOff():
+                self.cancel.set()
+                self.pause.clear()
+
+
+class _Server:
+    """Does what is wished, and tells."""
+
+    def __init__(self, out: IO[bytes], wishes: _Wishes) -> None:
+        self._out, self._wishes = out, wishes
+        self._darkroom = Darkroom(self._tell)
+        self._stage, self._reported_s, self._stepped_s = "", 0.0, 0.0
+        self._is_joint, self._n_measured = False, 0
+
+    def run(self) -> None:
+        """Work until the window has gone."""
+        from reconstruction.training.devices import cuda_devices, use_threads
+
+        self._tell(Devices(cuda_devices()))
+        while not self._wishes.gone.is_set():
+            use_threads(max(1, (os.cpu_count() or 1) - 1))
+            has_more = self._look() or self._darkroom.prepare() or self._darkroom.judge(self._wishes.errors, None)
+            try:
+                order = self._wishes.orders.get(block=not has_more)
+            except queue.Empty:
+                continue
+            match order:
+                case Train():
+                    self._train(order)
+                case AskScene():
+                    self._ask(order)
+                case Organise():
+                    self._organise(order)
+
+    # Work
+
+    def _train(self, order: Train) -> None:
+        from groundstation.services.reconstruct.training import train_files, train_summary
+
+        wishes = self._wishes
+        self._is_joint, self._n_measured = False, 0
+        self._darkroom.forget_training()
+        try:
+            if not order.resume:
+                note_training(order.out, order.dataset, order.wish)
+            made = train_files(
+                order.dataset,
+                order.out,
+                order.wish,
+                resume=order.resume,
+                pause=wishes.pause.is_set,
+                stop=wishes.stop.is_set,
+                trace=Trace(),
+                monitor=self,
+                visit=self._visit,
+            )
+        except OperationCancelled:
+            self._tell(Ended("kept"))
+        except BaseException as error:
+            self._tell(Ended("failed", _sendable(error)))
+        else:
+            self._is_joint = False
+            self._darkroom.keep_trained(made.trained)
+            for point in made.trained.history[self._n_measured :]:
+                self._tell(Measured(point.t_s, point.value))
+            self._tell(Ended("done", None, train_summary(made)))
+
+    def _ask(self, order: AskScene) -> None:
+        from groundstation.services.reconstruct.training import light_of_scene
+
+        self._is_joint = False
+        try:
+            self._tell(Chosen(*light_of_scene(order.dataset, order.wish, self)))
+        except OperationCancelled:
+            self._tell(Ended("kept"))
+        except BaseException as error:
+            self._tell(Ended("failed", _sendable(error)))
+        else:
+            self._tell(Ended("done"))
+
+    def _organise(self, order: Organise) -> None:
+        from groundstation.services.model.objects import organised_beside
+
+        try:
+            self._tell(SceneMade(order, organised_beside(order.folder)))
+        except GroundStationError as error:
+            self._tell(SceneMade(order, None, str(error)))
+
+    def report(self, stage: str, done: float, total: float) -> None:
+        """Monitor of a training: looks at photos and finished models come between, its own model only in visits."""
+        if self._wishes.cancel.is_set():
+            raise OperationCancelled("the training was broken off")
+        now = time.monotonic()
+        if stage != self._stage or now - self._reported_s >= REPORT_S:
+            self._stage, self._reported_s = stage, now
+            self._tell(Stage(stage, done, total))
+        if not self._is_joint:
+            self._look()
+
+    def _visit(self, visit: Visit) -> None:
+        self._darkroom.keep_visit(visit)
+        if not self._is_joint:
+            self._is_joint = True
+            self._tell(Chosen(*self._darkroom.chosen(visit)))
+        now = time.monotonic()
+        if now - self._stepped_s >= REPORT_S:
+            self._stepped_s = now
+            phase: Phase = visit.state
+            self._tell(Stepped(phase, visit.step, visit.seconds, visit.progress, len(visit.model.splats), visit.terms))
+        for t_s, value in visit.history[self._n_measured :]:
+            self._tell(Measured(t_s, value))
+        self._n_measured = max(self._n_measured, len(visit.history))
+        while self._look():
+            pass
+        self._darkroom.judge(self._wishes.errors, visit)
+
+    def _look(self) -> bool:
+        """Answer one look; whether there was one."""
+        look = self._wishes.next_look()
+        match look:
+            case Look():
+                self._tell(self._darkroom.seen(look))
+            case Probe():
+                self._tell(self._darkroom.probed(look))
+        return look is not None
+
+    def _tell(self, message: Any) -> None:
+        try:
+            pickled = pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
+            self._out.write(pickled)
+            self._out.flush()
+        except OSError:
+            # The window has gone; the thread that reads has noticed, or will.
+            self._wishes.cancel.set()
+
+
+def _sendable(error: BaseException) -> BaseException:
+    """An error as it comes through a pipe; one that does not is told in words."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        return RuntimeError(f"{type(error).__name__}: {error}")
+    return error
+
+
+def serve(niceness: int) -> None:
+    """What the process does: messages have its standard output for themselves, all else goes to the error output."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides what Ctrl+C ends
+    if sys.platform != "win32":
+        os.nice(niceness)
+    out = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    wishes = _Wishes()
+    threading.Thread(target=wishes.read, args=(sys.stdin.buffer,), name="read-wishes", daemon=True).start()
+    _Server(out, wishes).run()
+
+
+if __name__ == "__main__":
+    # By its full name, so that what is pickled here has the same classes over there.
+    from groundstation.services.reconstruct.server import serve as serve_by_name
+
+    serve_by_name(int(sys.argv[1]))

@@ -1,0 +1,243 @@
+"""Use case of training: a data set to a model."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundstation.services.reconstruct.request import DEFAULT_PRESET, TrainWish
+from planning.base.errors import InputError
+from planning.base.folders import check_ending, make_folder
+from planning.base.json_file import check_output, read_toml, write_atomically
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+
+if TYPE_CHECKING:
+    from planning.base.effects import Decision
+    from reconstruction.training.callbacks import Preview, Visit, Watching
+    from reconstruction.training.config import TrainConfig
+    from reconstruction.training.model.saved import TrainedModel
+    from reconstruction.training.ranks import Ranks
+    from reconstruction.training.timer import Stopwatch
+
+__all__ = [
+    "DEFAULT_PRESET",
+    "TrainWish",
+    "TrainedFiles",
+    "config_of_wish",
+    "light_of_scene",
+    "preview_to",
+    "train_files",
+    "train_summary",
+]
+
+PAUSE_S = 0.05
+"""Between looks at whether a pause is over."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrainedFiles:
+    """A model that was trained, and written where this process is the first of several."""
+
+    folder: Path
+    trained: TrainedModel
+    is_written: bool = True
+
+
+def config_of_wish(wish: TrainWish) -> TrainConfig:
+    """Settings of a wish: the preset's, then the method's, then the file's, then what was asked for by itself.
+
+    Raises
+    ------
+    InputError
+        There is no such preset, the file cannot be used, or a value is out of range.
+    """
+    from reconstruction.training.config import config_of
+    from reconstruction.training.presets import preset, with_wishes
+
+    config = preset(wish.preset)
+    if wish.method is not None:
+        config = config_of({"method": wish.method}, config, Path("--method"))
+    if wish.settings is not None:
+        config = config_of(read_toml(wish.settings, dict[str, Any]), config, wish.settings)
+    found = with_wishes(
+        config,
+        light=wish.light,
+        iterations=wish.iterations,
+        time_limit_s=wish.time_limit_s,
+        seed=wish.seed,
+    )
+    wishes = {"device": wish.device, "memory_bytes": wish.memory_bytes}
+    return replace(found, **{name: value for name, value in wishes.items() if value is not None})  # type: ignore[arg-type]
+
+
+def train_files(
+    dataset: Path,
+    out: Path,
+    wish: TrainWish,
+    *,
+    resume: bool = False,
+    preview: Callable[[Preview], None] | None = None,
+    pause: Stop = never,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+    begun_s: float | None = None,
+    visit: Callable[[Visit], None] | None = None,
+) -> TrainedFiles:
+    """Train a model of a data set folder into a folder; or go on with the training that was interrupted there.
+
+    A finished model that is there stays until the new one is whole. Cancelled, the training's state is kept, and
+    `resume` goes on with it; stopped, its rates fall to their last, and the model is what it is then.
+
+    Parameters
+    ----------
+    begun_s
+        What `time.perf_counter` said when the time limit began to count; None for now.
+    visit
+        See `Watching`.
+
+    Raises
+    ------
+    InputError
+        The data set cannot be used, the folder cannot be written into, or holds another training that was interrupted.
+    ReconstructionError
+        The training came to nothing.
+    OperationCancelled
+        From `monitor`.
+    """
+    # Before the libraries are loaded, which takes seconds.
+    begun_s = time.perf_counter() if begun_s is None else begun_s
+    from reconstruction.training.callbacks import Watching
+    from reconstruction.training.model.saved import save_model
+    from reconstruction.training.names import CHECKPOINT
+    from reconstruction.training.ranks import ranks_of_environment
+    from reconstruction.training.timer import Stopwatch
+
+    watch = Stopwatch(begun_s=begun_s)
+    with ranks_of_environment() as ranks:
+        waiting = _Waiting(monitor, pause, watch)
+        watching = Watching(waiting, stop, pause, trace, preview if ranks.is_first else None, visit)
+        trained = _trained(dataset, out, wish, resume, watching, ranks, watch)
+        if ranks.is_first:
+            save_model(trained, out)
+            (out / CHECKPOINT).unlink(missing_ok=True)
+    return TrainedFiles(out, trained, ranks.is_first)
+
+
+class _Waiting:
+    """Monitor of what comes before the joint training: it waits while there is a pause. The joint one waits itself."""
+
+    def __init__(self, monitor: Monitor, pause: Stop, watch: Stopwatch) -> None:
+        self._monitor, self._pause, self._watch = monitor, pause, watch
+
+    def report(self, stage: str, done: float, total: float) -> None:
+        """Pass progress on, and return when there is no pause."""
+        self._monitor.report(stage, done, total)
+        if stage in JOINT_STAGES or not self._pause():
+            return
+        with self._watch.paused():
+            while self._pause():
+                self._monitor.report("paused", done, total)
+                time.sleep(PAUSE_S)
+
+
+JOINT_STAGES = frozenset({"training", "paused", "settling"})
+
+
+def light_of_scene(dataset: Path, wish: TrainWish, monitor: Monitor = QUIET) -> tuple[str, tuple[Decision, ...]]:
+    """The model of mirrored light that the photos of a data set call for, and the decisions that lead to it.
+
+    Raises
+    ------
+    InputError
+        The data set cannot be used, or shows no glass.
+    OperationCancelled
+        From `monitor`.
+    """
+    from reconstruction.light.choose_light import choose_light
+    from reconstruction.light.glass_rays import glass_rays
+    from reconstruction.light.photo_set import held_out_names, read_photo_set
+
+    config = config_of_wish(wish)
+    source = read_photo_set(dataset)
+    held_out = held_out_names([photo.name for photo in source.photos], config.held_out, config.seed)
+    learned = [photo for photo in source.photos if photo.name not in held_out]
+    rays = glass_rays(source, learned, config.memory_bytes, config.seed, monitor)
+    if not len(rays):
+        raise InputError(
+            f"{dataset}: none of {len(learned)} photos has a pixel that lies whole on a panel; take larger photos or "
+            "come closer"
+        )
+    tried = replace(config.reflections, seed=config.seed, threads=config.threads, memory_bytes=config.memory_bytes)
+    return choose_light(rays, source.panels, tried, monitor, device=config.device)
+
+
+def _trained(
+    dataset: Path, out: Path, wish: TrainWish, resume: bool, watching: Watching, ranks: Ranks, watch: Stopwatch
+) -> TrainedModel:
+    from reconstruction.training.names import CHECKPOINT
+    from reconstruction.training.train import resume_model, train_model
+
+    checkpoint = out / CHECKPOINT
+    if resume:
+        if not checkpoint.is_file():
+            raise InputError(f"{out}: holds no training that was interrupted; begin the training anew")
+        return resume_model(dataset, checkpoint, watching, method=wish.method, ranks=ranks, watch=watch)
+    config = config_of_wish(wish)
+    if ranks.is_first:
+        _check_begin(dataset, out, checkpoint)
+    return train_model(dataset, config, watching, checkpoint, given=wish.start, ranks=ranks, watch=watch)
+
+
+def _check_begin(dataset: Path, out: Path, checkpoint: Path) -> None:
+    """See that a training can begin, and make its folder."""
+    if checkpoint.is_file():
+        raise InputError(
+            f"{out}: holds a training that was interrupted; resume it, name another folder, or delete {checkpoint}"
+        )
+    if not (dataset / "dataset.json").is_file():
+        raise InputError(f"{dataset}: has no dataset.json; name a folder that `prepare` or `scene render` has finished")
+    make_folder(out)
+    check_output(checkpoint)
+
+
+def preview_to(path: Path) -> Callable[[Preview], None]:
+    """Writes previews into a file, each in the place of the last one.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    check_output(path)
+    check_ending(path, (".png",))
+
+    def write(preview: Preview) -> None:
+        from reconstruction.training.model.render import png_of
+
+        write_atomically(path, png_of(preview.picture))
+
+    return write
+
+
+def train_summary(made: TrainedFiles) -> dict[str, Any]:
+    """For `--json`."""
+    trained = made.trained
+    record = trained.record
+    return {
+        "model": str(made.folder),
+        "method": record.config.method,
+        "light": None if record.light is None else record.light.name,
+        "effects": [asdict(decision) for decision in record.decisions],
+        "photos": len(record.learned),
+        "held_out": len(record.held_out),
+        "iterations": trained.n_steps,
+        "splats": trained.n_splats,
+        "seconds": round(trained.seconds, 3),
+        "psnr_db": round(trained.history[-1].value, 3) if trained.history else None,
+        "history": [{"t_s": round(point.t_s, 3), "psnr_db": round(point.value, 3)} for point in trained.history],
+        "notes": list(trained.notes),
+    }

@@ -1,0 +1,296 @@
+"""What is to be photographed and from where: a site or bundled scene, and the views of a plan, a flight, or its own."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from groundstation.services.plan.planning import plan_document_site
+from groundstation.services.plan.top_up import flown_plan
+from groundstation.services.project.input_files import read_given_plan, read_given_site
+from missions.flight.flight_file import Flight, read_flight
+from missions.flight.matching import PhotoRef
+from missions.flight.motion import shutter_velocities
+from missions.flight.poses import pose_of_photo, taken_poses
+from missions.flight.record import TakenPhoto
+from planning.aircraft.catalogue import profile
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor
+from planning.geo.mesh import ply_bytes
+from planning.plan import Camera, Constraints, Plan, Viewpoint, plan_to_json, read_plan
+from planning.request import GreedyParameters, PlanRequest
+from planning.site.file import is_planned_on, site_bytes, site_sha256
+from planning.site.records import SiteModel
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.scenes.photos.flight_views import WIDTHS_PX, Shot, flown_shots, lens_of, planned_shots, posed_photos
+from reconstruction.scenes.photos.photo_job import DEFAULT_POINTS
+from reconstruction.scenes.photos.renderer import RenderSettings
+from reconstruction.scenes.photos.run_record import RUN_FILE
+from reconstruction.scenes.photos.square_views import square_shots
+from reconstruction.scenes.world.build import build_scene
+from reconstruction.scenes.world.bundled import SCENES, bundled_scene
+from reconstruction.scenes.world.look import read_look
+from reconstruction.scenes.world.record import Scene
+
+# Photos of a flight file: where they were taken and looked, and how the aircraft moved meanwhile.
+
+
+def shots_of_flight(path: Path, plan: Plan | None, model: SiteModel) -> tuple[tuple[Shot, ...], tuple[Finding, ...]]:
+    """Shots of a flight over a site, and what there is to say of photos that are left out.
+
+    Parameters
+    ----------
+    plan
+        That was flown: its angles count where the flight knows none.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is of another site, or none of its photos says where the camera looked.
+    """
+    flight, site = read_flight(path), model.site
+    if flight.site != site.name or flight.origin != site.origin:
+        raise InputError(
+            f"{path}: this is a flight over '{flight.site}', and not over '{site.name}' at its origin; name the "
+            "site that was flown over"
+        )
+    poses = _poses(flight, plan, model)
+    n_photos = sum(len(record.photos) for record in flight.sorties)
+    if not poses:
+        raise InputError(
+            f"{path}: none of its {n_photos} photos says where the camera looked; name the plan that was flown "
+            "as well (--plan)"
+        )
+    sorties, motions = [], []
+    for number, record in enumerate(flight.sorties):
+        velocities = shutter_velocities(record)
+        posed = [(ref, photo) for ref, photo in _photos_of(flight, number) if ref in poses]
+        sorties.append([(poses[ref], photo.time_s) for ref, photo in posed])
+        motions.append([(velocities[ref.photo], photo.exposure_s) for ref, photo in posed])
+    findings = (_without_direction(n_photos - len(poses), n_photos),) if len(poses) < n_photos else ()
+    return flown_shots(sorties, motions), findings
+
+
+def _poses(flight: Flight, plan: Plan | None, model: SiteModel) -> dict[PhotoRef, Viewpoint]:
+    """Poses of all photos whose direction is known."""
+    if plan is not None:
+        return taken_poses(plan, flight.sorties, flown_plan(flight, plan, model).matching)
+    refs = (pair for number in range(len(flight.sorties)) for pair in _photos_of(flight, number))
+    poses = ((ref, pose_of_photo(photo, None)) for ref, photo in refs)
+    return {ref: pose for ref, pose in poses if pose is not None}
+
+
+def _photos_of(flight: Flight, record: int) -> Iterator[tuple[PhotoRef, TakenPhoto]]:
+    return ((PhotoRef(record, number), photo) for number, photo in enumerate(flight.sorties[record].photos))
+
+
+def _without_direction(n: int, n_all: int) -> Finding:
+    text = f"{n} of {n_all} photos do not say where the camera looked, and are left out; name the plan that was flown"
+    return Finding(Severity.WARNING, "photo-direction", text, "", float(n), 0.0, "photos")
+
+
+SITE_FILE, PLAN_FILE = "site.json", "plan.json"
+"""Written beside the photos: the site with what the scene adds to it, and the plan that was made for them."""
+
+DEFAULT_VIEWS, MAX_VIEWS = 24, 20_000
+DEFAULT_WIDTH_PX = 1024
+DEFAULT_PROFILE = "m3e"
+
+BUNDLED_TEXTS = {
+    "planar": "plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it",
+    "curved": "the same on a convex facade",
+    "planar-far": "the plane facade alone, with everything else far away",
+    "curved-far": "the convex facade alone, with everything else far away",
+    "court": "two facades at a right angle, whose glass sees glass",
+    "concrete": "matt concrete with punched windows",
+}
+
+QUICK = GreedyParameters(n_candidates=2000, improve=False, certify=False)
+"""Views for trying things out need not be the best; they are found in seconds."""
+
+FARTHEST_M = 40.0
+"""Of views that are planned here: a few of them would otherwise see all panels at once, from far away and small."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneWish:
+    """What is to be photographed, from where, and how.
+
+    Parameters
+    ----------
+    scene
+        Name of a bundled scene where there is no file of that name; else path of a site file.
+    plan, flight
+        Views of a plan; or the poses of a flight, with the plan's camera, and with its angles where the flight knows
+        none.
+    n_views
+        To be planned where neither is given.
+    n_square
+        Photos square to the facades in place of planned ones, as a first flight takes them.
+    profile_id
+        Whose camera takes photos that no plan says the camera of.
+    look, camera
+        Files with the look of a site's scene, and with how photos are taken.
+    """
+
+    scene: str
+    plan: Path | None = None
+    flight: Path | None = None
+    n_views: int | None = None
+    n_square: int | None = None
+    profile_id: str = DEFAULT_PROFILE
+    look: Path | None = None
+    camera: Path | None = None
+    seed: int = 0
+    width_px: int | None = DEFAULT_WIDTH_PX
+    n_points: int = DEFAULT_POINTS
+    settings: RenderSettings = field(default_factory=RenderSettings)
+
+    def __post_init__(self) -> None:
+        if self.n_views is not None and not 1 <= self.n_views <= MAX_VIEWS:
+            raise ValueError(f"views: expected 1 to {MAX_VIEWS}, got {self.n_views}")
+        if self.n_square is not None and not 1 <= self.n_square <= MAX_VIEWS:
+            raise ValueError(f"n_square: expected 1 to {MAX_VIEWS}, got {self.n_square}")
+        if self.width_px is not None and not WIDTHS_PX[0] <= self.width_px <= WIDTHS_PX[1]:
+            raise ValueError(f"width_px: expected {WIDTHS_PX[0]} to {WIDTHS_PX[1]}, got {self.width_px}")
+        if self.n_points < 0:
+            raise ValueError(f"n_points: expected 0 or more, got {self.n_points}")
+
+
+@dataclass(frozen=True, slots=True)
+class SceneViews:
+    """Where photos are taken, by which camera, and where that is from; `companions` as in `PhotoJob`."""
+
+    shots: tuple[Shot, ...]
+    camera: Camera
+    made_from: Mapping[str, Any]
+    companions: Mapping[str, bytes]
+    findings: tuple[Finding, ...] = ()
+
+
+def given_scene(wish: SceneWish) -> tuple[Scene, dict[str, Any]]:
+    """The scene, and what it is made from.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or there is no such scene.
+    """
+    path = Path(wish.scene)
+    if wish.scene in SCENES and not path.is_file():  # a folder of photos is easily named after its scene
+        if wish.look is not None:
+            raise InputError(
+                f"{wish.look}: bundled scenes have a look of their own; name a site file to give one, or leave it out"
+            )
+        return bundled_scene(wish.scene, wish.seed), {"bundled": wish.scene}
+    if not path.exists():
+        raise InputError(
+            f"{wish.scene}: there is neither a site file nor a bundled scene of that name; bundled are: "
+            f"{', '.join(SCENES)}"
+        )
+    model = read_given_site(path)
+    look = None if wish.look is None else read_look(wish.look)
+    made_from = {"site": model.site.name, "look": None if look is None else msgspec.to_builtins(look)}
+    return build_scene(model, look, wish.seed), made_from
+
+
+def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
+    """A scene's site as it is written beside the photos, and the content of its files."""
+    site, files = model.site, {}
+    if site.building_mesh is not None:
+        site = replace(site, building_mesh="building.ply")
+        files["building.ply"] = ply_bytes(model.building)
+    obstacles = []
+    for number, (obstacle, mesh) in enumerate(zip(site.obstacles, model.obstacles, strict=True), 1):
+        if obstacle.mesh is not None:
+            obstacle = replace(obstacle, mesh=f"obstacle-{number}.ply")
+            files[f"obstacle-{number}.ply"] = ply_bytes(mesh)
+        obstacles.append(obstacle)
+    site = replace(site, obstacles=tuple(obstacles))
+    return replace(model, site=site, sha256=site_sha256(site)), {SITE_FILE: site_bytes(site), **files}
+
+
+def scene_views(wish: SceneWish, scene: Scene, written: SiteModel, folder: Path, monitor: Monitor) -> SceneViews:
+    """The views that are wished for: a plan's, a flight's, square ones, or some that are planned here.
+
+    Parameters
+    ----------
+    written
+        The scene's site as it is written beside the photos, which views are planned over.
+    folder
+        For the photos; a plan that an interrupted run left in it is taken again.
+
+    Raises
+    ------
+    InputError
+        A plan or flight cannot be read, or belongs to another site.
+    InfeasibleError
+        Views were to be planned, and none is possible.
+    """
+    model = scene.site
+    plan = None if wish.plan is None else plan_of_site(wish.plan, model)
+    if wish.flight is not None:
+        return _flown(wish, wish.flight, plan, model)
+    if plan is not None and wish.plan is not None:
+        is_current = is_planned_on(plan.site_sha256, model) or is_planned_on(plan.site_sha256, written)
+        findings = () if is_current else (SITE_CHANGED,)
+        return SceneViews(planned_shots(plan), plan.camera, {"plan": wish.plan.name}, {}, findings)
+    if wish.n_square is not None:
+        camera = profile(wish.profile_id).camera
+        shots = square_shots(scene, lens_of(camera), wish.n_square, wish.seed)
+        return SceneViews(shots, camera, {"square": {"n_views": wish.n_square, "profile": wish.profile_id}}, {})
+    made = _planned_here(wish, written, folder, monitor)
+    request = {"n_views": wish.n_views or DEFAULT_VIEWS, "profile": wish.profile_id}
+    content = json.dumps(plan_to_json(made), indent=1, allow_nan=False).encode()
+    return SceneViews(planned_shots(made), made.camera, {"views": request}, {PLAN_FILE: content})
+
+
+SITE_CHANGED = Finding(
+    Severity.WARNING, "site-changed", "the site file has changed since the plan was made; photos show it as it is now"
+)
+
+
+def plan_of_site(path: Path, model: SiteModel) -> Plan:
+    """The plan in a file.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or belongs to another site.
+    """
+    plan, site = read_given_plan(path), model.site
+    if plan.site != site.name or (plan.origin is not None and plan.origin != site.origin):
+        raise InputError(
+            f"{path}: this is a plan of '{plan.site}', and not of '{site.name}' at its origin; name the site that it "
+            "was made for, or another plan"
+        )
+    return plan
+
+
+def planned_photos(wish: SceneWish, scene: Scene, folder: Path, monitor: Monitor = QUIET) -> tuple[PosedPhoto, ...]:
+    """Photos from views that are planned here, around what the scene has beside the building, to lie in `folder`."""
+    plan = _planned_here(wish, as_written(scene.site)[0], folder, monitor)
+    return posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), folder)
+
+
+def _planned_here(wish: SceneWish, model: SiteModel, folder: Path, monitor: Monitor) -> Plan:
+    """The plan that the folder has already, or a quick new one."""
+    if (folder / PLAN_FILE).is_file() and (folder / RUN_FILE).is_file():
+        return read_plan(folder / PLAN_FILE)
+    n_views = wish.n_views or DEFAULT_VIEWS
+    near = Constraints(max_distance_m=FARTHEST_M)
+    request = PlanRequest(n_views=n_views, profile_id=wish.profile_id, constraints=near, greedy=QUICK, seed=wish.seed)
+    return plan_document_site(model, request, monitor=monitor).plan
+
+
+def _flown(wish: SceneWish, flight: Path, plan: Plan | None, model: SiteModel) -> SceneViews:
+    shots, findings = shots_of_flight(flight, plan, model)
+    camera = profile(wish.profile_id).camera if plan is None else plan.camera
+    made_from = {"flight": flight.name, "plan": None if wish.plan is None else wish.plan.name}
+    return SceneViews(shots, camera, made_from, {}, findings)

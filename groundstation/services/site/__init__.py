@@ -1,0 +1,1 @@
+"""Use cases of sites: where they come from, edits, findings, the sun over them."""

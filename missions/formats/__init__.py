@@ -1,0 +1,1 @@
+"""Every mission format behind one door."""

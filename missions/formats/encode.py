@@ -1,0 +1,274 @@
+"""Plans as the contents of mission files, with everything the checks of their format found on them."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from missions.dji.write import LinkLoss
+from missions.mavlink.autopilots import Autopilot
+from missions.mission.build import missions_from_plan
+from missions.mission.model import FileFormat, HeightReference, Mission
+from planning.base.errors import MissionError
+from planning.base.findings import Finding, Severity
+from planning.geo.frames import Origin, Vec3
+from planning.plan import Plan
+from planning.routing.rally import CLEARANCE_M, clear_height_z_m, return_height
+from planning.site.free_space import unchecked_space
+from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, Site, SiteModel
+
+
+@dataclass(frozen=True, slots=True)
+class ExportOptions:
+    """What a pilot may choose; each format takes what concerns it.
+
+    Parameters
+    ----------
+    height_reference
+        Of DJI and MAVLink files; KML is always above sea level, a table of photos has a column for each.
+    autopilot
+        Whose rules MAVLink files follow; None: PX4 for the profile px4, ArduPilot for all others.
+    link_loss, rth_height_m
+        For DJI. Without a height above take-off the aircraft returns as high as `site` or, without it, the path needs.
+    site
+        For the return height and for fences.
+    clock
+        Seconds since 1970 UTC, for the time of creation in DJI files.
+    """
+
+    height_reference: HeightReference = HeightReference.ABOVE_TAKEOFF
+    autopilot: Autopilot | None = None
+    link_loss: LinkLoss = LinkLoss.CONTINUE
+    rth_height_m: float | None = None
+    site: SiteModel | None = None
+    clock: Callable[[], float] = time.time
+
+
+@dataclass(frozen=True, slots=True)
+class EncodedFiles:
+    """Contents of the files of an export, and what the checks found on them."""
+
+    contents: tuple[bytes, ...]
+    findings: tuple[Finding, ...]
+
+
+DEFAULT_OPTIONS = ExportOptions()
+
+
+def encode(
+    plan: Plan,
+    origin: Origin | None,
+    home_enu_m: Vec3 | None,
+    file_format: FileFormat,
+    options: ExportOptions = DEFAULT_OPTIONS,
+) -> EncodedFiles:
+    """Contents that `export` writes, with all findings instead of a refusal at the first.
+
+    Raises
+    ------
+    InputError, MissionError
+        As `export`, where there is nothing to check.
+    """
+    missions = missions_from_plan(plan, origin, home_enu_m)
+    encoded = _encoded(plan, missions, file_format, options)
+    return replace(encoded, findings=(*_on_passing(plan, missions), *encoded.findings))
+
+
+def _on_passing(plan: Plan, missions: Sequence[Mission]) -> Iterator[Finding]:
+    """An imported mission that takes photos in passing is another one when it is written: it stops for each."""
+    for sortie, mission in zip(plan.sorties, missions, strict=True):
+        n = len(sortie.in_passing_ids)
+        if n:
+            text = (
+                f"{n} photos that the imported mission takes in passing are stops in these files, so the sortie takes "
+                f"{mission.duration_s:.0f} s instead of {sortie.duration_s:.0f} s"
+            )
+            place = f"sortie {mission.number}"
+            yield Finding(Severity.WARNING, "in-passing", text, place, mission.duration_s, sortie.duration_s, "s")
+
+
+def _encoded(plan: Plan, missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
+    match file_format:
+        case FileFormat.DJI_KMZ:
+            return _encode_dji(plan, missions, options)
+        case FileFormat.MAVLINK_PLAN | FileFormat.MAVLINK_WPL:
+            return _encode_mavlink(missions, file_format, options)
+        case FileFormat.KML:
+            from missions.formats.kml_view import kml_bytes
+
+            return EncodedFiles((kml_bytes(missions),), ())
+        case FileFormat.CSV:
+            from missions.formats.csv_table import csv_bytes
+
+            return EncodedFiles((csv_bytes(missions),), ())
+
+
+def _encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
+    from missions.dji.check import check_dji
+    from missions.dji.container import parts_of_kmz
+    from missions.dji.write import DjiOptions, kmz_bytes
+
+    created_ms = round(options.clock() * 1000.0)
+    rth_height_m, findings = dji_return_height(plan, missions, options)
+    dji_options = DjiOptions(
+        rth_height_m, created_ms, options.height_reference, options.link_loss, _security_height_m(plan, options)
+    )
+    contents = [kmz_bytes(mission, dji_options) for mission in missions]
+    if options.site is not None and options.height_reference is HeightReference.ABOVE_TAKEOFF:
+        for mission in missions:
+            check = takeoff_check(plan, options.site.site, mission.number)
+            if check is not None:
+                note = Finding(Severity.NOTE, "takeoff-check", str(check), "", check.above_takeoff_m, None, "m")
+                findings += _in_sortie([note], mission, missions)
+    for mission, content in zip(missions, contents, strict=True):
+        findings += _in_sortie(check_dji(parts_of_kmz(content)), mission, missions)
+    return EncodedFiles(tuple(contents), tuple(findings))
+
+
+@dataclass(frozen=True, slots=True)
+class TakeoffCheck:
+    """What a pilot sees at the first waypoint, before any photo, where the aircraft took off from the planned height.
+
+    Heights of DJI missions count from the take-off place, and nothing on board knows how high that is.
+
+    Parameters
+    ----------
+    above_takeoff_m
+        Of the first waypoint, at which the aircraft stops: what the remote controller shows.
+    facade, is_upper_edge
+        The edge of a facade that lies nearest in height; empty where the site has no panels.
+    above_edge_m
+        Of the first waypoint; negative below it.
+    """
+
+    sortie: int
+    above_takeoff_m: float
+    facade: str
+    is_upper_edge: bool
+    above_edge_m: float
+
+    def __str__(self) -> str:
+        if not self.facade:
+            return (
+                f"before any photo the aircraft stops {self.above_takeoff_m:.1f} m above take-off; where it does not, "
+                "land: it took off from another height than planned"
+            )
+        return (
+            f"before any photo the aircraft stops {self.above_takeoff_m:.1f} m above take-off, "
+            f"{abs(self.above_edge_m):.1f} m {'above' if self.above_edge_m >= 0.0 else 'below'} the "
+            f"{'upper' if self.is_upper_edge else 'lower'} edge of facade '{self.facade}'; where it does not, land: it "
+            "took off from another height than planned"
+        )
+
+
+def takeoff_check(plan: Plan, site: Site, number: int) -> TakeoffCheck | None:
+    """The check of a sortie, counted from 1; None where it has no path."""
+    path, home_z_m = plan.sorties[number - 1].path_enu_m, site.home_enu_m[2]
+    if len(path) < 2:
+        return None
+    first_z_m = path[1][2]
+    edges: list[tuple[float, str, bool]] = []
+    for facade in site.facades:
+        heights = [corner[2] for panel in facade.panels for corner in panel.corners_enu_m]
+        if heights:
+            edges += [(max(heights), facade.id, True), (min(heights), facade.id, False)]
+    edge_z_m, facade_id, is_upper = min(edges, key=lambda edge: abs(edge[0] - first_z_m), default=(0.0, "", False))
+    return TakeoffCheck(number, first_z_m - home_z_m, facade_id, is_upper, first_z_m - edge_z_m)
+
+
+def _security_height_m(plan: Plan, options: ExportOptions) -> float:
+    """Height above take-off below which DJI aircraft must not fly sideways: the lowest flight, where that is higher.
+
+    Without the site, home counts as standing on the ground.
+    """
+    lowest_m = plan.constraints.min_height_above_ground_m
+    if options.site is None:
+        return MIN_HEIGHT_ABOVE_GROUND_M if lowest_m is None else lowest_m
+    site = options.site.site
+    return site.airspace.lowest_height_m(lowest_m) + site.airspace.ground_z_m - site.home_enu_m[2]
+
+
+def dji_return_height(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> tuple[float, list[Finding]]:
+    """Height above take-off at which an aircraft that leaves its mission flies home, and what there is to say of it."""
+    path_m = max(m.height_above_takeoff_m(w.position) for m in missions for w in m.waypoints)
+    if options.site is None:
+        if options.rth_height_m is not None:
+            return options.rth_height_m, []
+        text = "the return height clears the path only, because the site was not given; check that it clears everything"
+        return path_m, [Finding(Severity.WARNING, "return-height", text, "", path_m, None, "m")]
+    space = unchecked_space(options.site, plan.constraints.min_distance_m)
+    own = return_height(space)
+    # What speaks against the height that the program chooses is said by the check of the plan.
+    if options.rth_height_m is None:
+        return own.above_home_m, []
+    top_m = clear_height_z_m(space, 0.0) - options.site.site.home_enu_m[2]
+    if options.rth_height_m > own.ceiling_above_home_m:
+        text = (
+            f"the return height is above the airspace: expected at most {own.ceiling_above_home_m:.1f} m above "
+            f"take-off, got {options.rth_height_m:g} m; {own.above_home_m:g} m are right"
+        )
+        return options.rth_height_m, [
+            Finding(Severity.ERROR, "return-height", text, "", options.rth_height_m, own.ceiling_above_home_m, "m")
+        ]
+    if options.rth_height_m < top_m:
+        text = (
+            f"the return height is below the highest point of the site: a returning aircraft may hit it; expected "
+            f"{_metres_up(top_m)} m or more above take-off, got {options.rth_height_m:g} m, and "
+            f"{_metres_up(top_m + CLEARANCE_M)} m keep {CLEARANCE_M:g} m from everything"
+        )
+        return options.rth_height_m, [
+            Finding(Severity.ERROR, "return-height", text, "", options.rth_height_m, top_m, "m")
+        ]
+    return options.rth_height_m, []
+
+
+def _metres_up(height_m: float) -> str:
+    """A height that must be reached, rounded upwards to decimetres."""
+    return f"{math.ceil(round(10.0 * height_m, 6)) / 10.0:g}"
+
+
+def default_autopilot(profile_id: str) -> Autopilot:
+    """Whose rules MAVLink files follow when nobody says."""
+    return Autopilot.PX4 if profile_id == Autopilot.PX4 else Autopilot.ARDUPILOT
+
+
+def _encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
+    from missions.mavlink.areas import rally_points
+    from missions.mavlink.check import check_items
+    from missions.mavlink.fence import fence_polygons
+    from missions.mavlink.items import MavlinkFile, mission_items
+    from missions.mavlink.plan_json import plan_json_bytes
+    from missions.mavlink.wpl import wpl_bytes
+
+    reference = options.height_reference
+    if reference is HeightReference.ELLIPSOID:
+        raise MissionError(
+            "MAVLink has no heights above the ellipsoid; expected above-takeoff or amsl (its absolute altitude)"
+        )
+    contents: list[bytes] = []
+    findings: list[Finding] = []
+    for mission in missions:
+        autopilot = options.autopilot or default_autopilot(mission.profile)
+        items = mission_items(mission, autopilot, reference)
+        found = list(check_items(MavlinkFile(items, mission.takeoff, autopilot), autopilot))
+        if file_format is FileFormat.MAVLINK_WPL:
+            contents.append(wpl_bytes(items, mission.takeoff))
+        else:
+            zones = options.site.site.airspace.no_fly if options.site is not None else ()
+            fences, on_fences = fence_polygons(mission, zones)
+            found += on_fences
+            speed_m_s = mission.speed_m_s
+            rally = rally_points(options.site.site) if options.site is not None else ()
+            contents.append(plan_json_bytes(items, mission.takeoff, autopilot, speed_m_s, reference, fences, rally))
+        findings += _in_sortie(found, mission, missions)
+    return EncodedFiles(tuple(contents), tuple(findings))
+
+
+def _in_sortie(findings: Sequence[Finding], mission: Mission, missions: Sequence[Mission]) -> list[Finding]:
+    """Findings with the sortie in their place where there are several."""
+    if len(missions) == 1:
+        return list(findings)
+    prefix = f"sortie {mission.number}"
+    return [replace(found, place=f"{prefix}, {found.place}" if found.place else prefix) for found in findings]

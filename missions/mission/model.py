@@ -1,0 +1,281 @@
+"""The mission: one sortie as an aircraft is told it, before any file format, and what is read back from a file.
+
+Two families of records. `Mission` is complete and is written: every height is known, every photo has its angles.
+`ReadMission` is what a file says, no more: heights in the file's own reference, angles that may be missing.
+
+Heights have three references and three names, never mixed:
+
+- `height_ellipsoid_m`: above the WGS 84 ellipsoid (GNSS receivers, RTK, photogrammetry);
+- `altitude_amsl_m`: above the EGM96 geoid ("mean sea level"; MAVLink's absolute altitude, DJI's EGM96, KML);
+- `height_above_takeoff_m`: above the point where this sortie takes off, as a difference of ellipsoid heights.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+from planning.base.findings import Finding, Severity
+from planning.geo.frames import Origin
+from planning.plan import Aircraft, Camera, FlightRules
+
+
+class HeightReference(StrEnum):
+    """What the heights of a mission file are measured from."""
+
+    ABOVE_TAKEOFF = "above-takeoff"
+    AMSL = "amsl"
+    ELLIPSOID = "ellipsoid"
+
+
+class FileFormat(StrEnum):
+    """Mission file formats, by the names of the command line."""
+
+    DJI_KMZ = "dji-kmz"
+    MAVLINK_PLAN = "mavlink-plan"
+    MAVLINK_WPL = "mavlink-wpl"
+    KML = "kml"
+    CSV = "csv"
+
+
+@dataclass(frozen=True, slots=True)
+class GeoPoint:
+    """A point on WGS 84: degrees, and metres above the ellipsoid."""
+
+    lat_deg: float
+    lon_deg: float
+    height_ellipsoid_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Photo:
+    """One photo taken at a waypoint: heading clockwise from true north in (-180, 180], gimbal pitch 0 level."""
+
+    viewpoint_id: str
+    heading_deg: float
+    gimbal_pitch_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoint:
+    """A vertex of the flown path; without photos it is only passed, to stay on the checked path."""
+
+    position: GeoPoint
+    photos: tuple[Photo, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Mission:
+    """One sortie, ready to be written in any format.
+
+    The aircraft climbs vertically from `takeoff` to the height of the first waypoint, which is straight above it,
+    flies straight lines through the waypoints, and from the last one, again above `takeoff`, descends vertically.
+
+    Parameters
+    ----------
+    number
+        Of the sortie in its plan, from 1.
+    profile
+        Identifier in the aircraft catalogue; empty when the plan's aircraft is in none.
+    speed_m_s
+        Cruise speed of all legs.
+    length_m, duration_s
+        Of the whole sortie, take-off and landing included, by the plan's own time model.
+    origin
+        Of the plan's local frame, which tables of local coordinates use.
+    """
+
+    name: str
+    number: int
+    takeoff: GeoPoint
+    waypoints: tuple[Waypoint, ...]
+    aircraft: Aircraft
+    camera: Camera
+    profile: str
+    rules: FlightRules
+    speed_m_s: float
+    length_m: float
+    duration_s: float
+    origin: Origin
+
+    @property
+    def n_photos(self) -> int:
+        """Number of photos."""
+        return sum(len(waypoint.photos) for waypoint in self.waypoints)
+
+    def height_above_takeoff_m(self, point: GeoPoint) -> float:
+        """Height of `point` above the take-off point, as a difference of ellipsoid heights."""
+        return point.height_ellipsoid_m - self.takeoff.height_ellipsoid_m
+
+
+@dataclass(frozen=True, slots=True)
+class ReadPhoto:
+    """One photo that a file tells the aircraft to take; an angle is None where the file leaves it open.
+
+    `viewpoint_id` is empty where the file names none. A photo `in_passing` costs no stop: the camera is released by
+    time or distance, or at a waypoint that the aircraft flies through.
+    """
+
+    heading_deg: float | None
+    gimbal_pitch_deg: float | None
+    viewpoint_id: str = ""
+    in_passing: bool = False
+
+    def __post_init__(self) -> None:
+        if self.heading_deg is not None and not -180.0 <= self.heading_deg <= 360.0:
+            raise ValueError(f"heading_deg: expected -180 to 360, got {self.heading_deg}")
+        if self.gimbal_pitch_deg is not None and not -180.0 <= self.gimbal_pitch_deg <= 90.0:
+            raise ValueError(f"gimbal_pitch_deg: expected -180 to 90, got {self.gimbal_pitch_deg}")
+
+
+@dataclass(frozen=True, slots=True)
+class Stay:
+    """What an aircraft does at a waypoint, as far as it takes time.
+
+    Parameters
+    ----------
+    passing_m
+        It flies through, and leaves its leg so far before the waypoint (infinite: as early as it likes); None where it
+        stops.
+    wait_s
+        Time at rest without turning.
+    turn_deg
+        What nose and gimbal turn while it rests, the longer of the two each time.
+    """
+
+    passing_m: float | None = None
+    wait_s: float = 0.0
+    turn_deg: float = 0.0
+
+    @property
+    def is_stop(self) -> bool:
+        """Whether it comes to rest."""
+        return self.passing_m is None or self.wait_s > 0.0 or self.turn_deg > 0.0
+
+
+ON_THE_WAY = Stay(passing_m=math.inf)
+"""A place on a leg."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReadWaypoint:
+    """A point of a mission that was read; exactly one of the two heights is known.
+
+    `stay` is None where the file says nothing about it: then every photo takes the time that plans give it. `speed_m_s`
+    is that of the leg which begins here, None where it is the mission's.
+    """
+
+    lat_deg: float
+    lon_deg: float
+    height_ellipsoid_m: float | None = None
+    height_above_takeoff_m: float | None = None
+    photos: tuple[ReadPhoto, ...] = ()
+    stay: Stay | None = None
+    speed_m_s: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.height_ellipsoid_m is None) == (self.height_above_takeoff_m is None):
+            raise ValueError("expected one of height_ellipsoid_m and height_above_takeoff_m, got both or neither")
+        if not (abs(self.lat_deg) <= 90.0 and abs(self.lon_deg) <= 180.0):
+            raise ValueError(f"expected a position on the globe, got {self.lat_deg}, {self.lon_deg}")
+        height_m = self.height_above_takeoff_m if self.height_ellipsoid_m is None else self.height_ellipsoid_m
+        if height_m is None or not math.isfinite(height_m):
+            raise ValueError(f"expected a finite height, got {height_m}")
+
+
+class Finish(StrEnum):
+    """What the aircraft does after the last waypoint of a mission that was read."""
+
+    RETURN = "return"
+    """It flies straight home and lands there."""
+    LAND = "land"
+    """It lands where it is."""
+    HOVER = "hover"
+    """It waits for the pilot."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReadMission:
+    """One sortie as a file describes it.
+
+    Parameters
+    ----------
+    takeoff
+        Where the file expects the take-off; None where it does not say.
+    height_reference
+        Of the heights in the file.
+    climb_above_takeoff_m, return_above_takeoff_m
+        Heights above take-off to which the aircraft climbs at least before it leaves the take-off column, and before
+        it flies home after the last waypoint; 0 where the file does not say.
+    speed_m_s
+        Cruise speed; None where the file does not say.
+    transit_speed_m_s
+        Speed to the first waypoint and home from the last; None where it is the cruise speed.
+    stated_s
+        Time from the first to the last waypoint as the file states it; None where it does not.
+    findings
+        What the file's checks found and what had to be assumed; never an error, a file with errors is not read.
+    """
+
+    name: str
+    path: Path
+    format: FileFormat
+    waypoints: tuple[ReadWaypoint, ...]
+    takeoff: GeoPoint | None
+    height_reference: HeightReference
+    finish: Finish = Finish.RETURN
+    climb_above_takeoff_m: float = 0.0
+    return_above_takeoff_m: float = 0.0
+    speed_m_s: float | None = None
+    transit_speed_m_s: float | None = None
+    stated_s: float | None = None
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def n_photos(self) -> int:
+        """Number of photos."""
+        return sum(len(waypoint.photos) for waypoint in self.waypoints)
+
+
+def as_remark(finding: Finding) -> Finding:
+    """A check's error, which grounds a file but not the evaluation of what it would do, as a warning."""
+    if finding.severity is not Severity.ERROR:
+        return finding
+    return replace(finding, severity=Severity.WARNING, message=f"the vehicle would refuse it: {finding.message}")
+
+
+MAX_REASONS = 3
+"""Kinds of errors that a refusal spells out; the others are counted."""
+
+
+def reasons(errors: Sequence[Finding]) -> str:
+    """One example of each kind of error, and how often it occurs."""
+    kinds: dict[str, list[Finding]] = {}
+    for error in errors:
+        kinds.setdefault(error.code, []).append(error)
+    told = []
+    for found in list(kinds.values())[:MAX_REASONS]:
+        place = found[0].place.strip(", ")
+        times = f" ({len(found)} times)" if len(found) > 1 else ""
+        told.append(f"{place}: {found[0].message}{times}" if place else f"{found[0].message}{times}")
+    return "; ".join(told) + (f"; and {len(kinds) - MAX_REASONS} other kinds" if len(kinds) > MAX_REASONS else "")
+
+
+# Heights between the WGS 84 ellipsoid and mean sea level, which in every mission format means the EGM96 geoid.
+
+
+def altitude_amsl_m(point: GeoPoint) -> float:
+    """Altitude of a point above the EGM96 geoid, metres."""
+    from planning.geo.geoid import amsl_from_ellipsoid_m
+
+    return float(amsl_from_ellipsoid_m(point.lat_deg, point.lon_deg, point.height_ellipsoid_m))
+
+
+def point_at_amsl(lat_deg: float, lon_deg: float, altitude_amsl_m: float) -> GeoPoint:
+    """Point that is given by its altitude above the EGM96 geoid."""
+    from planning.geo.geoid import ellipsoid_from_amsl_m
+
+    return GeoPoint(lat_deg, lon_deg, float(ellipsoid_from_amsl_m(lat_deg, lon_deg, altitude_amsl_m)))

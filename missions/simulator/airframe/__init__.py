@@ -1,0 +1,1 @@
+"""The simulated airframe: how it moves, and what it is made of."""

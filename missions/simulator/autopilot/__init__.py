@@ -1,0 +1,1 @@
+"""The simulated autopilot: schedulers, modes, failsafes, commands, and what it tells."""

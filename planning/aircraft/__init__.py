@@ -1,0 +1,1 @@
+"""Aircraft and cameras: profiles with their sources."""

@@ -1,0 +1,1 @@
+"""What everything else stands on: errors, findings, progress, files, effects, compiled kernels, parallel work."""

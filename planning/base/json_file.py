@@ -1,0 +1,482 @@
+"""JSON and TOML files as typed records: errors that name file and field, and writes that are whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import shutil
+import sys
+import tempfile
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import fields
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NoReturn, TypeVar
+
+import msgspec
+import msgspec.inspect
+
+from planning.base.errors import InputError
+from planning.base.files import MIB, FileLimit, check_json_size, read_given, real_path
+
+if sys.platform != "win32":
+    import fcntl
+
+Record = TypeVar("Record")
+
+JSON_FILE = FileLimit("a JSON file", 512 * MIB)
+"""A site of 100 000 panels is under 50 MB."""
+
+LARGEST_INTEGER = 2**64
+"""Whole numbers beyond are none of ours, and no float that is close enough."""
+
+MAX_DEPTH = 100
+"""Levels of lists and objects; GeoJSON and CityJSON, the deepest that are read, have under 12."""
+
+TOML_FILE = FileLimit("a TOML file", MIB)
+"""Settings have some kilobytes, with the layout of ten window sizes under 100."""
+
+MAX_KEY_PARTS = 16
+"""Of a dotted TOML key: `tomllib` keeps all of its beginnings, which 200 kB of `a.a.a` made 21 GB of."""
+
+_KEY_PART = r"""(?>[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![\w-]){_KEY_PART}(?>[ \t]*+\.[ \t]*+{_KEY_PART}){{{MAX_KEY_PARTS},}}")
+
+
+def read_json(path: Path, limit: FileLimit = JSON_FILE, *, names_files: bool = False) -> Any:
+    """Content of a JSON file; see `parse_json`.
+
+    Raises
+    ------
+    InputError
+        Missing, unreadable, no regular file, too large, or as `parse_json`.
+    """
+    return parse_json(read_given(path, limit), path, names_files=names_files)
+
+
+def parse_json(written: bytes, path: Path, *, names_files: bool = False) -> Any:
+    """Content of a JSON text.
+
+    Parameters
+    ----------
+    path
+        Where it is from, for messages.
+    names_files
+        Texts in it may be names of files that are no UTF-8, which Python has as halves of characters (PEP 383).
+
+    Raises
+    ------
+    InputError
+        Empty, not UTF-8, not JSON, nested too deeply, of more values than there is memory for, or holding NaN, Infinity
+        or half of a character, which JSON does not have.
+    """
+    check_json_size(written, path)
+    try:
+        text = written.decode("utf-8-sig")  # editors on Windows put a byte order mark in front
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: expected JSON in UTF-8, found other bytes at offset {error.start}") from error
+    if not text.strip():
+        raise InputError(f"{path}: not valid JSON, line 1: the file is empty")
+    try:
+        content = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}: not valid JSON, line {error.lineno}, column {error.colno}: {error.msg}") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: nested too deeply for a file of ours") from error
+    except ValueError as error:
+        raise InputError(f"{path}: holds a number with too many digits ({error})") from error
+    _check_values(content, path, names_files)
+    return content
+
+
+def _check_values(content: Any, path: Path, names_files: bool, *, is_toml: bool = False) -> None:
+    """Refuse what JSON does not have and Python reads all the same: NaN, 1e999, half a character, endless depth."""
+    level: list[Any] = [content]
+    for _ in range(MAX_DEPTH):
+        deeper: list[Any] = []
+        for value in level:
+            kind = type(value)
+            if kind is list:
+                deeper += value
+            elif kind is dict:
+                deeper += value.values()
+                deeper += value
+            elif (
+                (kind is float and not (is_toml or math.isfinite(value)))
+                or (kind is int and not -LARGEST_INTEGER <= value <= LARGEST_INTEGER)
+                or (kind is str and not (names_files or value.isascii() or _is_text(value)))
+            ):
+                _refuse_value(content, value, path)
+        if not deeper:
+            return
+        level = deeper
+    raise InputError(f"{path}: nested too deeply for a file of ours")
+
+
+def _is_text(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _refuse_value(content: Any, wrong: Any, path: Path) -> NoReturn:
+    place = (_place_of(content, wrong, "") or "").lstrip(".").encode("ascii", "backslashreplace").decode()
+    if isinstance(wrong, int):
+        raise InputError(f"{path}: {place}: expected a number of at most 20 digits, found one of {len(str(wrong))}")
+    if isinstance(wrong, float):
+        raise InputError(f"{path}: {place}: expected a finite number, got NaN or Infinity")
+    raise InputError(f"{path}: {place}: expected text, found half of a character (a surrogate by itself)")
+
+
+def _place_of(content: Any, wrong: Any, place: str) -> str | None:
+    """Where this very value stands, or the key that it is."""
+    if content is wrong:
+        return place
+    if isinstance(content, dict):
+        if any(key is wrong for key in content):
+            return f"{place}.{wrong}"
+        parts = ((value, f"{place}.{key}") for key, value in content.items())
+    elif isinstance(content, list):
+        parts = ((value, f"{place}[{i}]") for i, value in enumerate(content))
+    else:
+        return None
+    return next((found for value, inner in parts if (found := _place_of(value, wrong, inner)) is not None), None)
+
+
+def to_record(content: Any, record: type[Record], path: Path) -> Record:
+    """Typed record from plain JSON values; fields the record does not know are ignored.
+
+    Raises
+    ------
+    InputError
+        A field is missing, of the wrong type or refused by the record's own checks; the message names file and field.
+    """
+    try:
+        return msgspec.convert(content, record)
+    except msgspec.ValidationError as error:
+        raise InputError(f"{path}: {_in_words(str(error), record)}") from error
+    except UnicodeEncodeError as error:
+        raise InputError(f"{path}: a text in it holds half of a character (a surrogate by itself)") from error
+
+
+def expect_format(content: Any, expected: str, path: Path) -> None:
+    """Say which file was wanted and which was found, before single fields are looked at.
+
+    Raises
+    ------
+    InputError
+        The content says that it is in another format. Content that does not say passes.
+    """
+    found = content.get("format", expected) if isinstance(content, dict) else expected
+    if found != expected:
+        raise InputError(f"{path}: format: expected '{expected}', got {found!r}; is it the right file?")
+
+
+_WORDS = {
+    "array": "list",
+    "object": "object",
+    "float": "number",
+    "int": "whole number",
+    "str": "text",
+    "null": "nothing",
+    "bool": "true/false",
+}
+
+
+def _in_words(message: str, record: type[Any]) -> str:
+    """Turn "Expected `float`, got `str` - at `$.a.b`" into "a.b: expected number, got text"."""
+    text, _, place = message.partition(" - at `$")
+    place = place.rstrip("`").lstrip(".")
+    text = re.sub(r"`(\w+(?: \| \w+)*)`", lambda found: _kind(found[1]), text).replace("`", "'")
+    text = re.sub(r"^Object missing", "missing", text)
+    text = text[:1].lower() + text[1:] if text.startswith("Expected") else text
+    wrong = re.match(r"^Invalid enum value (.+)$", text)
+    if wrong and (choices := _choices(record, place)):
+        text = f"expected {', '.join(choices)}, got {wrong[1]}"
+    if not place:
+        return text
+    return f"{place}.{text}" if re.match(r"\w+(\[\d+\])*: ", text) else f"{place}: {text}"
+
+
+def _choices(record: type[Any], place: str) -> list[str]:
+    """What a word at a place such as "a.b[3]" of a record may be; none where that is not told by its types."""
+    kinds = _alternatives(msgspec.inspect.type_info(record))
+    for step in re.findall(r"\[[^\]]*\]|\w+", place):
+        if step.startswith("["):
+            within = [getattr(kind, "item_type", None) or getattr(kind, "value_type", None) for kind in kinds]
+        else:
+            named = [field for kind in kinds for field in getattr(kind, "fields", ())]
+            within = [field.type for field in named if field.encode_name == step]
+        kinds = [each for kind in within if kind is not None for each in _alternatives(kind)]
+    literals = [value for kind in kinds for value in getattr(kind, "values", ())]
+    members = [member.value for kind in kinds if isinstance(kind, msgspec.inspect.EnumType) for member in kind.cls]
+    return [str(value) for value in (*literals, *members)]
+
+
+def _alternatives(kind: msgspec.inspect.Type) -> Sequence[msgspec.inspect.Type]:
+    return kind.types if isinstance(kind, msgspec.inspect.UnionType) else (kind,)
+
+
+def _kind(types: str) -> str:
+    """Turn "str | null" into "text or nothing"; a word that is no type is quoted."""
+    return " or ".join(_WORDS.get(kind, f"'{kind}'") for kind in types.split(" | "))
+
+
+def read_toml(path: Path, record: type[Record]) -> Record:
+    """Typed record from a TOML file; unknown keys are errors where the record forbids them.
+
+    Raises
+    ------
+    InputError
+        As for `to_record`, and for a file that is not TOML, no regular file or too large.
+    """
+    return to_record(parse_toml(read_given(path, TOML_FILE), path), record, path)
+
+
+def parse_toml(written: bytes, path: Path) -> dict[str, Any]:
+    """Content of a TOML text.
+
+    Parameters
+    ----------
+    path
+        Where it is from, for messages.
+
+    Raises
+    ------
+    InputError
+        It is not TOML, or has keys of too many parts or lists in lists without end.
+    """
+    try:
+        text = written.decode("utf-8")
+        long_key = _LONG_KEY.search(text)
+        if long_key is not None:
+            line = text.count("\n", 0, long_key.start()) + 1
+            raise InputError(f"{path}: line {line}: a key has more than {MAX_KEY_PARTS} parts; none of ours has")
+        content = tomllib.loads(text)
+        _check_values(content, path, False, is_toml=True)
+        return content
+    except ValueError as error:  # TOMLDecodeError, UnicodeDecodeError, and numbers with thousands of digits
+        raise InputError(f"{path}: not valid TOML ({error})") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: nested too deeply for a file of ours") from error
+
+
+def check_settings(content: dict[str, Any], record: type[Any], path: Path, place: str = "") -> None:
+    """Refuse keys that are no fields of a record.
+
+    Parameters
+    ----------
+    record
+        A dataclass.
+    place
+        Of the keys in the file, with its dot, as `glass.`.
+
+    Raises
+    ------
+    InputError
+        There is such a key; the message names it and those that are known.
+    """
+    known = [field.name for field in fields(record)]
+    unknown = sorted(set(content) - set(known))
+    if unknown:
+        raise InputError(f"{path}: {place}{unknown[0]}: no such setting; known are: {', '.join(known)}")
+
+
+def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
+    """Find out before long work that its result could not be written.
+
+    Raises
+    ------
+    InputError
+        There is no such folder, a folder has that name, file or folder is write-protected, or it is one of `sources`.
+    """
+    _check_place(path)
+    folder = real_path(path).parent
+    # Files are made anew in their folder; devices and pipes are written into.
+    if (path.is_file() or not path.exists()) and not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError(
+            f"{path}: cannot be written: the folder '{folder}' is write-protected; name a file in another one"
+        )
+    for source in sources:
+        if path.exists() and source.exists() and path.samefile(source):
+            raise InputError(f"{path}: would replace {source}, which it is made from; name another file")
+
+
+def _check_place(path: Path) -> None:
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: cannot be written: there is no folder '{path.parent}'; make it first")
+    if path.is_dir():
+        raise InputError(f"{path}: cannot be written: this is a folder; name a file in it")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise InputError(f"{path}: cannot be written: the file is write-protected; name another one")
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all: to a temporary neighbour first, then renamed over the target.
+
+    A link is followed. What is no regular file (a device, a pipe) is written into, never replaced.
+
+    Raises
+    ------
+    InputError
+        The folder is missing or cannot be written, or the disk is full.
+    """
+    _check_place(path)
+    try:
+        if path.exists() and not path.is_file():
+            path.write_bytes(content)
+            return
+        with part_file(real_path(path)) as part:
+            part.write_bytes(content)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from error
+
+
+def write_together(files: Mapping[Path, bytes]) -> None:
+    """Write files that belong together, all of them or none; new ones never stand beside old ones, see `part_files`.
+
+    Raises
+    ------
+    InputError
+        One of them cannot be written; all are as they were then.
+    """
+    targets = [real_path(path) for path in files]
+    for path in files:
+        _check_place(path)
+    if any(target.exists() and not target.is_file() for target in targets):
+        for path, content in files.items():
+            write_atomically(path, content)
+        return
+    try:
+        with part_files(targets) as parts:
+            for part, content in zip(parts, files.values(), strict=True):
+                part.write_bytes(content)
+    except OSError as error:
+        raise InputError(f"{next(iter(files))}: cannot be written ({error.strerror or error})") from error
+
+
+@contextmanager
+def part_files(targets: Sequence[Path]) -> Iterator[list[Path]]:
+    """New files beside `targets`, which belong together: they take their places together, as in `part_file`.
+
+    The first of them holds the others together (a description, a first sortie). It has a whole file at every moment.
+    The others have an old one, then none, then a new one: whenever this process ends, no new one is beside an old one.
+
+    Raises
+    ------
+    OSError
+        As `part_file`; all are as they were then.
+    """
+    with ExitStack() as stack:
+        parts = [stack.enter_context(new_file_beside(target)) for target in targets]
+        yield parts
+        for part in parts:
+            _sync(part)
+        for target in targets[1:]:
+            target.unlink(missing_ok=True)
+        for part, target in zip(parts, targets, strict=True):
+            part.replace(target)
+
+
+@contextmanager
+def part_file(target: Path, mode: int = 0o644) -> Iterator[Path]:
+    """A new file beside `target`, of the same ending, which takes its place once all is written.
+
+    Where the work fails it is removed, and what was there before stays. Where the process ends, the next one that
+    writes into the folder removes it: it is locked as long as somebody writes it.
+
+    Raises
+    ------
+    OSError
+        It cannot be made, or not take the place.
+    """
+    with new_file_beside(target, mode) as part:
+        yield part
+        _sync(part)
+        part.replace(target)
+
+
+@contextmanager
+def new_file_beside(target: Path, mode: int = 0o644) -> Iterator[Path]:
+    """A new file beside `target` that is removed in the end, unless it has another name then."""
+    _clear_parts(target.parent)
+    made, name = tempfile.mkstemp(f".part{target.suffix}", f".{target.stem[:40]}.", target.parent)
+    os.close(made)
+    part, descriptor = Path(name), None
+    try:
+        descriptor = _locked(part)
+        part.chmod(mode)
+        yield part
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+        if descriptor is not None:
+            os.close(descriptor)
+
+
+@contextmanager
+def part_folder(parent: Path, stem: str) -> Iterator[Path]:
+    """A new folder for files in the making, removed in the end as `part_file` removes its file; moved away, it stays.
+
+    Raises
+    ------
+    OSError
+        It cannot be made.
+    """
+    _clear_parts(parent)
+    folder = Path(tempfile.mkdtemp(".part", f".{stem[:40]}.", parent))
+    descriptor = _locked(folder)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        if descriptor is not None:
+            os.close(descriptor)
+
+
+def _locked(path: Path) -> int | None:
+    """A lock on a file or folder in the making, by a descriptor of it; None on Windows, where what is open stays.
+
+    Raises
+    ------
+    OSError
+        Somebody has it.
+    """
+    if sys.platform == "win32":
+        return None
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(descriptor)
+        raise
+    return descriptor
+
+
+def _sync(part: Path) -> None:
+    with part.open("rb+") as file:
+        os.fsync(file.fileno())
+
+
+@lru_cache(maxsize=1000)
+def _clear_parts(folder: Path) -> None:
+    """Remove what processes left that ended while they wrote into a folder; looked at once by each process."""
+    for part in folder.glob(".*.????????.part*"):
+        with suppress(OSError):
+            if part.is_symlink() or not (part.is_file() or part.is_dir()):
+                continue
+            descriptor = _locked(part)
+            try:
+                if part.is_dir():
+                    shutil.rmtree(part)
+                else:
+                    part.unlink()
+            finally:
+                if descriptor is not None:
+                    os.close(descriptor)

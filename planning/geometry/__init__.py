@@ -1,1 +1,0 @@
-"""Exact distances, clearance of segments, inside tests and line of sight against triangles, in float64."""

@@ -1,0 +1,1 @@
+"""How aircraft move: times of legs and turns, speed profiles, rounded corners."""

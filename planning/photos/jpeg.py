@@ -1,0 +1,187 @@
+"""The header of a JPEG file: picture size, and the EXIF and XMP parts in it (ITU-T T.81 annex B, XMP part 3, 1.1.3).
+
+Only the header is read, and no picture is ever decoded: neither large dimensions nor hostile data cost anything.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
+
+from planning.base.errors import InputError
+from planning.base.files import MIB, FileLimit, open_given
+
+PHOTO_FILE = FileLimit("a photo", 512 * MIB)
+"""Panoramas of drones have up to 100 MiB."""
+
+SOI, EOI, SOS, APP1 = 0xD8, 0xD9, 0xDA, 0xE1
+SIZE_MARKERS = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
+"""Frame headers, which hold the picture's size; the three left out are tables and a reserved marker."""
+
+NO_MARKERS = frozenset((0x00, 0xFF))
+WITHOUT_LENGTH = frozenset(range(0xD0, 0xD8)) | {0x01}
+
+EXIF = b"Exif\0\0"
+XMP = b"http://ns.adobe.com/xap/1.0/\0"
+EXTENDED_XMP = b"http://ns.adobe.com/xmp/extension/\0"
+
+MAX_SEGMENTS = 4096
+"""Thermal cameras store raw data in some 60 segments of 64 KiB each."""
+
+MAX_EXTENDED_BYTES = 4 * 2**20
+"""Larger extended XMP holds depth maps and the like, and nothing of a flight."""
+
+MAX_FILL_BYTES = 1024
+"""Between two segments; any number is allowed, and none is usual."""
+
+CHUNK_BYTES = 65536
+
+MAX_SEARCHED_BYTES = 64 * 2**20
+"""From the file's end on; more than any photo has."""
+
+
+@dataclass(frozen=True, slots=True)
+class JpegHeader:
+    """What the header holds.
+
+    Parameters
+    ----------
+    width_px, height_px
+        Of the picture as it is stored.
+    exif
+        The TIFF structure of the EXIF part; None without one.
+    xmp
+        Packets of XMP: the main one, then the extended one where it is whole.
+    is_complete
+        Whether an end of the picture was found; False for files that were cut off.
+    """
+
+    width_px: int
+    height_px: int
+    exif: bytes | None
+    xmp: tuple[bytes, ...]
+    is_complete: bool
+
+
+def read_header(path: Path) -> JpegHeader:
+    """Header of a JPEG file.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, no JPEG, or its header is cut off.
+    """
+    with open_given(path, PHOTO_FILE) as file:
+        return _header(file, str(path))
+
+
+@dataclass(slots=True)
+class _Parts:
+    """What was found so far; `extended` holds pieces by their identifier, each with its place and the whole's size."""
+
+    size_px: tuple[int, int] | None = None
+    exif: bytes | None = None
+    xmp: bytes | None = None
+    extended: dict[bytes, list[tuple[int, int, bytes]]] = field(default_factory=dict)
+    n_extended_bytes: int = 0
+
+
+def _header(file: BinaryIO, label: str) -> JpegHeader:
+    if file.read(2) != bytes((0xFF, SOI)):
+        raise InputError(f"{label}: is no JPEG file; only .jpg photos as the camera wrote them can be read")
+    parts = _Parts()
+    for marker, length in _segments(file, label):
+        if marker in SIZE_MARKERS and parts.size_px is None:
+            frame = _read(file, min(length, 5), label)
+            if len(frame) == 5:
+                parts.size_px = int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big")
+        elif marker == APP1:
+            _keep(parts, _read(file, length, label))
+    if parts.size_px is not None and 0 in parts.size_px:
+        width, height = parts.size_px
+        raise InputError(
+            f"{label}: claims to be a picture of {width} x {height} pixels, so there is none in it; copy it from the "
+            "card again"
+        )
+    if parts.size_px is None:
+        raise InputError(f"{label}: the JPEG file holds no picture; copy it from the card again")
+    packets = tuple(packet for packet in (parts.xmp, _extended(parts)) if packet is not None)
+    return JpegHeader(*parts.size_px, parts.exif, packets, _has_end(file))
+
+
+def _segments(file: BinaryIO, label: str) -> Iterator[tuple[int, int]]:
+    """Marker and number of content bytes of each segment up to the picture; whatever is not read is skipped."""
+    for _ in range(MAX_SEGMENTS):
+        if _read(file, 1, label) != b"\xff":
+            raise _damaged(label)
+        marker = next((byte for _ in range(MAX_FILL_BYTES) if (byte := _read(file, 1, label)[0]) != 0xFF), 0xFF)
+        if marker in NO_MARKERS:
+            raise _damaged(label)
+        if marker in WITHOUT_LENGTH:
+            continue
+        if marker in (SOS, EOI):
+            return
+        length = int.from_bytes(_read(file, 2, label), "big") - 2
+        if length < 0:
+            raise _damaged(label)
+        after = file.tell() + length
+        yield marker, length
+        file.seek(after)
+    raise InputError(f"{label}: the JPEG header has more than {MAX_SEGMENTS} parts; refused as hostile")
+
+
+def _damaged(label: str) -> InputError:
+    return InputError(f"{label}: the header of the JPEG file is damaged; copy it from the card again")
+
+
+def _read(file: BinaryIO, n: int, label: str) -> bytes:
+    content = file.read(n)
+    if len(content) < n:
+        raise InputError(f"{label}: the file ends in its header; copy it from the card again")
+    return content
+
+
+def _keep(parts: _Parts, content: bytes) -> None:
+    """Keep what an APP1 segment holds; the first of a kind counts."""
+    if content.startswith(EXIF):
+        parts.exif = content[len(EXIF) :] if parts.exif is None else parts.exif
+    elif content.startswith(XMP):
+        parts.xmp = content[len(XMP) :] if parts.xmp is None else parts.xmp
+    elif content.startswith(EXTENDED_XMP):
+        body = content[len(EXTENDED_XMP) :]
+        parts.n_extended_bytes += len(body)
+        if len(body) > 40 and parts.n_extended_bytes <= MAX_EXTENDED_BYTES:
+            size, offset = int.from_bytes(body[32:36], "big"), int.from_bytes(body[36:40], "big")
+            parts.extended.setdefault(body[:32], []).append((offset, size, body[40:]))
+
+
+def _extended(parts: _Parts) -> bytes | None:
+    """The extended packet that the main one names; None where there is none or a piece of it is missing."""
+    for identifier, pieces in parts.extended.items():
+        if parts.xmp is None or identifier not in parts.xmp:
+            continue
+        in_order, size = [], 0
+        for offset, _, piece in sorted(pieces):
+            if offset == size:
+                in_order.append(piece)
+                size += len(piece)
+        if size == pieces[0][1]:
+            return b"".join(in_order)
+    return None
+
+
+def _has_end(file: BinaryIO) -> bool:
+    """Whether the picture ends; searched for from the file's end on, where it is in whole files."""
+    start, end = file.tell(), file.seek(0, os.SEEK_END)
+    start, following = max(start, end - MAX_SEARCHED_BYTES), b""
+    while end > start:
+        begin = max(start, end - CHUNK_BYTES)
+        file.seek(begin)
+        content = file.read(end - begin)
+        if bytes((0xFF, EOI)) in content + following:
+            return True
+        end, following = begin, content[:1]
+    return False

@@ -1,0 +1,1 @@
+"""Sites: panels, building, obstacles and airspace; their files, imports, and the space an aircraft may fly in."""

@@ -1,0 +1,104 @@
+"""Reading and writing `site.json` (format reflight-site/1, docs/file-formats.md)."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from planning.base.errors import InputError
+from planning.base.files import read_given
+from planning.base.json_file import JSON_FILE, expect_format, parse_json, to_record, write_atomically
+from planning.geo.mesh import TriangleMesh, empty_mesh, read_mesh
+from planning.site.records import SITE_FORMAT, Obstacle, Site, SiteModel, box_geometry
+
+
+def read_site(path: Path) -> SiteModel:
+    """Read a site and the meshes it names.
+
+    Raises
+    ------
+    InputError
+        The file or a mesh is missing or wrong; the message names the file, the field and what was expected.
+    """
+    return site_of(read_given(path, JSON_FILE), path)
+
+
+def site_of(written: bytes, path: Path) -> SiteModel:
+    """A site from the content of its file `path`, beside which its meshes lie; errors as `read_site`."""
+    content = parse_json(written, path)
+    expect_format(content, SITE_FORMAT, path)
+    site = to_record(content, Site, path)
+    folder = path.parent
+    name = site.building_mesh
+    building = empty_mesh() if name is None else _read_named_mesh(folder, name, f"{path}: building_mesh")
+    obstacles = tuple(
+        _obstacle_geometry(folder, obstacle, f"{path}: obstacles[{i}].mesh")
+        for i, obstacle in enumerate(site.obstacles)
+    )
+    return SiteModel(site, building, obstacles, hashlib.sha256(written).hexdigest())
+
+
+def _read_named_mesh(folder: Path, name: str, place: str) -> TriangleMesh:
+    try:
+        return read_mesh(folder / name)
+    except InputError as error:
+        raise InputError(f"{place}: {error}; mesh paths start from the folder of the site file") from error
+
+
+def _obstacle_geometry(folder: Path, obstacle: Obstacle, place: str) -> TriangleMesh:
+    if obstacle.box_enu_m is not None:
+        return box_geometry(obstacle)
+    assert obstacle.mesh is not None  # Obstacle's own check
+    return _read_named_mesh(folder, obstacle.mesh, place)
+
+
+def site_to_json(site: Site) -> dict[str, Any]:
+    """Content of `site.json`; absent optional fields are left out."""
+    content: dict[str, Any] = msgspec.to_builtins(site)
+    content = {"format": content.pop("format"), **content}
+    if content["building_mesh"] is None:
+        del content["building_mesh"]
+    for name in ("rally_points", "place_from", "is_bare"):
+        if not content[name]:
+            del content[name]
+    if content["airspace"]["min_height_above_ground_m"] is None:
+        del content["airspace"]["min_height_above_ground_m"]
+    content["obstacles"] = [_without_none(obstacle) for obstacle in content["obstacles"]]
+    for facade in content["facades"]:
+        facade["panels"] = [_without_none(panel) for panel in facade["panels"]]
+    return content
+
+
+def _without_none(fields: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in fields.items() if value is not None}
+
+
+def site_bytes(site: Site) -> bytes:
+    """The site file of a site, as `write_site` writes it."""
+    return msgspec.json.format(msgspec.json.encode(site_to_json(site)), indent=1)
+
+
+def site_sha256(site: Site) -> str:
+    """SHA-256 of the site file that `write_site` would write, hexadecimal."""
+    return hashlib.sha256(site_bytes(site)).hexdigest()
+
+
+def is_planned_on(planned_sha256: str, model: SiteModel) -> bool:
+    """Whether a plan was made for a site, by the checksum that the plan states; True where one of them states none.
+
+    Rally points that were marked since change no plan.
+    """
+    if not (planned_sha256 and model.sha256) or planned_sha256 == model.sha256:
+        return True
+    return bool(model.site.rally_points) and planned_sha256 == site_sha256(replace(model.site, rally_points=()))
+
+
+def write_site(path: Path, site: Site) -> str:
+    """Write a site file, whole or not at all; returns the SHA-256 of what was written. Meshes are not touched."""
+    content = site_bytes(site)
+    write_atomically(path, content)
+    return hashlib.sha256(content).hexdigest()

@@ -1,0 +1,179 @@
+"""Windows to panels: four corners each, outdoors only, normals outwards."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from planning.base.progress import Monitor
+from planning.geo.line_of_sight import OCCLUSION_OFFSET_M, line_of_sight
+from planning.geo.mesh import TriangleMesh
+from planning.site.importing.openness import Sides, open_shares, turn_outwards
+from planning.site.importing.polygons import fit_quad, plane_axes, quad_areas, start_lower_left, unit_normals
+from planning.site.importing.source import SourceModel, SourceWindow
+from planning.site.records import panel_triangles
+
+Array = NDArray[np.float64]
+
+
+# Panels that show the same pane twice: a window inside a curtain wall panel, two skins of glass, a drawing doubled.
+
+SAME_ANGLE_RAD = np.radians(10.0)
+SAME_DEPTH_M = 0.6
+"""Panels whose planes are no further apart can be one pane; the cavity of a double-skin facade is 0.2 m and more."""
+
+SAME_SHARE = 0.5
+"""Panels are the same where at least this share of the smaller one's area lies over the other."""
+
+SAME_PLANE_M = 0.01
+"""Nearer planes are one: then the smaller panel goes, else the inner one."""
+
+
+def without_duplicates(corners: Array) -> NDArray[np.int64]:
+    """Indices of the panels to keep, ascending, from corners of shape (m, 4, 3), counter-clockwise from outside.
+
+    A large panel over two or more small ones that fill it goes (the frame of a curtain wall over its panes). Of two
+    that show the same pane the inner one goes, or the smaller one where they lie in one plane.
+    """
+    kept = np.ones(len(corners), np.bool_)
+    pairs = _overlapping_pairs(corners)
+    areas = quad_areas(corners)
+    filled, n_inside = np.zeros(len(corners)), np.zeros(len(corners), np.int64)
+    for i, j, overlap, _ in pairs:
+        small, large = (i, j) if areas[i] < areas[j] else (j, i)
+        filled[large] += overlap
+        n_inside[large] += areas[small] < SAME_SHARE * areas[large]
+    kept[(n_inside >= 2) & (filled >= SAME_SHARE * areas)] = False
+    for i, j, _, j_is_outside_m in pairs:
+        if kept[i] and kept[j]:
+            if abs(j_is_outside_m) > SAME_PLANE_M:
+                kept[i if j_is_outside_m > 0.0 else j] = False
+            else:
+                kept[i if areas[i] < areas[j] else j] = False
+    return np.flatnonzero(kept)
+
+
+def coincident_pairs(corners: Array) -> list[tuple[int, int]]:
+    """Pairs of panels with the same centroid to a millimetre and areas equal to 1 %."""
+    areas = quad_areas(corners)
+    pairs = KDTree(corners.mean(axis=1)).query_pairs(0.001) if len(corners) else set()
+    return sorted((i, j) for i, j in pairs if abs(areas[i] - areas[j]) <= 0.01 * max(areas[i], areas[j]))
+
+
+def _overlapping_pairs(corners: Array) -> list[tuple[int, int, float, float]]:
+    """Pairs (i, j, overlapping area, distance of j outside the plane of i) that may be the same pane."""
+    import shapely
+
+    if len(corners) < 2:
+        return []
+    areas, normals, centres = quad_areas(corners), unit_normals(corners), corners.mean(axis=1)
+    radius = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
+    tree = KDTree(centres)
+    found = []
+    for i in range(len(corners)):
+        # The smaller of two is looked for around the larger, so that each pair is met once and nothing is missed.
+        for j in tree.query_ball_point(centres[i], radius[i] + SAME_DEPTH_M):
+            if (radius[j], j) >= (radius[i], i) or normals[i] @ normals[j] < np.cos(SAME_ANGLE_RAD):
+                continue
+            outside_m = float(normals[i] @ (centres[j] - centres[i]))
+            if abs(outside_m) > SAME_DEPTH_M:
+                continue
+            axes = np.stack(plane_axes(normals[i]), axis=-1)
+            a, b = (shapely.Polygon((corners[k] - centres[i]) @ axes) for k in (i, j))
+            overlap = float(shapely.intersection(a, b).area)
+            if overlap >= SAME_SHARE * areas[j]:
+                found.append((i, j, overlap, outside_m))
+    return found
+
+
+OWN_REACH_M = 1.5
+"""What hides a direction within this distance is the window's own frame, reveal or sill."""
+
+
+MAX_NAMED = 3
+"""Windows named in a note."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panes:
+    """Panels to be, in the order of the file.
+
+    Parameters
+    ----------
+    corners
+        Shape (m, 4, 3), ENU metres, counter-clockwise from outside, lower left first.
+    source_ids
+        One for each.
+    notes
+        What was left out or changed, and how much of the open the panels see.
+    """
+
+    corners: Array
+    source_ids: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def panes_outdoors(source: SourceModel, monitor: Monitor) -> Panes:
+    """Find the panels among the windows of a building."""
+    monitor.report("fitting panels", 0, len(source.windows))
+    quads = [fit_quad(window.outline_enu_m) for window in source.windows]
+    fitted = [(window, quad) for window, quad in zip(source.windows, quads, strict=True) if quad is not None]
+    notes = _counted("windows left out as slivers or without area", len(source.windows) - len(fitted))
+    if not fitted:
+        return Panes(np.zeros((0, 4, 3)), (), tuple(notes))
+    windows = [window for window, _ in fitted]
+    sides = _sides(windows, np.array([quad.corners for _, quad in fitted]), source.building, monitor)
+    kept = np.flatnonzero(sides.is_outdoors)
+    notes += _counted("windows left out as indoor ones, which see nothing of the open", len(windows) - len(kept))
+    if source.repeats_panes:
+        n_outdoors = len(kept)
+        kept = kept[without_duplicates(sides.corners[kept])]
+        notes += _counted("windows left out because another one shows the same pane", n_outdoors - len(kept))
+    else:
+        pairs = [(windows[kept[i]], windows[kept[j]]) for i, j in coincident_pairs(sides.corners[kept])]
+        twice = [f"{first.source_id} = {second.source_id}" for first, second in pairs]
+        notes += _counted("windows that lie exactly on others, where both stay", len(twice), twice)
+    odd = [windows[i].source_id for i in kept if not fitted[i][1].is_exact]
+    notes += _counted("windows that are no quads, for which a rectangle of the same area stands in", len(odd), odd)
+    against = [windows[i].source_id for i in kept if sides.is_turned[i]]
+    notes += _counted("windows that the file has facing into the building, turned around", len(against), against)
+    n_undecided = int((~sides.is_decided[kept]).sum())
+    notes += _counted("windows open on both sides, taken to face away from the building", n_undecided)
+    corners = np.array([start_lower_left(quad) for quad in sides.corners[kept]]).reshape(-1, 4, 3)
+    if len(corners):
+        notes.append(_view(corners, sides.open_share[kept], source.building))
+    return Panes(corners, tuple(windows[i].source_id for i in kept), tuple(notes))
+
+
+def _sides(windows: list[SourceWindow], corners: Array, building: TriangleMesh, monitor: Monitor) -> Sides:
+    triangles = np.concatenate([building.corners_enu_m, panel_triangles(corners)])
+    middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
+    monitor.report("looking outdoors", 0, 1)
+    thickness_m = np.array([window.thickness_m for window in windows])
+    is_oriented = np.array([window.is_oriented for window in windows])
+    return turn_outwards(corners, thickness_m, middle, line_of_sight(triangles), is_oriented)
+
+
+def _view(corners: Array, open_share: Array, building: TriangleMesh) -> str:
+    """How much of their hemispheres the panels see, as a note."""
+    normals = unit_normals(corners)
+    targets = corners.mean(axis=1) + OCCLUSION_OFFSET_M * normals
+    own = 1.0 - open_shares(targets, normals, line_of_sight(building.corners_enu_m), OWN_REACH_M)
+    return (
+        f"{OCCLUSION_OFFSET_M:g} m in front of the panels the building hides "
+        f"{100.0 * (1.0 - open_share.mean()):.0f} % of the directions (worst panel "
+        f"{100.0 * (1.0 - open_share.min()):.0f} %); their own frames and reveals hide {100.0 * own.mean():.0f} % "
+        f"(worst {100.0 * own.max():.0f} %)"
+    )
+
+
+def _counted(what: str, n: int, names: Sequence[str] = ()) -> list[str]:
+    """A note with a count and the first few names; none where there is nothing to count."""
+    if n == 0:
+        return []
+    more = ", ..." if len(names) > MAX_NAMED else ""
+    return [f"{what}: {n}" + (f" ({', '.join(names[:MAX_NAMED])}{more})" if names else "")]

@@ -1,0 +1,211 @@
+"""Best coverage within a number of batteries: views and route chosen together.
+
+Which views to take depends on what flying to them costs, so candidates are chosen by worth per time on the routes
+(`planning.routing.orienteering`, worth being the sections covered). The candidates are those that greedy would take
+first, many times more than fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.errors import InfeasibleError
+from planning.base.progress import Monitor, Stop, Trace
+from planning.coverage.model import CoverageModel, Elements
+from planning.plan import Aircraft, FlightRules, ViewpointArrays
+from planning.request import GreedyParameters
+from planning.routing.flights import Flight, FlightTimes, flight_times
+from planning.routing.orienteering import solve_orienteering
+from planning.routing.sorties import Sorties, plan_sorties
+from planning.viewpoints import cover_kernel as kernel
+from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep
+from planning.viewpoints.greedy import Choice, element_weights
+from planning.viewpoints.improve import cover_state
+from planning.viewpoints.locked import NONE_LOCKED, covered_by
+from planning.viewpoints.problem import ViewProblem, take
+from planning.viewpoints.spacing import ANYWHERE, Apart, apart_of, rounding_spacing_m
+
+Array = NDArray[np.float64]
+
+MAX_CANDIDATES = 700
+"""Candidates whose routes are compared: their leg table takes about a second."""
+
+CHOICE_DEPTHS = (1, 2, 3)
+"""Candidates are the greedy choices for covering each section once, then twice and so on: variety to route by."""
+
+
+REFRESH = 1000
+"""Changes after which the marginal gains are summed up anew, so that rounding cannot build up."""
+
+
+class CoverGain:
+    """Worth of a set of candidates: the weight of the elements they cover (`CoverageGain` of the routing)."""
+
+    def __init__(self, elements: Elements, weights: Array) -> None:
+        self._elements = elements
+        self._state = cover_state(elements, weights)
+        self._n_changes = 0
+
+    @property
+    def value(self) -> float:
+        """Weight covered."""
+        return float(kernel.objective(self._state))
+
+    @property
+    def n_covered(self) -> int:
+        """Number of elements covered."""
+        return int(np.count_nonzero(self._state.counts))
+
+    def marginals(self) -> Array:
+        """What each candidate would add, shape (n,)."""
+        return self._state.gains
+
+    def add(self, candidate: int) -> None:
+        """Put a candidate into the set."""
+        kernel.add_elements(self._state, self._elements.of(candidate))
+        self._count_change()
+
+    def remove(self, candidate: int) -> None:
+        """Take a candidate out of the set."""
+        kernel.remove_elements(self._state, self._elements.of(candidate))
+        self._count_change()
+
+    def _count_change(self) -> None:
+        self._n_changes += 1
+        if self._n_changes % REFRESH == 0:
+            kernel.refresh_gains(self._state)
+
+
+def views_within_budget(
+    problem: ViewProblem,
+    aircraft: Aircraft,
+    rules: FlightRules,
+    n_batteries: int,
+    parameters: GreedyParameters,
+    *,
+    seed: int,
+    stop: Stop,
+    trace: Trace,
+    monitor: Monitor,
+    locked: ViewpointArrays = NONE_LOCKED,
+) -> tuple[ViewpointArrays, float]:
+    """Views that fit into `n_batteries` sorties and cover as much as could be found, and an upper bound on that.
+
+    The bound holds for the candidates that were compared. Views that are `locked` come first in the result, as they
+    are.
+
+    Raises
+    ------
+    InfeasibleError
+        Nothing can be seen within one battery, or the locked views do not fit into as many as there are.
+    """
+    monitor.report("trying viewpoints", 0, 1)
+    weights = element_weights(problem.model, parameters.solid_angle_weights)
+    n_locked = len(locked.heading_rad)
+    n_free, covered = max(0, MAX_CANDIDATES - n_locked), covered_by(problem.model, locked)
+    spacing_m = rounding_spacing_m(aircraft.min_waypoint_spacing_m)
+    choice = Choice(problem, weights, covered, locked, spacing_m, seed, stop, Trace(trace.clock), monitor)
+    free, _, _ = choice.greedily(candidate_pool(problem, seed, parameters.n_candidates), n_free, np.inf)
+    free = shortlist(free, weights, covered, n_free, apart=apart_of(free.views, locked, spacing_m))
+    pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
+    times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
+    gain = CoverGain(pool.elements, weights)
+    selection = solve_orienteering(
+        times.travel_s,
+        times.service_s,
+        times.budget_s,
+        n_batteries,
+        gain,
+        max_stops=max(1, aircraft.max_waypoints - 2),
+        required=_required(times, n_locked, n_batteries, max(1, aircraft.max_waypoints - 2), seed, stop),
+        seed=seed,
+        stop=stop,
+        trace=Trace(trace.clock, lambda _worth: trace.record(gain.n_covered)),
+        monitor=monitor,
+    )
+    chosen = np.array([stop_number for sortie in selection.sorties for stop_number in sortie], np.int64)
+    if len(chosen) == 0:
+        raise InfeasibleError(
+            f"no viewpoint that sees a panel can be reached and left again within {times.budget_s:.0f} s of one battery"
+        )
+    everything = float(weights[np.unique(pool.elements.items)].sum())
+    chosen = np.concatenate([np.arange(n_locked), chosen[chosen >= n_locked]])
+    return take(pool.views, chosen), min(selection.bound, everything)
+
+
+def _required(times: FlightTimes, n_locked: int, n_batteries: int, max_stops: int, seed: int, stop: Stop) -> Sorties:
+    """Sorties through the locked views, which are the first of the table, with nothing else in them."""
+    if n_locked == 0:
+        return ()
+    travel_s, service_s = times.travel_s[: n_locked + 1, : n_locked + 1], times.service_s[:n_locked]
+    sorties = plan_sorties(travel_s, service_s, times.budget_s, max_stops, seed=seed, stop=stop)
+    if len(sorties) > n_batteries:
+        raise InfeasibleError(
+            f"the {n_locked} locked viewpoints alone take {len(sorties)} batteries, but {n_batteries} are allowed; "
+            "unlock some, or allow more batteries"
+        )
+    return sorties
+
+
+def best_flights(
+    model: CoverageModel, views: ViewpointArrays, flights: tuple[Flight, ...], n_batteries: int, n_locked: int = 0
+) -> tuple[Flight, ...]:
+    """At most `n_batteries` of the flights, in order: those go without which least is lost.
+
+    Views that just fitted into the batteries may need one more once they are rounded, moved together and routed anew.
+    Flights with one of the first `n_locked` views stay, even where they are too many.
+    """
+    kept = list(flights)
+    while len(kept) > n_batteries:
+        covered = np.array([model.covered(take(views, flight.views)) for flight in kept])
+        only_here = (covered & (covered.sum(axis=0) == 1)).sum(axis=1)
+        spare = [number for number, flight in enumerate(kept) if (flight.views >= n_locked).all()]
+        if not spare:
+            break
+        del kept[min(spare, key=only_here.__getitem__)]
+    return tuple(kept)
+
+
+def with_fewer_views(model: CoverageModel, views: ViewpointArrays, n_locked: int) -> ViewpointArrays:
+    """The views without the least useful tenth (at least one) of those after the first `n_locked`.
+
+    Raises
+    ------
+    InfeasibleError
+        Only locked views are left.
+    """
+    n_free = len(views.heading_rad) - n_locked
+    if n_free == 0:
+        raise InfeasibleError(
+            f"the {n_locked} locked viewpoints alone need more batteries than are allowed; unlock some, or allow more"
+        )
+    elements = model.elements(views)
+    counts = np.bincount(elements.items, minlength=model.n_elements)
+    losses = [int((counts[elements.of(view)] == 1).sum()) for view in range(n_locked, n_locked + n_free)]
+    dropped = n_locked + np.argsort(losses, kind="stable")[: max(1, n_free // 10)]
+    return take(views, np.setdiff1d(np.arange(n_locked + n_free), dropped))
+
+
+def shortlist(
+    pool: Pool,
+    weights: Array,
+    covered: NDArray[np.int32] | None,
+    n_most: int,
+    depths: Sequence[int] = CHOICE_DEPTHS,
+    apart: Apart = ANYWHERE,
+) -> Pool:
+    """The candidates that greedy takes first, for several depths, beside what is `covered` all the same."""
+    state = cover_state(pool.elements, weights, covered, apart)
+    chosen = np.zeros(min(n_most, len(state.gains)), np.int64)
+    n_chosen = 0
+    for depth in depths:
+        state.depth[0] = depth
+        kernel.refresh_gains(state)
+        state.gains[chosen[:n_chosen]] = -np.inf
+        n_chosen = int(kernel.greedy_steps(state, chosen, n_chosen, len(chosen), np.inf))
+    kept = np.zeros(len(state.gains), np.bool_)
+    kept[chosen[:n_chosen]] = True
+    return keep(pool, kept)

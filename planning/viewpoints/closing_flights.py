@@ -1,0 +1,450 @@
+"""Flights that show wanted sections within given batteries: everything in the shortest time, or else the most."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.errors import InfeasibleError
+from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
+from planning.plan import ViewpointArrays
+from planning.routing.covering import cover_bound_s, shortest_cover
+from planning.routing.flights import ATTEMPTS, Flight, FlightTimes, draw_flights, flight_times, plan_flights
+from planning.routing.orienteering import solve_orienteering
+from planning.routing.tour import nearest_neighbour
+from planning.viewpoints.budget import CoverGain
+from planning.viewpoints.candidates import keep
+from planning.viewpoints.closing_candidates import Candidates, Wanted, candidates
+from planning.viewpoints.greedy import choose_greedily, needed
+from planning.viewpoints.locked import NONE_LOCKED
+from planning.viewpoints.problem import concatenate, take
+from planning.viewpoints.spacing import merge_close_views
+
+# The shortest flight that shows all wanted sections, and what batteries allow of it otherwise.
+#
+# Which candidates are flown, and in which order, is settled together: the shortest route that shows everything
+# (`planning.routing.covering`), or the most that fits into the sorties allowed (`planning.routing.orienteering`).
+
+ROUND_S = 1.5
+"""Longest time spent on one set of candidates before fresh ones are tried."""
+
+IDLE_ROUNDS, LEAST_GAIN = 2, 0.002
+"""The search ends by itself after this many rounds in a row that shortened the flight by less than this part."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shortest:
+    """Views in the order of flight that show all wanted sections that can be shown.
+
+    Parameters
+    ----------
+    shown
+        Numbers of these sections, rising.
+    in_sight
+        Likewise of all that any allowed place was found to show, however far away.
+    duration_s
+        Time of a single flight through all, take-off and landing apart; it may be longer than a battery lasts.
+    bound_s
+        No single flight over the candidates that were compared last is shorter and shows as much.
+    """
+
+    views: ViewpointArrays
+    shown: NDArray[np.int32]
+    in_sight: NDArray[np.int32]
+    duration_s: float
+    bound_s: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Most:
+    """Views that fit into the sorties allowed.
+
+    Parameters
+    ----------
+    groups
+        Views of each sortie in the order of flight.
+    bound
+        No such sorties over the candidates that were compared show more wanted sections.
+    """
+
+    groups: tuple[ViewpointArrays, ...]
+    bound: int
+
+
+def show_all(
+    wanted: Wanted,
+    known: ViewpointArrays,
+    *,
+    seed: int = 0,
+    stop: Stop = never,
+    durations: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Shortest:
+    """Shortest single flight found that shows all wanted sections that can be shown; anytime.
+
+    It is no longer than one through those of the `known` views, in their order, that are needed, by the times that
+    solvers use (`planning.routing.flights.flight_times`).
+
+    Parameters
+    ----------
+    durations
+        Gets the duration whenever it falls.
+    """
+    rng = np.random.default_rng(seed)
+    search = _Shortening(wanted, known, Trace() if durations is None else durations)
+    in_sight = np.zeros(0, np.int32)
+    idle = 0
+    for round_number in itertools.count():
+        found = candidates(wanted, search.views, rng, monitor)
+        in_sight = np.union1d(in_sight, found.in_sight)
+        limit = any_of(stop, TimeLimit(ROUND_S))
+        idle = 0 if search.among(found, seed + round_number, limit, monitor) else idle + 1
+        if idle == IDLE_ROUNDS or len(found.shown) == 0 or stop():
+            break
+    monitor.report("bounding the optimum", 0, 1)
+    return Shortest(search.views, found.shown, in_sight, search.duration_s, _bound_s(found))
+
+
+class _Shortening:
+    """The shortest flight so far, through the candidates of round after round."""
+
+    def __init__(self, wanted: Wanted, known: ViewpointArrays, durations: Trace) -> None:
+        self.views = known
+        self.duration_s, self._n_shown = np.inf, 0
+        self._wanted, self._durations = wanted, durations
+
+    def among(self, found: Candidates, seed: int, stop: Stop, monitor: Monitor) -> bool:
+        """Look for a flight among candidates that shows more or is shorter; whether there was one.
+
+        The first candidates are the views at hand, so none shows less.
+        """
+        n_known = int(np.count_nonzero(found.is_known))
+        gain = CoverGain(found.pool.elements, np.ones(len(self._wanted.elements)))
+        starts = [np.arange(n_known)] if np.isfinite(self.duration_s) else self._starts(found)
+        travel_s, service_s = found.times.travel_s, found.times.service_s
+        covers = []
+        for start in starts:
+            covers.append(shortest_cover(travel_s, service_s, gain, start.tolist(), max_rounds=0))
+            for number in covers[-1].route:
+                gain.remove(number)
+        first = min(covers, key=lambda cover: cover.duration_s)
+        trace = Trace(self._durations.clock, lambda point: self._record(point.value))
+        cover = shortest_cover(
+            travel_s, service_s, gain, first.route, seed=seed, stop=stop, trace=trace, monitor=monitor
+        )
+        shows_more = len(found.shown) > self._n_shown
+        is_shorter = cover.duration_s < self.duration_s * (1.0 - LEAST_GAIN)
+        if shows_more or cover.duration_s < self.duration_s:
+            self._n_shown = len(found.shown)
+            self.views, self.duration_s = take(found.pool.views, np.array(cover.route, np.int64)), cover.duration_s
+        return shows_more or is_shorter
+
+    def _starts(self, found: Candidates) -> list[NDArray[np.int64]]:
+        """Two routes to begin with: the known views that are needed, and the fewest views, from each to the nearest."""
+        weights = np.ones(len(self._wanted.elements))
+        is_first = np.flatnonzero(found.is_known)
+        known = is_first[needed(keep(found.pool, found.is_known).elements, weights)]
+        fewest, _ = choose_greedily(found.pool, weights, len(found.is_known), np.inf, Trace(), QUIET)
+        places = np.concatenate([[0], fewest + 1])
+        order = nearest_neighbour(found.times.travel_s[np.ix_(places, places)])
+        return [known, fewest[order[1:] - 1]]
+
+    def _record(self, duration_s: float) -> None:
+        points = self._durations.points
+        if not points or duration_s < points[-1].value:
+            self._durations.record(duration_s)
+
+
+def _bound_s(found: Candidates) -> float:
+    elements, shown = found.pool.elements, found.shown
+    number = np.zeros(int(shown.max(initial=0)) + 1, np.int32)
+    number[shown] = np.arange(len(shown), dtype=np.int32)
+    covers = [number[elements.of(view)] for view in range(len(found.is_known))]
+    return cover_bound_s(found.times.travel_s, found.times.service_s, covers, len(shown))
+
+
+def show_most(
+    wanted: Wanted,
+    known: ViewpointArrays,
+    budget_s: float,
+    n_sorties: int,
+    *,
+    seed: int = 0,
+    stop: Stop = never,
+    trace: Trace | None = None,
+    monitor: Monitor = QUIET,
+) -> Most:
+    """Views within `n_sorties` of `budget_s` that show as many wanted sections as could be found; anytime.
+
+    `trace` gets the number of sections whenever it rises.
+    """
+    found = candidates(wanted, known, np.random.default_rng(seed), monitor)
+    selection = solve_orienteering(
+        found.times.travel_s,
+        found.times.service_s,
+        budget_s,
+        n_sorties,
+        CoverGain(found.pool.elements, np.ones(len(wanted.elements))),
+        max_stops=max(1, wanted.aircraft.max_waypoints - 2),
+        seed=seed,
+        stop=stop,
+        trace=trace,
+        monitor=monitor,
+    )
+    groups = tuple(take(found.pool.views, np.array(sortie, np.int64)) for sortie in selection.sorties)
+    return Most(groups, int(min(selection.bound + 1e-6, len(found.shown))))
+
+
+SHARING_S = 1.0
+"""Longest time for sharing views out among full batteries."""
+
+TIGHTER = 0.995
+"""Beyond the share by which a sortie was too long, the time allowed is shortened by this factor."""
+
+FIRST_SHARE = 0.5
+"""Part of the time for the shortest flight through everything where the batteries may not allow it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Batteries:
+    """What may be flown on.
+
+    Parameters
+    ----------
+    on_board_s
+        Time that the first sortie may take between take-off and landing, on a battery that was flown before; None
+        where it has been changed, zero or less where it does not suffice.
+    n_full
+        Full batteries, beside the one on board; None: as many as it takes.
+    full_s
+        Time that each of these allows.
+    """
+
+    on_board_s: float | None
+    n_full: int | None
+    full_s: float
+
+    @property
+    def longest_s(self) -> float:
+        """Longest sortie that any of them allows."""
+        full_s = 0.0 if self.n_full == 0 else self.full_s
+        return max(full_s, self.on_board_s or 0.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClosingFlights:
+    """Flights and what is known about them.
+
+    Parameters
+    ----------
+    flights
+        Their views are numbers in `views`.
+    on_board
+        Whether the first of them is for the battery on board.
+    in_sight, in_reach
+        The wanted elements that some allowed place shows, and those of them that the batteries reach at all.
+    shortest_s
+        As `closing.Shortest.bound_s`; None where the batteries do not allow all that is in reach.
+    bound
+        No flights within the batteries over the views compared show more wanted elements.
+    """
+
+    views: ViewpointArrays
+    flights: tuple[Flight, ...]
+    on_board: bool
+    in_sight: NDArray[np.int64]
+    in_reach: NDArray[np.int64]
+    shortest_s: float | None
+    bound: int
+
+
+def closing_flights(
+    wanted: Wanted,
+    known: ViewpointArrays,
+    batteries: Batteries,
+    *,
+    seed: int,
+    limit: TimeLimit,
+    stop: Stop,
+    trace: Trace,
+    durations: Trace,
+    monitor: Monitor = QUIET,
+) -> ClosingFlights:
+    """Flights that show what is wanted; the shortest found, or those that show most within the batteries.
+
+    Parameters
+    ----------
+    known
+        Views that are worth trying first.
+    limit, stop
+        The end of the time there is, and a wish to end earlier.
+    trace
+        Gets the number of wanted elements that are shown.
+    durations
+        Gets the duration of the shortest single flight whenever it falls.
+
+    Returns
+    -------
+    flights
+        Without any where nothing wanted is within reach.
+
+    Raises
+    ------
+    InfeasibleError
+        The wind is too strong for the aircraft, or no flight is short enough.
+    """
+    return _Search(known, batteries, seed, limit, stop, trace, durations, monitor).run(wanted)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Part:
+    """Flights over views of their own."""
+
+    views: ViewpointArrays
+    flights: tuple[Flight, ...]
+
+
+@dataclass(slots=True, eq=False)
+class _Search:
+    known: ViewpointArrays
+    batteries: Batteries
+    seed: int
+    limit: TimeLimit
+    stop: Stop
+    trace: Trace
+    durations: Trace
+    monitor: Monitor
+
+    def run(self, wanted: Wanted) -> ClosingFlights:
+        """On the battery on board where it allows all, else on as few full ones as do, else on all there are."""
+        on_board_s, n_full = self.batteries.on_board_s or 0.0, self.batteries.n_full
+        is_limited = self.batteries.on_board_s is not None or n_full is not None
+        first = self._shortest(wanted, FIRST_SHARE if is_limited else 1.0, self.durations)
+        everything = len(first.shown)
+        if everything == 0:
+            return self._result(wanted, first, [], None, 0)
+        if on_board_s > 0.0:
+            part = self._drawn(wanted, [first.views])
+            if _fits(part, wanted, on_board_s, 1):
+                return self._result(wanted, first, [part], first.bound_s, everything, on_board=True)
+        if n_full == 0:
+            part, bound = self._most(wanted, first, on_board_s, 1)
+            return self._result(wanted, first, [part], None, bound, on_board=True)
+        part = self._on_full(wanted, first)
+        if n_full is None or len(part.flights) <= n_full:
+            return self._result(wanted, first, [part], first.bound_s, everything)
+        if on_board_s <= 0.0:
+            part, bound = self._most(wanted, first, self.batteries.full_s, n_full)
+            return self._result(wanted, first, [part], None, bound)
+        parts = [self._most(wanted, first, on_board_s, 1)[0]]
+        rest = replace(wanted, elements=_left(wanted, parts))
+        if len(rest.elements):
+            parts += self._rest(rest, n_full)
+        return self._result(wanted, first, parts, None, everything, on_board=len(parts[0].flights) > 0)
+
+    def _rest(self, wanted: Wanted, n_full: int) -> list[_Part]:
+        """What the battery on board left, on full ones."""
+        shortest = self._shortest(wanted, FIRST_SHARE, Trace(self.trace.clock))
+        if len(shortest.shown) == 0:
+            return []
+        part = self._on_full(wanted, shortest)
+        if len(part.flights) <= n_full:
+            return [part]
+        return [self._most(wanted, shortest, self.batteries.full_s, n_full)[0]]
+
+    def _shortest(self, wanted: Wanted, share: float, durations: Trace) -> Shortest:
+        until = any_of(self.stop, TimeLimit(share * self.limit.remaining_s()))
+        return show_all(wanted, self.known, seed=self.seed, stop=until, durations=durations, monitor=self.monitor)
+
+    def _on_full(self, wanted: Wanted, shortest: Shortest) -> _Part:
+        """Sorties through all views, on as many full batteries as it takes."""
+        part = self._drawn(wanted, [shortest.views])
+        if _fits(part, wanted, self.batteries.full_s, 1):
+            return part
+        times = self._times(wanted, part.views)
+        until = any_of(self.stop, TimeLimit(SHARING_S))
+        flights = plan_flights(
+            times, part.views, wanted.aircraft, wanted.rules, seed=self.seed, stop=until, monitor=self.monitor
+        )
+        return _Part(part.views, flights)
+
+    def _drawn(self, wanted: Wanted, groups: Sequence[ViewpointArrays]) -> _Part:
+        """One flight through each group of views, in order."""
+        if not groups:
+            return _Part(NONE_LOCKED, ())
+        covered = np.where(wanted.mask(), 0, 1).astype(np.int32)
+        spacing_m = wanted.aircraft.min_waypoint_spacing_m
+        views = merge_close_views(wanted.problem, concatenate(list(groups)), spacing_m, covered=covered)
+        ends = np.cumsum([len(group.heading_rad) for group in groups])
+        sorties = tuple(
+            tuple(range(end - len(group.heading_rad), end)) for end, group in zip(ends, groups, strict=True)
+        )
+        times = self._times(wanted, views)
+        return _Part(views, draw_flights(times, sorties, views, wanted.aircraft, wanted.rules, self.monitor))
+
+    def _times(self, wanted: Wanted, views: ViewpointArrays) -> FlightTimes:
+        return flight_times(wanted.problem.roadmap, views, wanted.aircraft, wanted.rules, self.monitor)
+
+    def _most(self, wanted: Wanted, shortest: Shortest, budget_s: float, n_sorties: int) -> tuple[_Part, int]:
+        """Sorties that show most, and the bound on that; tighter ones where exact durations do not fit."""
+        known = concatenate([shortest.views, self.known])
+        allowed_s, most = budget_s, 0
+        for attempt in range(ATTEMPTS):
+            until = any_of(self.stop, TimeLimit(self.limit.remaining_s() / (ATTEMPTS - attempt)))
+            found = show_most(
+                wanted, known, allowed_s, n_sorties, seed=self.seed, stop=until, trace=self.trace, monitor=self.monitor
+            )
+            most = max(most, found.bound)
+            part = self._drawn(wanted, found.groups)
+            if _fits(part, wanted, budget_s, n_sorties):
+                return part, most
+            allowed_s *= TIGHTER * budget_s / max(_longest_s(part, wanted), budget_s)
+        raise InfeasibleError(
+            f"no flight through missing sections was found that fits {wanted.aircraft.name}'s waypoint limit and the "
+            f"{budget_s:.0f} s that the battery allows; change the battery"
+        )
+
+    def _result(
+        self,
+        wanted: Wanted,
+        first: Shortest,
+        parts: Sequence[_Part],
+        bound_s: float | None,
+        bound: int,
+        *,
+        on_board: bool = False,
+    ) -> ClosingFlights:
+        self.trace.record(len(wanted.elements) - len(_left(wanted, parts)))
+        offsets = np.cumsum([0, *(len(part.views.heading_rad) for part in parts)])
+        flights = tuple(
+            replace(flight, views=flight.views + offset)
+            for part, offset in zip(parts, offsets[:-1], strict=True)
+            for flight in part.flights
+        )
+        views = concatenate([NONE_LOCKED, *(part.views for part in parts)])
+        in_sight, in_reach = wanted.elements[first.in_sight], wanted.elements[first.shown]
+        return ClosingFlights(views, flights, on_board, in_sight, in_reach, bound_s, bound)
+
+
+def _fits(part: _Part, wanted: Wanted, budget_s: float, n_sorties: int) -> bool:
+    """Whether sorties are few enough, and each within its time and the aircraft's waypoints."""
+    most_points = max((len(flight.path_enu_m) - 2 for flight in part.flights), default=0)
+    is_short = _longest_s(part, wanted) <= budget_s and most_points <= wanted.aircraft.max_waypoints
+    return len(part.flights) <= n_sorties and is_short
+
+
+def _longest_s(part: _Part, wanted: Wanted) -> float:
+    """Longest time between take-off and landing."""
+    return max((flight.duration_s for flight in part.flights), default=0.0) - wanted.rules.takeoff_landing_s
+
+
+def _left(wanted: Wanted, parts: Sequence[_Part]) -> NDArray[np.int64]:
+    """Wanted elements that no part shows."""
+    shown = np.zeros(wanted.problem.model.n_elements, np.bool_)
+    for part in parts:
+        shown[wanted.problem.model.elements(part.views).items] = True
+    return wanted.elements[~shown[wanted.elements]]

@@ -1,0 +1,225 @@
+"""From a site to a problem that optimisers can work on: free space, effects, reachability, and what can be flown to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from planning.base.effects import Decision, Wish, decide
+from planning.base.errors import InfeasibleError
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor, Stop, never
+from planning.coverage.model import CoverageModel
+from planning.coverage.occlusion import Occlusion, OcclusionScene
+from planning.coverage.positions import spread_positions
+from planning.coverage.reach_kernel import UNREACHABLE
+from planning.coverage.reachability import MAX_CELLS, MAX_POSITIONS, find_reachable
+from planning.coverage.sections import SectionGrid, panel_frames
+from planning.geo.line_of_sight import line_of_sight
+from planning.plan import Camera, Constraints, sharp_distance_m, usual_gsd_m
+from planning.request import Precision
+from planning.routing.roadmap import build_roadmap
+from planning.site.free_space import FreeSpace, free_space
+from planning.site.records import SiteModel, panel_corners, require_panels
+from planning.viewpoints.problem import ViewProblem, nothing_to_see
+
+N_PLACES = 3000
+"""Allowed places on which effects look at the scene."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prepared:
+    """A problem with the decisions that shaped it.
+
+    Parameters
+    ----------
+    site_model
+        The site that was prepared.
+    constraints
+        As asked for, with occlusion as it was decided, and the lowest height and largest pixel that hold.
+    effects
+        Decisions of all effects.
+    findings
+        What the pilot should know about the site: panels that nobody can see, distances that had to be lowered.
+    seed
+        Of everything random in it.
+    is_cut_short
+        Whether it was stopped before everything was decided that could be.
+    """
+
+    site_model: SiteModel
+    problem: ViewProblem
+    constraints: Constraints
+    effects: tuple[Decision, ...]
+    findings: tuple[Finding, ...]
+    seed: int = 0
+    is_cut_short: bool = False
+
+    def unfit_for(
+        self, site_model: SiteModel, camera: Camera, constraints: Constraints, precision: Precision, seed: int
+    ) -> str:
+        """What preparing with these arguments would do otherwise; empty where it comes to the same.
+
+        The site's checksum does not matter: it changes when the site is saved.
+        """
+        is_by_user = any(effect.decided_by == "user" for effect in self.effects)
+        asked = replace(self.constraints, occlusion=self.constraints.occlusion if is_by_user else "auto")
+        constraints = settled(constraints, site_model, camera)
+        differs = {
+            "site": not is_same_place(site_model, self.site_model),
+            "camera": camera != self.problem.model.camera,
+            "constraints": constraints != asked,
+            "precision": precision != self.problem.model.precision,
+            "seed": seed != self.seed,
+        }
+        return ", ".join(name for name, is_other in differs.items() if is_other)
+
+
+def settled(constraints: Constraints, site_model: SiteModel, camera: Camera) -> Constraints:
+    """The constraints with the lowest height and the largest pixel of sharp views that hold on a site for a camera."""
+    lowest_m = site_model.site.airspace.lowest_height_m(constraints.min_height_above_ground_m)
+    wanted_mm = constraints.wanted_gsd_mm
+    if wanted_mm is None:
+        wanted_mm = round(1000.0 * usual_gsd_m(camera, constraints.min_distance_m), 6)
+    return replace(constraints, min_height_above_ground_m=lowest_m, wanted_gsd_mm=wanted_mm)
+
+
+def is_same_place(first: SiteModel, second: SiteModel) -> bool:
+    """Whether two sites have the same content and geometry; checksums, which change with saving, do not matter."""
+    if first is second:
+        return True
+    meshes = zip((first.building, *first.obstacles), (second.building, *second.obstacles), strict=True)
+    return first.site == second.site and all(
+        a is b or (np.array_equal(a.vertices_enu_m, b.vertices_enu_m) and np.array_equal(a.triangles, b.triangles))
+        for a, b in meshes
+    )
+
+
+def coverage_model(
+    site_model: SiteModel, space: FreeSpace, camera: Camera, constraints: Constraints, precision: Precision = "f32"
+) -> CoverageModel:
+    """Coverage model for constraints whose occlusion is decided (`on` or `off`).
+
+    Raises
+    ------
+    InputError
+        The site has no panels.
+    """
+    require_panels(site_model.site)
+    if constraints.occlusion == "auto":
+        raise ValueError("occlusion is not decided yet")
+    return CoverageModel(
+        panel_frames(panel_corners(site_model.site)),
+        camera,
+        SectionGrid(constraints.section_step_deg),
+        whole_panel=constraints.whole_panel,
+        max_distance_m=constraints.max_distance_m,
+        sharp_m=sharp_distance_m(camera, constraints),
+        sight=line_of_sight(space.solids.bvh.corners) if constraints.occlusion == "on" else None,
+        precision=precision,
+    )
+
+
+def decide_occlusion(site_model: SiteModel, space: FreeSpace, wish: Wish, seed: int = 0) -> Decision:
+    """Whether occlusion is taken into account on this site, and why.
+
+    Raises
+    ------
+    InputError
+        The site has no panels.
+    """
+    require_panels(site_model.site)
+    frames = panel_frames(panel_corners(site_model.site))
+    places = spread_positions(space, frames, N_PLACES, np.random.default_rng(seed))
+    return decide(Occlusion(), OcclusionScene(frames, space.solids.bvh.corners, places), wish)
+
+
+def prepare(
+    site_model: SiteModel,
+    camera: Camera,
+    constraints: Constraints,
+    *,
+    precision: Precision = "f32",
+    max_positions: int = MAX_POSITIONS,
+    max_cells: int = MAX_CELLS,
+    seed: int = 0,
+    stop: Stop = never,
+    monitor: Monitor = QUIET,
+) -> Prepared:
+    """Prepare a site.
+
+    Raises
+    ------
+    InputError
+        The site has no panels.
+    InfeasibleError
+        Home cannot be used, the airspace is empty, or no allowed viewpoint sees any panel.
+    """
+    require_panels(site_model.site)
+    monitor.report("reading the site", 0, 1)
+    constraints = settled(constraints, site_model, camera)
+    space = free_space(site_model, constraints.min_distance_m, constraints.min_height_above_ground_m)
+    decision = decide_occlusion(site_model, space, wish_of(constraints), seed)
+    decided = replace(constraints, occlusion="on" if decision.on else "off")
+    model = coverage_model(site_model, space, camera, decided, precision)
+    if len(spread_positions(space, model.frames, N_PLACES, np.random.default_rng(seed))) == 0:
+        raise InfeasibleError(
+            f"airspace: no place in it keeps {constraints.min_distance_m:g} m from the building and all obstacles; "
+            "widen the airspace or lower the minimum distance"
+        )
+    reachability = find_reachable(model, space, seed, max_positions, max_cells, stop, monitor)
+    is_cut_short = stop()
+    if reachability.upper_bound == 0:
+        raise nothing_to_see()
+    monitor.report("finding ways around", 0, 1)
+    problem = ViewProblem(model, space, reachability, build_roadmap(space, seed))
+    return Prepared(site_model, problem, decided, (decision,), _findings(site_model, problem), seed, is_cut_short)
+
+
+def wish_of(constraints: Constraints) -> Wish:
+    """What the constraints say of occlusion, as a wish."""
+    wishes: dict[str, Wish] = {"auto": "auto", "on": "on", "off": "off"}
+    return wishes[constraints.occlusion]
+
+
+def _findings(site_model: SiteModel, problem: ViewProblem) -> tuple[Finding, ...]:
+    found = []
+    space, model = problem.space, problem.model
+    inside = space.solids.clearance_m(model.targets_enu_m, 1.0) < 0
+    n_possible = (problem.reachability.verdicts != UNREACHABLE).sum(axis=1)
+    for index, panel in enumerate(site_model.site.panels):
+        if inside[index]:
+            found.append(
+                Finding(
+                    Severity.WARNING,
+                    "panel-faces-inwards",
+                    f"panel '{panel.id}' looks into a solid: its corners may be clockwise, or the mesh covers it",
+                    panel.id,
+                )
+            )
+        elif n_possible[index] == 0:
+            found.append(
+                Finding(
+                    Severity.WARNING,
+                    "panel-unseen",
+                    f"no allowed viewpoint sees panel '{panel.id}'",
+                    panel.id,
+                    0.0,
+                    float(model.grid.n_sections),
+                    "sections",
+                )
+            )
+    if space.no_fly_distance_m < space.min_distance_m:
+        found.append(
+            Finding(
+                Severity.WARNING,
+                "home-near-no-fly",
+                f"home stands {space.no_fly_distance_m:.1f} m from a no-fly volume; no more than that is kept from it",
+                "home",
+                space.no_fly_distance_m,
+                space.min_distance_m,
+                "m",
+            )
+        )
+    return tuple(found)

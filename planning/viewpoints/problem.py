@@ -1,0 +1,101 @@
+"""What optimisers work on, what they are asked for and what they return."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.errors import InfeasibleError
+from planning.base.progress import Monitor, Stop, Trace
+from planning.coverage.model import CoverageModel
+from planning.coverage.reachability import Reachability
+from planning.plan import ViewpointArrays
+from planning.routing.roadmap import Roadmap
+from planning.site.free_space import SAFETY_MARGIN_M, FreeSpace
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ViewProblem:
+    """A site ready for optimisation: what counts, where viewpoints may be, what can be reached and flown to."""
+
+    model: CoverageModel
+    space: FreeSpace
+    reachability: Reachability
+    roadmap: Roadmap
+
+    def flyable(self, positions_enu_m: NDArray[np.float64], margin_m: float = SAFETY_MARGIN_M) -> NDArray[np.bool_]:
+        """Positions, shape (n, 3), that are allowed and can be flown to from home."""
+        allowed = self.space.is_allowed(positions_enu_m, margin_m)
+        asked = np.flatnonzero(allowed)
+        allowed[asked] = self.roadmap.connected_to_home(positions_enu_m[asked])
+        return allowed
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """How many views, or how much coverage with as few as possible. Exactly one is set.
+
+    `share` is relative to the sections known to be reachable.
+    """
+
+    n_views: int | None = None
+    share: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.n_views is None) == (self.share is None):
+            raise ValueError("expected either n_views or share")
+        if self.n_views is not None and self.n_views < 1:
+            raise ValueError(f"n_views: expected 1 or more, got {self.n_views}")
+        if self.share is not None and not 0.0 < self.share <= 1.0:
+            raise ValueError(f"share: expected more than 0 and at most 1, got {self.share}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ViewSet:
+    """Chosen views, in no order that matters.
+
+    `bound` is an upper bound on what as many views of the same candidates could cover; None where a method has none.
+    """
+
+    views: ViewpointArrays
+    bound: float | None = None
+
+
+class Optimiser(Protocol):
+    """One method of choosing views."""
+
+    def __call__(
+        self, problem: ViewProblem, goal: Goal, *, seed: int, stop: Stop, trace: Trace, monitor: Monitor
+    ) -> ViewSet:
+        """Choose views; when `stop` asks for an end, return the best so far.
+
+        Raises
+        ------
+        InfeasibleError
+            There is no allowed viewpoint that sees anything.
+        """
+
+
+def concatenate(parts: list[ViewpointArrays]) -> ViewpointArrays:
+    """All views of several arrays, in order."""
+    return ViewpointArrays(
+        np.concatenate([part.positions_enu_m for part in parts]).reshape(-1, 3),
+        np.concatenate([part.heading_rad for part in parts]),
+        np.concatenate([part.pitch_rad for part in parts]),
+    )
+
+
+def take(views: ViewpointArrays, index: NDArray[np.int64] | NDArray[np.bool_]) -> ViewpointArrays:
+    """Some of the views."""
+    return ViewpointArrays(views.positions_enu_m[index], views.heading_rad[index], views.pitch_rad[index])
+
+
+def nothing_to_see() -> InfeasibleError:
+    """The error for a site on which no allowed viewpoint sees a panel."""
+    return InfeasibleError(
+        "no allowed viewpoint sees any panel: the airspace may be empty or too close to the building, the panels' "
+        "corners clockwise (normals pointing inwards), or the minimum distance too large"
+    )

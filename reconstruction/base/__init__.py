@@ -1,0 +1,1 @@
+"""What all of reconstruction stands on: cameras of photos, rays against meshes, files of tensors."""

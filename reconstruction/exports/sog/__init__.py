@@ -1,0 +1,1 @@
+"""SOG files (PlayCanvas)."""

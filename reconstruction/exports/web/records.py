@@ -1,0 +1,174 @@
+"""Records of panes as a web page has them: what is shown of each object, and columns that panes are coloured by.
+
+Rows are plain mappings with `global_id`, `record` (`attribute`, `inspection`, `defect`, `maintenance`, `document`) and
+the fields that `reconstruction.records.entries` has, or any others: what is not known is shown by its own name.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from planning.base.errors import InputError
+from planning.geo.frames import Vec3
+from reconstruction.objects.gs_scene import GsElement
+
+Row = Mapping[str, Any]
+Plain = str | float | bool | None
+
+RECORDS = ("attribute", "inspection", "defect", "maintenance", "document")
+
+MAX_RECORDS = 1_000_000
+MAX_FIELDS = 64
+MAX_TEXT = 20_000
+MAX_PLACES = 1000
+
+NOT_SHOWN = frozenset({"global_id", "key", "sha256"})
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A value of each pane.
+
+    Parameters
+    ----------
+    name
+        Of an attribute as its maker wrote it; those that the page translates begin with `:`.
+    type
+        `text`, `number`, `date` or `yes/no`.
+    values
+        By pane; None where there is none.
+    """
+
+    name: str
+    type: str
+    unit: str
+    values: tuple[Plain, ...]
+
+
+def by_object(rows: Iterable[Row], known: frozenset[str]) -> tuple[dict[str, list[dict[str, Any]]], int]:
+    """Records of each object by its GlobalId, and how many belong to none of `known`.
+
+    Raises
+    ------
+    InputError
+        A record lacks its object or kind, or holds what no page can show: other than texts, finite numbers, truths,
+        and lists of places.
+    """
+    found: dict[str, list[dict[str, Any]]] = {}
+    n_strays = 0
+    for number, row in enumerate(rows, 1):
+        if number > MAX_RECORDS:
+            raise InputError(f"records: there are more than {MAX_RECORDS}; leave some out")
+        record = _checked(row, number)
+        global_id = row["global_id"]
+        if global_id in known:
+            found.setdefault(global_id, []).append(record)
+        else:
+            n_strays += 1
+    return found, n_strays
+
+
+def _checked(row: Row, number: int) -> dict[str, Any]:
+    place = f"record {number}"
+    if not isinstance(row.get("global_id"), str):
+        raise InputError(f"{place}: global_id: expected the GlobalId of an object, got {row.get('global_id')!r:.60}")
+    if row.get("record") not in RECORDS:
+        raise InputError(f"{place}: record: expected one of {', '.join(RECORDS)}, got {row.get('record')!r:.60}")
+    if len(row) > MAX_FIELDS:
+        raise InputError(f"{place}: has {len(row)} fields; at most {MAX_FIELDS} are shown")
+    return {
+        name: _plain(value, f"{place}: {name:.60}")
+        for name, value in row.items()
+        if name not in NOT_SHOWN and value is not None and value != ""
+    }
+
+
+def _plain(value: Any, place: str) -> Any:
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, str):
+        if len(value) > MAX_TEXT:
+            raise InputError(f"{place}: expected at most {MAX_TEXT} characters, got {len(value)}")
+        return value
+    if isinstance(value, int | float):
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise InputError(f"{place}: expected a finite number, got {value!r:.60}")
+        return int(number) if number.is_integer() and abs(number) < 2**53 else number
+    if isinstance(value, list | tuple) and len(value) <= MAX_PLACES and all(_is_place(each) for each in value):
+        return [[float(u), float(v)] for u, v in value]
+    raise InputError(f"{place}: expected a text, a number, yes or no, or places on a pane; got {type(value).__name__}")
+
+
+def _is_place(value: Any) -> bool:
+    return (
+        isinstance(value, list | tuple)
+        and len(value) == 2
+        and all(isinstance(part, int | float) and math.isfinite(part) for part in value)
+    )
+
+
+def columns_of(elements: Sequence[GsElement], records: Mapping[str, Sequence[Row]]) -> list[Column]:
+    """What panes can be coloured by: attributes, what inspections and defects come to, sizes."""
+    of_panes = [records.get(element.global_id, ()) for element in elements]
+    sizes = [size_m(element.corners_enu_m) for element in elements]
+    inspected = [_latest(rows, "inspection", "date") for rows in of_panes]
+    due = [_latest(rows, "maintenance", "next_due") for rows in of_panes]
+    open_defects = [[row for row in rows if _is_open(row)] for rows in of_panes]
+    severities = [
+        [row["severity"] for row in rows if isinstance(row.get("severity"), int | float)] for rows in open_defects
+    ]
+    computed = [
+        Column(":last_inspection", "date", "", tuple(inspected)),
+        Column(":worst_defect", "number", "", tuple(max(found, default=None) for found in severities)),
+        Column(":open_defects", "number", "", tuple(len(found) or None for found in open_defects)),
+        Column(":next_due", "date", "", tuple(due)),
+    ]
+    attributes = _attributes(of_panes)
+    measured = [
+        Column(":width", "number", "m", tuple(round(width, 3) for width, _ in sizes)),
+        Column(":height", "number", "m", tuple(round(height, 3) for _, height in sizes)),
+    ]
+    return [column for column in (*computed, *attributes, *measured) if any(v is not None for v in column.values)]
+
+
+def _attributes(of_panes: Sequence[Sequence[Row]]) -> list[Column]:
+    found: dict[tuple[str, str, str], list[Plain]] = {}
+    for pane, rows in enumerate(of_panes):
+        for row in rows:
+            if row["record"] == "attribute" and "name" in row and "value" in row:
+                key = str(row["name"]), _type(row), str(row.get("unit", ""))
+                found.setdefault(key, [None] * len(of_panes))[pane] = row["value"]
+    return [Column(name, type_, unit, tuple(found[name, type_, unit])) for name, type_, unit in sorted(found)]
+
+
+def _type(row: Row) -> str:
+    value = row["value"]
+    if isinstance(value, bool):
+        return "yes/no"
+    if isinstance(value, int | float):
+        return "number"
+    return "date" if row.get("type") == "date" else "text"
+
+
+def _is_open(row: Row) -> bool:
+    return bool(row["record"] == "defect" and row.get("status", "open") == "open")
+
+
+def _latest(rows: Sequence[Row], record: str, field: str) -> str | None:
+    return max((str(row[field]) for row in rows if row["record"] == record and field in row), default=None)
+
+
+def size_m(corners_enu_m: Sequence[Vec3]) -> tuple[float, float]:
+    """Width and height of a pane: means of opposite edges, from c0 to c1 and from c0 to c3."""
+    corners = np.asarray(corners_enu_m, np.float64)
+    edges = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+    return float(edges[0] + edges[2]) / 2.0, float(edges[1] + edges[3]) / 2.0

@@ -1,0 +1,1 @@
+"""Environment maps on cubes, as methods of others use them."""

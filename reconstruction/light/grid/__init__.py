@@ -1,0 +1,1 @@
+"""Mirrored light as a radiance grid."""

@@ -1,0 +1,207 @@
+"""Cameras and panels as tensors: rays through any places of any pixels are made from them when they are needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.light import glass_ray_kernels as kernels
+from reconstruction.light.photo_set import PanelPlanes
+
+LEAST_COSINE = 1e-3
+"""Between a ray and its panel's normal: below, at 89.94 degrees, a pixel is as long as a hundred panels."""
+
+UNBENT_STEPS = 12
+"""Of the fixed-point iteration that takes Brown's distortion away: each leaves a fifth of the error at most."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Met:
+    """Where n rays meet the planes of their panels.
+
+    Parameters
+    ----------
+    points_m
+        World places less the middle of all panels, shape (n, 3); meaningless where `cosines` is under `LEAST_COSINE`.
+    directions
+        Unit, ENU, from the camera, shape (n, 3).
+    cosines
+        Against the outward normals, shape (n,); negative where a panel is seen from behind.
+    shares
+        Along the lower edge and along the left one, 0 to 1 inside a panel, shape (n, 2).
+    distances_m
+        From the camera, shape (n,).
+    """
+
+    points_m: Tensor
+    directions: Tensor
+    cosines: Tensor
+    shares: Tensor
+    distances_m: Tensor
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RayTable:
+    """Of p photos and m panels, all float64; places are ENU less `middle_m`.
+
+    Parameters
+    ----------
+    positions_m, enu_from_cam
+        Of the cameras, shapes (p, 3) and (p, 3, 3).
+    lenses
+        fx, fy, cx, cy in pixels, then the picture's width and height, shape (p, 6).
+    distortions
+        Brown's k1, k2, p1, p2, k3, shape (p, 5).
+    gains
+        Exposure of each photo on top of that of all photos, shape (p,).
+    corners_m
+        Of the panels, shape (m, 4, 3).
+    normals
+        Outward, unit, shape (m, 3).
+    middle_m
+        Of the smallest box around all corners, ENU, shape (3,).
+    half_side_m
+        Of the cube that places are rescaled by, shape ().
+    """
+
+    positions_m: Tensor
+    enu_from_cam: Tensor
+    lenses: Tensor
+    distortions: Tensor
+    gains: Tensor
+    corners_m: Tensor
+    normals: Tensor
+    middle_m: Tensor
+    half_side_m: Tensor
+
+    @staticmethod
+    def of(photos: Sequence[PosedPhoto], planes: PanelPlanes, gains: Mapping[str, float]) -> RayTable:
+        """Of photos in this order; `gains` by name, 1 where there is none."""
+        lenses = [photo.intrinsics for photo in photos]
+        rows = [(lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.width_px, lens.height_px) for lens in lenses]
+        positions = np.array([photo.pose.position_enu_m for photo in photos]).reshape(-1, 3)
+        turns = np.array([photo.pose.cam_from_enu.T for photo in photos]).reshape(-1, 3, 3)
+        return RayTable(
+            torch.from_numpy(positions - planes.middle_enu_m),
+            torch.from_numpy(turns),
+            torch.tensor(rows, dtype=torch.float64).reshape(-1, 6),
+            torch.tensor([lens.distortion for lens in lenses], dtype=torch.float64).reshape(-1, 5),
+            torch.tensor([gains.get(photo.name, 1.0) for photo in photos], dtype=torch.float64),
+            torch.from_numpy(planes.corners_enu_m - planes.middle_enu_m),
+            torch.from_numpy(planes.normals_enu),
+            torch.from_numpy(planes.middle_enu_m),
+            torch.tensor(planes.half_side_m, dtype=torch.float64),
+        )
+
+    def to(self, device: torch.device | str) -> RayTable:
+        """The same on another device."""
+        return RayTable(*(getattr(self, field.name).to(device) for field in fields(self)))
+
+    def meet(self, photos: Tensor, places_px: Tensor, panels: Tensor, moves: Tensor | None = None) -> Met:
+        """Rays through places in pictures, met with the planes of panels.
+
+        Parameters
+        ----------
+        photos, panels
+            Numbers, shape (n,), integer.
+        places_px
+            Continuous pixel coordinates, shape (n, 2).
+        moves
+            Corrections of each photo's pose, shape (p, 6): metres along ENU, and a small rotation vector, radians,
+            ENU; gradients flow through.
+        """
+        if moves is None and not places_px.requires_grad and places_px.device.type == "cpu":
+            return self._met(photos, places_px, panels)
+        lenses = self.lenses[photos]
+        bent = (places_px - lenses[:, 2:4]) / lenses[:, :2]
+        x, y = self._unbent(bent[:, 0], bent[:, 1], photos).unbind(dim=1)
+        turns = self.enu_from_cam[photos]
+        directions = turns[:, :, 0] * x[:, None] + turns[:, :, 1] * y[:, None] + turns[:, :, 2]
+        directions = directions / directions.norm(dim=1, keepdim=True)
+        origins = self.positions_m[photos]
+        if moves is not None:
+            moved = moves.to(directions.dtype)[photos]
+            origins = origins + moved[:, :3]
+            directions = directions + torch.linalg.cross(moved[:, 3:], directions)
+            directions = directions / directions.norm(dim=1, keepdim=True)
+        normals, corners = self.normals[panels], self.corners_m[panels]
+        cosines = -(directions * normals).sum(dim=1)
+        heights = ((origins - corners[:, 0]) * normals).sum(dim=1)
+        distances = heights / cosines.clamp(min=LEAST_COSINE)
+        points = origins + distances[:, None] * directions
+        return Met(points, directions, cosines, _shares(points, corners), distances)
+
+    def _met(self, photos: Tensor, places_px: Tensor, panels: Tensor) -> Met:
+        """The same without corrections, on a processor."""
+        n = len(photos)
+        found = tuple(np.empty((n, *shape)) for shape in ((3,), (3,), (), (2,), ()))
+        parts = self.positions_m, self.enu_from_cam, self.lenses, self.distortions, self.corners_m, self.normals
+        meet: Any = kernels.meet
+        meet(
+            photos.long().numpy(), places_px.double().contiguous().numpy(), panels.long().numpy(),
+            *(np.ascontiguousarray(part.numpy()) for part in parts),
+            UNBENT_STEPS if bool(self.distortions.any()) else 0, LEAST_COSINE, *found,
+        )  # fmt: skip
+        return Met(*(torch.from_numpy(part) for part in found))
+
+    def arriving(self, points_m: Tensor, directions: Tensor, panels: Tensor) -> Met:
+        """Rays that come from no camera, but arrive at places of panels from infinitely far away.
+
+        Parameters
+        ----------
+        points_m
+            ENU less `middle_m`, shape (n, 3), float64.
+        directions
+            Of the rays, unit, shape (n, 3), float64.
+        """
+        cosines = -(directions * self.normals[panels]).sum(dim=1)
+        shares = _shares(points_m, self.corners_m[panels])
+        return Met(points_m, directions, cosines, shares, torch.full_like(cosines, torch.inf))
+
+    def inside(self, met: Met, panels: Tensor) -> Tensor:
+        """Whether rays meet the fronts of their panels, which are convex, inside their edges, shape (n,), bool."""
+        corners, normals = self.corners_m[panels], self.normals[panels]
+        found = met.cosines > LEAST_COSINE
+        for number in range(4):
+            first, second = corners[:, number], corners[:, (number + 1) % 4]
+            found = found & ((torch.linalg.cross(second - first, met.points_m - first) * normals).sum(dim=1) >= 0.0)
+        return found
+
+    def off_axis(self, photos: Tensor, places_px: Tensor) -> Tensor:
+        """Squared distance from the principal point, 1 in the corners of a picture around it, shape (n,)."""
+        lenses = self.lenses[photos]
+        off = places_px - lenses[:, 2:4]
+        return (off * off).sum(dim=1) / (0.25 * (lenses[:, 4:] ** 2).sum(dim=1))
+
+    def rescaled(self, points_m: Tensor) -> Tensor:
+        """Places in the cube around all panels as -1 to 1."""
+        return points_m / self.half_side_m
+
+    def _unbent(self, x: Tensor, y: Tensor, photos: Tensor) -> Tensor:
+        """Places in a straight picture, shape (n, 2), of those in the photo, in focal lengths (D. C. Brown, 1971)."""
+        if not bool(self.distortions.any()):
+            return torch.stack([x, y], dim=1)
+        k1, k2, p1, p2, k3 = self.distortions[photos].unbind(dim=1)
+        u, v = x, y
+        for _ in range(UNBENT_STEPS):
+            r2 = u * u + v * v
+            radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
+            u, v = (
+                (x - 2.0 * p1 * u * v - p2 * (r2 + 2.0 * u * u)) / radial,
+                (y - p1 * (r2 + 2.0 * v * v) - 2.0 * p2 * u * v) / radial,
+            )
+        return torch.stack([u, v], dim=1)
+
+
+def _shares(points_m: Tensor, corners_m: Tensor) -> Tensor:
+    """How far along the lower and the left edges places are, 0 to 1, shape (n, 2)."""
+    offsets = points_m - corners_m[:, 0]
+    edges = corners_m[:, [1, 3]] - corners_m[:, :1]
+    lengths = (edges * edges).sum(dim=2).clamp(min=1e-20)
+    return (edges * offsets[:, None]).sum(dim=2) / lengths

@@ -1,0 +1,218 @@
+"""Sets of photos with truth: made facades, annotated real ones, or a folder of the user's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.errors import InputError
+from reconstruction.base.cameras import Intrinsics
+from reconstruction.metrics.annotated import READERS, RECTIFIED_SETS, SHOWABLE_SETS, AnnotatedPhoto
+from reconstruction.metrics.overlaps import MOST_PANELS
+from reconstruction.metrics.pictures import pictures_in, read_labels, read_picture
+from reconstruction.panels.rectify.surface import FacadeSurface
+from reconstruction.panels.rectify.view import SurfaceView, surface_view
+from reconstruction.panels.search.record import Rectification
+from reconstruction.panels.search.views import WholePicture
+from reconstruction.panels.solving.adjustment import moved_pose
+from reconstruction.scenes.facades.cases import Shape, case_name, photo_of, random_case
+from reconstruction.scenes.facades.record import Case, MadeFacade
+from reconstruction.scenes.facades.render import make_facade
+from reconstruction.scenes.facades.scene import BASE_ABOVE_GROUND_M, BORDER_M
+
+Mask = NDArray[np.bool_]
+
+MADE_SETS: dict[str, Shape] = {"made-planar": "planar", "made-curved": "curved", "made-irregular": "irregular"}
+EXTENT_MARGIN_M = 2.0
+"""What a coarse model of a glass building may be wrong by at its edges."""
+
+BESIDE_DEG = ((12.0, 3.0), (-12.0, 6.0), (20.0, -3.0), (-20.0, 9.0), (6.0, 12.0))
+"""Directions that more photos of a facade are taken from: to the right of its normal, and from below."""
+
+STATED_POSE = np.diag([0.03**2] * 3 + [np.radians(0.3) ** 2] * 3)
+"""Covariance of the errors of their stated poses, position (m) and turn (rad)."""
+
+SET_NAMES = (*MADE_SETS, *READERS, "folder")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScoredPhoto:
+    """A photo with its truth.
+
+    Parameters
+    ----------
+    image
+        Shape (height, width, 3), uint8, blue, green, red.
+    index
+        Shape (height, width): number of the true panel, 0 for none.
+    region
+        Shape (height, width): everything that counts as glass; None: the panels.
+    views
+        Rectified views of its facades: from its pose and the surface it shows, or the photo itself where it is
+        fronto-parallel; None where nothing is known.
+    may_be_shown
+        Whether the photo's licence lets it appear in pictures of results.
+    beside
+        More photos of the same facade, each with its view of what the photo itself shows.
+    """
+
+    name: str
+    image: NDArray[np.uint8]
+    index: NDArray[np.uint16]
+    region: Mask | None = None
+    views: tuple[Rectification, ...] | None = None
+    may_be_shown: bool = True
+    beside: tuple[tuple[NDArray[np.uint8], SurfaceView], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PhotoSet:
+    """Photos by name, made or read one after the other, each when it is asked for."""
+
+    name: str
+    photo_names: tuple[str, ...]
+    photos: Callable[[], Iterator[ScoredPhoto]]
+
+    @property
+    def n_photos(self) -> int:
+        """How many there are."""
+        return len(self.photo_names)
+
+
+def made_set(
+    name: str,
+    n_seeds: int,
+    intrinsics: Intrinsics | None = None,
+    extent_margin_m: float | None = EXTENT_MARGIN_M,
+    n_beside: int = 0,
+    first_seed: int = 0,
+) -> PhotoSet:
+    """Made facades with strong reflections: one of `MADE_SETS`, `n_seeds` seeds from `first_seed` on; see `scored`.
+
+    Parameters
+    ----------
+    n_beside
+        More photos of each facade, from other places, with poses as good as RTK and a gimbal's angles are.
+    """
+    shape = MADE_SETS[name]
+    seeds = range(first_seed, first_seed + n_seeds)
+
+    def photos() -> Iterator[ScoredPhoto]:
+        for seed in seeds:
+            case = random_case(shape, seed, intrinsics)
+            photo = scored(make_facade(case), extent_margin_m)
+            (view,) = photo.views or ()
+            yield replace(photo, beside=tuple(_beside(case, view, number) for number in range(n_beside)))
+
+    return PhotoSet(name, tuple(case_name(shape, seed) for seed in seeds), photos)
+
+
+def scored(made: MadeFacade, extent_margin_m: float | None = EXTENT_MARGIN_M) -> ScoredPhoto:
+    """A made facade as a photo to score, with what its stated pose shows of the wall's surface as its view.
+
+    Parameters
+    ----------
+    extent_margin_m
+        The view ends so far beyond the wall with its masonry, which is what a coarse model tells; where in it the glass
+        begins is not told. None: the extent is not known, and the view holds everything that the photo shows.
+    """
+    low = high = None
+    if extent_margin_m is not None:
+        beside, below = BORDER_M + extent_margin_m, BASE_ABOVE_GROUND_M + extent_margin_m
+        low = np.array([made.columns_m[0] - beside, made.rows_m[0] - below])
+        high = np.array([made.columns_m[-1] + beside, made.rows_m[-1] + beside])
+    view = surface_view(made.photo, surface_of(made.case), low, high)
+    return ScoredPhoto(made.photo.name, made.image, made.index, made.facade, (view,))
+
+
+def _beside(case: Case, view: Rectification, number: int) -> tuple[NDArray[np.uint8], SurfaceView]:
+    """Another photo of a made facade and its view of the window that `view` shows."""
+    if not isinstance(view, SurfaceView):
+        raise TypeError(f"expected a view of a surface, got {type(view).__name__}")
+    aside, above = BESIDE_DEG[number % len(BESIDE_DEG)]
+    lens = case.truth.intrinsics
+    camera = photo_of(case.wall, case.layout, lens, seed=case.seed, oblique_deg=aside, from_below_deg=above)
+    made = make_facade(replace(case, truth=camera))
+    off = np.random.default_rng([case.seed, number]).multivariate_normal(np.zeros(6), STATED_POSE)
+    stated = replace(moved_pose(camera.pose, off), covariance=STATED_POSE)
+    return made.image, replace(view, photo=replace(made.photo, pose=stated))
+
+
+def surface_of(case: Case) -> FacadeSurface:
+    """The made wall as the rest of the program knows surfaces."""
+    right, _, up = case.wall.wall_from_enu
+    return FacadeSurface(np.array(case.wall.base_enu_m), right, up, case.wall.curvature_per_m)
+
+
+def annotated_set(name: str, folder: Path) -> PhotoSet:
+    """Annotated photos of real facades: `cmp`, `ecp` or `offices`.
+
+    Parameters
+    ----------
+    folder
+        That holds the set's own folder, or that folder itself.
+
+    Raises
+    ------
+    InputError
+        There are no such photos.
+    """
+    subfolder, reader = READERS[name]
+    inner = folder / subfolder
+    folder = inner if inner.is_dir() else folder
+    names = tuple(photo.name for photo in reader(folder))
+
+    def photos() -> Iterator[ScoredPhoto]:
+        for photo in reader(folder):
+            yield _as_scored(photo, name)
+
+    return PhotoSet(name, names, photos)
+
+
+def _as_scored(photo: AnnotatedPhoto, set_name: str) -> ScoredPhoto:
+    views = whole_view(photo.image) if set_name in RECTIFIED_SETS else None
+    return ScoredPhoto(photo.name, photo.image, photo.index, views=views, may_be_shown=set_name in SHOWABLE_SETS)
+
+
+def whole_view(image: NDArray[np.uint8]) -> tuple[Rectification, ...]:
+    """The one view of a photo that is fronto-parallel already."""
+    height, width = image.shape[:2]
+    return (WholePicture(width, height),)
+
+
+def folder_set(images: Path, truth: Path, is_rectified: bool = False) -> PhotoSet:
+    """The user's own photos, with index images of the same names: PNG, 8 or 16 bit, 0 for no panel.
+
+    Parameters
+    ----------
+    is_rectified
+        Whether the photos are fronto-parallel.
+
+    Raises
+    ------
+    InputError
+        A folder holds no pictures, or photos and index images do not belong together.
+    """
+    image_paths, truth_paths = pictures_in(images), pictures_in(truth)
+    missing = [name for name in image_paths if name not in truth_paths]
+    if missing:
+        raise InputError(f"{truth}: expected an index image for each photo; '{missing[0]}' has none")
+
+    def photos() -> Iterator[ScoredPhoto]:
+        for name, path in image_paths.items():
+            image, index = read_picture(path), read_labels(truth_paths[name])
+            if index.ndim != 2:
+                raise InputError(f"{truth_paths[name]}: expected one channel with panel numbers, found a colour image")
+            if index.shape != image.shape[:2]:
+                (h, w), (ih, iw) = index.shape, image.shape[:2]
+                raise InputError(f"{truth_paths[name]}: {w} x {h} pixels, but its photo has {iw} x {ih}")
+            if index.max(initial=0) > MOST_PANELS:
+                raise InputError(f"{truth_paths[name]}: expected panel numbers up to {MOST_PANELS}, got {index.max()}")
+            views = whole_view(image) if is_rectified else None
+            yield ScoredPhoto(name, image, np.asarray(index, np.uint16), views=views)
+
+    return PhotoSet("folder", tuple(image_paths), photos)

@@ -1,1 +1,0 @@
-"""The shading of methods that know no panels, each in a module."""

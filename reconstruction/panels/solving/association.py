@@ -1,0 +1,149 @@
+"""Which lines of several photos are the same line: on one facade, photos agree but for their poses' errors.
+
+Every photo is first shifted as a whole onto those before it, by no more than its pose may be wrong; a regular grid
+looks the same one panel further, and the nearest match is taken. Lines then belong together where they are close.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reconstruction.panels.solving.record import Axis, SeenLine
+
+Array = NDArray[np.float64]
+
+TOGETHER = 0.3
+"""Of the narrowest panel: lines closer than this are one."""
+
+MISSED = 0.2
+"""Chance that a photo does not find a line that is there. With it a line of average confidence (0.9) that one photo of
+three shows is dropped, and one that two of three show is kept."""
+
+FALSE_LINE = 0.02
+"""Chance that a photo shows a false line at a given place."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineGroup:
+    """Lines of several photos that are one line on the facade.
+
+    `confidence` is the probability that there is one, given which of the photos that cover its place show it.
+    """
+
+    axis: Axis
+    members: tuple[SeenLine, ...]
+    confidence: float
+
+
+def associate(lines: Sequence[SeenLine], reach_m: float) -> tuple[LineGroup, ...]:
+    """Groups of lines with a confidence of one half at least, columns from left to right, then rows upwards.
+
+    Parameters
+    ----------
+    reach_m
+        How far a photo may be shifted on the surface, from the errors of the poses.
+    """
+    groups: list[LineGroup] = []
+    for axis in ("column", "row"):
+        of_axis = [line for line in lines if line.axis == axis]
+        if of_axis:
+            groups += _of_axis(of_axis, reach_m)
+    return tuple(groups)
+
+
+def _of_axis(lines: list[SeenLine], reach_m: float) -> list[LineGroup]:
+    photos = sorted({line.photo for line in lines}, key=lambda photo: -_weight(lines, photo))
+    tolerance = TOGETHER * _narrowest(lines)
+    placed: list[tuple[float, SeenLine]] = []
+    spans: list[tuple[float, float]] = []
+    for photo in photos:
+        own = sorted((line for line in lines if line.photo == photo), key=lambda line: line.position_m)
+        positions = np.array([line.position_m for line in own])
+        known = np.array([position for position, _ in placed])
+        scale, shift = _alignment(positions, known, reach_m, tolerance)
+        placed += [(scale * line.position_m + shift, line) for line in own]
+        spans.append((scale * float(positions[0]) + shift, scale * float(positions[-1]) + shift))
+    groups = (_group(cluster, spans, tolerance) for cluster in _clusters(placed, tolerance))
+    return [group for group in groups if group.confidence >= 0.5]
+
+
+def _weight(lines: list[SeenLine], photo: int) -> float:
+    return sum(line.confidence for line in lines if line.photo == photo)
+
+
+def _narrowest(lines: list[SeenLine]) -> float:
+    """Usual narrowest distance of neighbouring lines within one photo."""
+    gaps: list[float] = []
+    for photo in {line.photo for line in lines}:
+        positions = np.sort([line.position_m for line in lines if line.photo == photo])
+        gaps += np.diff(positions).tolist()
+    return float(np.percentile(gaps, 5.0)) if gaps else 1.0
+
+
+def _alignment(positions: Array, known: Array, reach_m: float, tolerance: float) -> tuple[float, float]:
+    """Scale and shift that bring most positions onto known ones.
+
+    Shifts are tried one by one, of equally good ones the smallest wins; the scale, which a wrong distance to the facade
+    changes, is then fitted to the pairs, within what the reach allows over the photo's width.
+    """
+    if not len(known):
+        return 1.0, 0.0
+    offsets = (known[:, None] - positions[None, :]).ravel()
+    offsets = np.append(offsets[np.abs(offsets) <= reach_m], 0.0)
+    best, least = 0.0, np.inf
+    for offset in offsets[np.argsort(np.abs(offsets), kind="stable")]:
+        distance = np.abs(positions[:, None] + offset - known[None, :]).min(axis=1)
+        cost = float(np.minimum(distance / tolerance, 1.0).sum())
+        if cost < least - 0.5:
+            best, least = float(offset), cost
+    scale, shift = 1.0, best
+    width = max(float(np.ptp(positions)), tolerance)
+    for _ in range(3):
+        distance = np.abs(scale * positions[:, None] + shift - known[None, :])
+        near, target = distance.min(axis=1) <= tolerance, known[distance.argmin(axis=1)]
+        if near.sum() < 2:
+            break
+        middle = float(positions[near].mean())
+        spread = float(((positions[near] - middle) ** 2).sum())
+        slope = float(((positions[near] - middle) * (target[near] - target[near].mean())).sum()) / max(spread, 1e-12)
+        scale = min(1.0 + reach_m / width, max(1.0 - reach_m / width, slope))
+        shift = float(target[near].mean()) - scale * middle
+    return scale, shift
+
+
+def _clusters(placed: list[tuple[float, SeenLine]], tolerance: float) -> list[list[tuple[float, SeenLine]]]:
+    """Neighbours no further apart than the tolerance, one line of each photo in each cluster."""
+    clusters: list[list[tuple[float, SeenLine]]] = []
+    for position, line in sorted(placed, key=lambda item: item[0]):
+        last = clusters[-1] if clusters else None
+        middle = np.median([other for other, _ in last]) if last else 0.0
+        if last is None or position - middle > tolerance or any(line.photo == other.photo for _, other in last):
+            clusters.append([(position, line)])
+        else:
+            last.append((position, line))
+    return clusters
+
+
+def _confidence(cluster: list[tuple[float, SeenLine]], spans: list[tuple[float, float]], tolerance: float) -> float:
+    """Posterior of independent photos (log odds).
+
+    Those that show the line speak for it, those that cover its place and do not show it against it.
+    """
+    middle = float(np.median([position for position, _ in cluster]))
+    covering = sum(low - tolerance <= middle <= high + tolerance for low, high in spans)
+    odds = sum(np.log(_inside(line.confidence) / (1.0 - _inside(line.confidence))) for _, line in cluster)
+    odds += max(0, covering - len(cluster)) * np.log(MISSED / (1.0 - FALSE_LINE))
+    return float(1.0 / (1.0 + np.exp(-odds)))
+
+
+def _inside(confidence: float) -> float:
+    return min(0.99, max(0.01, confidence))
+
+
+def _group(cluster: list[tuple[float, SeenLine]], spans: list[tuple[float, float]], tolerance: float) -> LineGroup:
+    members = tuple(line for _, line in cluster)
+    return LineGroup(members[0].axis, members, _confidence(cluster, spans, tolerance))

@@ -1,0 +1,290 @@
+"""All panels of a building out of posed photos and a coarse model: the first step of the paper (3.1), end to end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from planning.base.effects import Decision, Wish, decide
+from planning.base.errors import InfeasibleError
+from planning.base.findings import Finding, Severity
+from planning.base.progress import QUIET, Monitor
+from planning.geo.mesh import TriangleMesh
+from planning.site.importing.facades import facade_name
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.panels.panels_file import PanelsFile
+from reconstruction.panels.rectify.curvature import VIEW_KINDS, ViewKind, decide_view, drawn_view
+from reconstruction.panels.rectify.fit import SurfaceFit
+from reconstruction.panels.rectify.patches import PatchParameters, facades_in_photo
+from reconstruction.panels.rectify.view import SurfaceView, surface_view
+from reconstruction.panels.search.parameters import SegmentationParameters
+from reconstruction.panels.search.record import FacadeGrid
+from reconstruction.panels.search.segment import segment_view
+from reconstruction.panels.solving.association import TOGETHER
+from reconstruction.panels.solving.facades import Facade, building_facades
+from reconstruction.panels.solving.fusing import FoundSingly, Fusion, LoadPhoto, holds_enough, search_together
+from reconstruction.panels.solving.known_grids import files_by_photo, given_grid
+from reconstruction.panels.solving.record import SolvedFacade, SurfaceLine
+from reconstruction.panels.solving.solve import REACH_SIGMAS, reach_m, solve_facade
+
+# What a user should know of a solved facade.
+
+REPEATS = 0.7
+"""Share of lines that lie on others after a step, from which on a grid looks the same one panel further."""
+
+MOST_PANELS = 3
+"""In a step: alternating widths repeat after two."""
+
+
+def facade_findings(facade: SolvedFacade, photos: Sequence[PosedPhoto]) -> list[Finding]:
+    """Everything worth saying of a facade; `photos` are counted as in its `pose_changes`."""
+    return [*reduced_panels(facade), *photos_a_panel_apart(facade, photos)]
+
+
+def reduced_panels(facade: SolvedFacade) -> list[Finding]:
+    """What is said of panels whose shape a site cannot hold."""
+    outlines = [panel.outline_enu_m for panel in facade.panels if panel.outline_enu_m is not None]
+    many = [outline for outline in outlines if len(outline) > 4]
+    if not many:
+        return []
+    text = (
+        f"{len(many)} of {len(facade.panels)} panels have more than four corners; a site's panels have four, so that "
+        "the largest four-cornered part of each is kept"
+    )
+    return [Finding(Severity.NOTE, "panels-with-more-corners", text, facade.id, float(len(many)))]
+
+
+def photos_a_panel_apart(facade: SolvedFacade, photos: Sequence[PosedPhoto]) -> list[Finding]:
+    """A warning where photos may have been matched a panel apart.
+
+    A regular grid looks the same one panel further, so that poses must tell which panel is which: to half a panel.
+    """
+    steps = [step for lines in (facade.columns, facade.rows) if (step := repeated_step_m(lines)) is not None]
+    sigmas = [reach_m(photos[number], facade.surface) / REACH_SIGMAS for number in facade.pose_changes]
+    if not steps or max(sigmas, default=0.0) <= 0.5 * min(steps):
+        return []
+    text = (
+        f"panels repeat every {min(steps):.2f} m, and a photo may lie {max(sigmas):.2f} m off (one standard "
+        "deviation), so that the facade may stand a panel off, or photos were matched a panel apart; refine the poses, "
+        "or compare with a measured corner"
+    )
+    return [Finding(Severity.WARNING, "photos-a-panel-apart", text, facade.id, max(sigmas))]
+
+
+def repeated_step_m(lines: Sequence[SurfaceLine]) -> float | None:
+    """The shortest step, of one to three panels, that leads from lines to lines; None in grids that do not repeat."""
+    places = np.sort([line.position_m for line in lines])
+    if len(places) < 3:
+        return None
+    tolerance = TOGETHER * float(np.diff(places).min())
+    for n_panels in range(1, min(MOST_PANELS, len(places) - 2) + 1):
+        step = float(np.median(places[n_panels:] - places[:-n_panels]))
+        off = np.abs(places[:-n_panels, None] + step - places[None, :]).min(axis=1)
+        if float(np.mean(off <= tolerance)) >= REPEATS:
+            return step
+    return None
+
+
+# The grid of one facade in its photos: searched in each, in all of them together, or given.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SearchedFacade:
+    """What was found on a facade: `grids` by the number of the photo."""
+
+    grids: dict[int, FacadeGrid]
+    decisions: tuple[Decision, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+
+def search_facade(
+    photos: Sequence[PosedPhoto],
+    facade: Facade,
+    name: str,
+    load: LoadPhoto,
+    parameters: FindParameters,
+    given: Mapping[int, PanelsFile],
+    monitor: Monitor,
+) -> SearchedFacade:
+    """Find the grid of a facade.
+
+    Parameters
+    ----------
+    given
+        Panels by the number of their photo: such photos are not searched, and are used in any case.
+    """
+    by_hand = [number for number in facade.photos if number in given]
+    numbers = tuple(dict.fromkeys((*by_hand, *facade.photos[: parameters.photos_per_facade])))
+    views = _views(photos, facade, numbers)
+    if not views:
+        return SearchedFacade({})
+    unrolling = decide_view(list(views.values()), parameters.view)
+    grids: dict[int, FacadeGrid] = {}
+    for number, view in views.items():
+        try:
+            drawn = drawn_view(view, parameters.view, unrolling)
+        except InfeasibleError:
+            continue
+        if number in given:
+            grid = given_grid(given[number], photos[number], facade, drawn, name)
+            if grid is not None:
+                grids[number] = grid
+        else:
+            grids[number] = segment_view(load(photos[number]), drawn, parameters.segmentation, monitor, name)
+    if by_hand:
+        return SearchedFacade(grids, (unrolling,))
+    fusion = decide(Fusion(), FoundSingly(photos, grids, facade.fit.surface), parameters.fuse)
+    if not fusion.on or len(grids) < 2:
+        return SearchedFacade(grids, (unrolling, fusion))
+    together = search_together(photos, facade, numbers, load, parameters.segmentation, monitor, name)
+    if together is None or not holds_enough(together, grids):
+        text = f"{len(grids)} photos searched together showed no more than each by itself"
+        return SearchedFacade(
+            grids, (unrolling, fusion), (Finding(Severity.NOTE, "photos-together-in-vain", text, name),)
+        )
+    text = (
+        f"its lines were found in {len(together.grids)} photos together, which were moved onto one another by up to "
+        f"{together.moved_px:.1f} px"
+    )
+    found = Finding(Severity.NOTE, "photos-together", text, name, together.moved_px, None, "px")
+    return SearchedFacade(together.grids, (unrolling, fusion), (found,))
+
+
+def _views(photos: Sequence[PosedPhoto], facade: Facade, numbers: Sequence[int]) -> dict[int, SurfaceView]:
+    """Views of the facade by the photo's number; photos that do not show it from its front are left out."""
+    views = {}
+    for number in numbers:
+        try:
+            views[number] = surface_view(photos[number], facade.fit.surface, facade.low_st_m, facade.high_st_m)
+        except InfeasibleError:
+            continue
+    return views
+
+
+@dataclass(frozen=True, slots=True)
+class FindParameters:
+    """How panels are found.
+
+    Parameters
+    ----------
+    photos_per_facade
+        The most useful ones that are searched: what more photos cost in time and bring in accuracy is measured in
+        docs/benchmarks.md.
+    curvature
+        Take facades for cylinders: as the scene calls for, always, or never.
+    view
+        How photos are rectified: by arc length (`exact`), flattened onto the tangent plane (`tangent`), by the paper's
+        polynomial (`polynomial`), or `auto`: by arc length where the flattened view would differ.
+    fuse
+        Search the photos of a facade together: where one by one they do not agree, always, or never.
+    least_panels
+        Facades with fewer are dropped: walls on which something looked like a grid.
+    """
+
+    photos_per_facade: int = 4
+    curvature: Wish = "auto"
+    view: ViewKind = "auto"
+    fuse: Wish = "auto"
+    least_panels: int = 2
+    patches: PatchParameters = field(default_factory=PatchParameters)
+    segmentation: SegmentationParameters = field(default_factory=SegmentationParameters)
+
+    def __post_init__(self) -> None:
+        if self.photos_per_facade < 1:
+            raise ValueError(f"photos_per_facade: expected at least 1, got {self.photos_per_facade}")
+        if self.view not in VIEW_KINDS:
+            raise ValueError(f"view: expected one of {', '.join(VIEW_KINDS)}, got {self.view}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FoundPanels:
+    """Result of `find_panels`.
+
+    Parameters
+    ----------
+    grids
+        By the facade's id and the photo's number: what was found in each photo.
+    fits
+        By the facade's id: its surface as the coarse model has it, from which `solve_facade` starts.
+    decisions
+        By the facade's id: whether it is a plane or a cylinder.
+    search_decisions
+        By the facade's id: how its photos were rectified, and whether they were searched together.
+    """
+
+    facades: tuple[SolvedFacade, ...]
+    grids: dict[tuple[str, int], FacadeGrid]
+    fits: dict[str, SurfaceFit]
+    decisions: dict[str, Decision]
+    findings: tuple[Finding, ...]
+    search_decisions: dict[str, tuple[Decision, ...]] = field(default_factory=dict)
+
+
+def find_panels(
+    photos: Sequence[PosedPhoto],
+    model: TriangleMesh,
+    load: LoadPhoto,
+    parameters: FindParameters | None = None,
+    monitor: Monitor = QUIET,
+    given: Mapping[str, PanelsFile] | None = None,
+) -> FoundPanels:
+    """Find the panels of all facades.
+
+    Parameters
+    ----------
+    model
+        The coarse model, ENU.
+    load
+        Reads a photo: shape (h, w, 3), of the size that its intrinsics say.
+    given
+        Panels by the name of their photo, in place of a search of that photo.
+
+    Raises
+    ------
+    InputError
+        Panels are given for none of the photos, or for a picture of another size.
+    InfeasibleError
+        No photo shows an upright facade of the model, or no grid was found on any.
+    """
+    parameters = parameters or FindParameters()
+    by_hand = files_by_photo(photos, given or {})
+    patches = []
+    for number, photo in enumerate(photos):
+        monitor.report("looking for facades", number, len(photos))
+        patches.append(facades_in_photo(photo, model, parameters.patches))
+    facades = building_facades(photos, patches, parameters.curvature)
+    if not facades:
+        raise InfeasibleError(
+            f"none of the {len(photos)} photos shows an upright facade of the coarse model; do poses and model belong "
+            "to the same origin?"
+        )
+    solved: list[SolvedFacade] = []
+    grids: dict[tuple[str, int], FacadeGrid] = {}
+    fits: dict[str, SurfaceFit] = {}
+    decisions: dict[str, Decision] = {}
+    search_decisions: dict[str, tuple[Decision, ...]] = {}
+    findings: list[Finding] = []
+    for order, facade in enumerate(facades):
+        monitor.report("finding panels", order, len(facades))
+        name = facade_name(len(solved))
+        found = search_facade(photos, facade, name, load, parameters, by_hand, monitor)
+        try:
+            result = solve_facade(name, photos, found.grids, facade.fit)
+        except InfeasibleError as error:
+            findings.append(Finding(Severity.NOTE, "facade-without-grid", f"a facade was left out: {error}", name))
+            continue
+        if len(result.panels) < parameters.least_panels:
+            findings.append(
+                Finding(Severity.NOTE, "facade-too-small", f"a wall with {len(result.panels)} panel was left out", name)
+            )
+            continue
+        findings += [*found.findings, *facade_findings(result, photos)]
+        solved.append(result)
+        fits[name], decisions[name] = facade.fit, facade.curvature
+        search_decisions[name] = found.decisions
+        grids |= {(name, number): grid for number, grid in found.grids.items()}
+    if not solved:
+        raise InfeasibleError("no grid of panels was found on any facade; choose sharper photos taken from the front")
+    return FoundPanels(tuple(solved), grids, fits, decisions, tuple(findings), search_decisions)

@@ -1,0 +1,1 @@
+"""Records as CSV tables, there and back."""

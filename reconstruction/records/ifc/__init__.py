@@ -1,0 +1,1 @@
+"""Records in IFC files: read, extended, and written anew."""

@@ -1,0 +1,73 @@
+"""Effects of the camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from planning.base.effects import Assessment
+from reconstruction.scenes.effects.names import DISTORTION, NOISE, VIGNETTING
+from reconstruction.scenes.effects.probe import Probe
+from reconstruction.scenes.effects.terms import SECONDS_PER_ANGLE, TOLERANCE_GREY, TOLERANCE_PX, cost_s
+from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, USUAL_SENSOR, Sensor, grey_levels
+
+SECONDS_PER_BEND = 3e-7
+"""Of one core, for a ray whose distortion is undone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Distortion:
+    """Displacement by the lens at the pictures' edges."""
+
+    tolerance: float = TOLERANCE_PX
+    name = DISTORTION
+    unit = "px"
+
+    def assess(self, probe: Probe) -> Assessment:
+        """The largest one of all cameras."""
+        lenses = {photo.intrinsics for photo in probe.photos}
+        bent = [lens for lens in lenses if not lens.is_straight]
+        if not bent:
+            return Assessment(0.0, "the pictures are straight already", 0.0)
+        size = 0.0
+        for lens in bent:
+            x, y = np.meshgrid(np.linspace(0, lens.width_px, 21), np.linspace(0, lens.height_px, 21))
+            places = np.column_stack([x.ravel(), y.ravel()])
+            straight = lens.straight().pixels(lens.rays(places))
+            size = max(size, float(np.linalg.norm(straight - places, axis=1).max()))
+        return Assessment(size, "the lens bends straight lines", cost_s(probe, 1.0, SECONDS_PER_BEND))
+
+
+@dataclass(frozen=True, slots=True)
+class Vignetting:
+    """Light that the lens loses in the corners."""
+
+    sensor: Sensor = USUAL_SENSOR
+    tolerance: float = TOLERANCE_GREY
+    name = VIGNETTING
+    unit = "grey levels"
+
+    def assess(self, probe: Probe) -> Assessment:
+        """Of middle grey, in a corner."""
+        kept = 1.0 - self.sensor.corner_loss
+        size = float(grey_levels(np.array(MIDDLE_GREY)) - grey_levels(np.array(MIDDLE_GREY * kept)))
+        reason = f"the lens loses {100.0 * self.sensor.corner_loss:.0f} % of the light in the corners"
+        return Assessment(size, reason, probe.n_pixels * SECONDS_PER_ANGLE)
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Noise of the sensor."""
+
+    sensor: Sensor = USUAL_SENSOR
+    tolerance: float = TOLERANCE_GREY
+    name = NOISE
+    unit = "grey levels"
+
+    def assess(self, probe: Probe) -> Assessment:
+        """Of middle grey."""
+        grey = np.array(MIDDLE_GREY)
+        size = float(grey_levels(grey + self.sensor.noise(grey)) - grey_levels(grey))
+        reason = f"a white pixel holds {self.sensor.white_e:.0f} electrons"
+        return Assessment(size, reason, 3.0 * probe.n_pixels * SECONDS_PER_ANGLE)

@@ -1,0 +1,228 @@
+"""A few thousand rays of a flight's photos, from which effects tell how large they would be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.scenes.light.environment import facade_middle_enu_m
+from reconstruction.scenes.light.geometry import Geometry, Meeting
+from reconstruction.scenes.light.optics import mirrored
+from reconstruction.scenes.light.pane_surfaces import PaneSurfaces
+from reconstruction.scenes.light.shading import SkyLight
+from reconstruction.scenes.light.tracing import Switches, Tracer, layer_mask
+from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Moment, Taking
+from reconstruction.scenes.photos.lens_effects import DARKEST, MIDDLE_GREY, grey_levels
+from reconstruction.scenes.world.record import Layer, Scene
+
+Array = NDArray[np.float64]
+
+N_PHOTOS = 12
+RAYS_ALONG = 36
+"""Photos asked, spread over the flight, and rays along the longer side of each."""
+
+QUANTILE = 0.95
+"""Displacements are as large as this share of the rays on glass does not exceed."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mirrored:
+    """What n rays see in panes, as if these were flat.
+
+    Parameters
+    ----------
+    focal_px
+        Of their photos, shape (n,).
+    directions_enu
+        Of the rays, unit, shape (n, 3).
+    met, after
+        Meetings of the rays with panes, and of the mirrored rays with what comes then.
+    sight_m, path_m
+        Lengths from camera to pane and from there on, inf to the sky, each shape (n,).
+    cosines
+        Of the angle of incidence, shape (n,).
+    tilts_rad
+        Angles by which the panes are tilted, shape (n,).
+    parallax_rad
+        Angle between where a thing is mirrored and where a picture taken from the facade's middle shows it, shape (n,);
+        0 for the sky and for the building itself.
+    is_around
+        Whether something is mirrored that is neither, shape (n,).
+    """
+
+    focal_px: Array
+    directions_enu: Array
+    met: Meeting
+    after: Meeting
+    sight_m: Array
+    path_m: Array
+    cosines: Array
+    tilts_rad: Array
+    parallax_rad: Array
+    is_around: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.sight_m)
+
+    @property
+    def is_sky(self) -> NDArray[np.bool_]:
+        """Shape (n,)."""
+        return ~np.isfinite(self.path_m)
+
+
+@dataclass(frozen=True, slots=True)
+class SurroundingsLight:
+    """What light from around changes.
+
+    Parameters
+    ----------
+    change_grey
+        In the pictures, root mean square.
+    share
+        Of an open sky's light that reaches the places seen, on average.
+    n_places
+        That light was gathered for.
+    """
+
+    change_grey: float
+    share: float
+    n_places: int
+
+
+class Probe:
+    """Rays spread over the photos of a flight.
+
+    Parameters
+    ----------
+    moments
+        Of each photo; without any, all are taken hovering.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        photos: Sequence[PosedPhoto],
+        taking: Taking = USUAL_TAKING,
+        moments: Sequence[Moment] = (),
+    ) -> None:
+        self.scene, self.photos = scene, tuple(photos)
+        self.taking, self.moments = taking, tuple(moments) or (Moment(),) * len(self.photos)
+        self.geometry = Geometry(scene)
+        chosen = np.unique(np.linspace(0, len(photos) - 1, min(N_PHOTOS, len(photos))).round().astype(int))
+        rays = [spread(photos[k]) for k in chosen]
+        self._origins, self._directions = (np.concatenate([r[i] for r in rays]) for i in (0, 1))
+        self._focal_px = np.concatenate([np.full(len(r[0]), r[2]) for r in rays])
+        self.met = self.geometry.meet(self._origins, self._directions)
+        """What the rays met first."""
+        self.mirrored = self._follow()
+        light = self._light(Switches())
+        self.exposure = MIDDLE_GREY / max(float(light.mean()), DARKEST)
+        """Factor that brings the pictures to middle grey."""
+        self.lights = tuple(np.split(light, np.cumsum([len(r[0]) for r in rays])[:-1]))
+        """Of each photo's rays, shape (n, 3)."""
+        self._grey = grey_levels(self.exposure * light)
+
+    @property
+    def n_pixels(self) -> int:
+        """Of all photos of the flight."""
+        return sum(p.intrinsics.width_px * p.intrinsics.height_px for p in self.photos)
+
+    @property
+    def glass_share(self) -> float:
+        """Of the pictures' area."""
+        return len(self.mirrored) / max(len(self._origins), 1)
+
+    def change_without(self, switches: Switches) -> float:
+        """Root mean square, in grey levels, of what switching off changes in the pictures; without the sun's disc."""
+        change = grey_levels(self.exposure * self._light(switches)) - self._grey
+        return float(np.sqrt((change**2).mean()))
+
+    def surroundings_light(self) -> SurroundingsLight:
+        """Light from around as it reaches places, against that of open sky and even ground."""
+        tracer = Tracer(self.scene, Switches(sun_glare=False), self.geometry)
+        change = grey_levels(self.exposure * self._traced(tracer)) - self._grey
+        seen = self.met.at(self.met.bodies >= 0)
+        assert tracer.ambient is not None
+        reaches = tracer.ambient.on(seen.points_enu_m, seen.normals_enu, seen.triangles).sum()
+        is_open = SkyLight(self.scene.sky).on(seen.normals_enu).sum()
+        share = float(reaches / is_open) if is_open > 0.0 else 1.0
+        return SurroundingsLight(float(np.sqrt((change**2).mean())), share, tracer.ambient.n_places)
+
+    def displacement_px(self, angles_rad: Array) -> float:
+        """Of mirror images that move by angles, shape (number of mirrored rays,); 0 where no glass is seen."""
+        return float(np.quantile(self.mirrored.focal_px * angles_rad, QUANTILE)) if len(angles_rad) else 0.0
+
+    def hidden_share(self) -> float:
+        """Of the rays to the facade, those that something near stands before."""
+        is_near, is_facade = (layer_mask(self.scene, layer) for layer in (Layer.NEAR, Layer.BUILDING))
+        behind = self.geometry.beyond(self.met, self._directions, is_near, is_facade)
+        n_hidden = (behind.triangles != self.met.triangles).sum()
+        n_facade = (is_facade[behind.bodies] & (behind.triangles >= 0)).sum()
+        return float(n_hidden / max(n_facade, 1))
+
+    def bent_rad(self) -> Array:
+        """Angles between what bowed panes mirror and where flat ones would show it, for all rays that meet panes."""
+        seen, frames = self.mirrored, self.geometry.pane_frames
+        surfaces = PaneSurfaces(self.scene.panes, frames, tilt=False)
+        met, normals = surfaces.meet(seen.met, seen.directions_enu)
+        flat, which = met.normals_enu, met.panes
+        out = mirrored(seen.directions_enu, normals)
+        depths = np.maximum(-surfaces.heights_m(met.points_enu_m, which, flat), 0.0)
+        starts, _ = self.geometry.leaving(met.points_enu_m, out, flat, depths)
+        after = self.geometry.meet(starts, out)
+        off_plane = np.einsum("nk,nk->n", after.points_enu_m - frames.middles_enu_m[which], flat)
+        origins = seen.met.points_enu_m - seen.sight_m[:, None] * seen.directions_enu
+        image = after.points_enu_m - 2.0 * off_plane[:, None] * flat - origins
+        image = np.where(np.isfinite(after.distance_m)[:, None], image, mirrored(out, flat))
+        return _angles(seen.directions_enu, image)
+
+    def _light(self, switches: Switches) -> Array:
+        # Rays spread out miss the sun, or meet it as if it filled their part of the picture. What reaches a place from
+        # around takes longer than all else here, and changes other effects little.
+        alone = replace(switches, sun_glare=False, sky_occlusion=False)
+        return self._traced(Tracer(self.scene, alone, self.geometry))
+
+    def _traced(self, tracer: Tracer) -> Array:
+        found = tracer.trace(self._origins, self._directions, 1.0 / float(self._focal_px.mean()))
+        return found.diffuse + found.reflection
+
+    def _follow(self) -> Mirrored:
+        rows = self.met.panes >= 0
+        met = self.met.at(rows)
+        directions, flat = self._directions[rows], met.normals_enu
+        out = mirrored(directions, flat)
+        starts, ahead = self.geometry.leaving(met.points_enu_m, out, flat)
+        after = self.geometry.meet(starts, out)
+        path = ahead + after.distance_m
+        _, tilted = PaneSurfaces(self.scene.panes, self.geometry.pane_frames, bow=False).meet(met, directions)
+        # The last entry is that of body -1: sky or panes.
+        around = np.array([*(body.layer is not Layer.BUILDING for body in self.scene.bodies), False])
+        is_around = around[after.bodies]
+        middle = facade_middle_enu_m(self.scene) if len(path) else np.zeros(3)
+        parallax = np.where(is_around, _angles(out, after.points_enu_m - middle), 0.0)
+        cosines = np.abs(np.einsum("nk,nk->n", directions, flat))
+        tilts = _angles(tilted, flat)
+        return Mirrored(
+            self._focal_px[rows], directions, met, after, met.distance_m, path, cosines, tilts, parallax, is_around
+        )
+
+
+def _angles(a: Array, b: Array) -> Array:
+    """Between vectors, shape (n, 3) each, by sine and cosine, which is exact for small angles."""
+    return np.asarray(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), np.einsum("nk,nk->n", a, b)))
+
+
+def spread(photo: PosedPhoto) -> tuple[Array, Array, float]:
+    """Origins and directions, each shape (n, 3), of rays spread over a photo, and its focal length in pixels."""
+    lens = photo.intrinsics
+    step = max(lens.width_px, lens.height_px) / RAYS_ALONG
+    x = (np.arange(max(1, round(lens.width_px / step))) + 0.5) * step
+    y = (np.arange(max(1, round(lens.height_px / step))) + 0.5) * step
+    places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    origins, directions = photo.rays(places)
+    return origins, directions, math.sqrt(lens.fx_px * lens.fy_px)

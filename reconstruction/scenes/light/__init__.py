@@ -1,0 +1,1 @@
+"""Light in virtual scenes: what rays meet, and what they bring."""

@@ -1,0 +1,147 @@
+"""The panes' real surfaces, tilted and bowed: where rays meet them and how they face there, exactly.
+
+In the frame of a flat pane, u to the right and v upwards from its middle and z outwards, its glass is at
+
+    z = bow_right (a^2 - u^2) / 2 + bow_up (b^2 - v^2) / 2 - tilt_right u - tilt_up v,
+
+with half sides a and b: a bow holds the corners, a tilt the middle. Along a ray that is an equation of second degree,
+whose solution next to the flat pane is written without differences of near numbers; no iteration, no tolerance.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.base.jit import kernel
+from reconstruction.scenes.light.geometry import Meeting, PaneFrames
+from reconstruction.scenes.world.record import Panes
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+REACH = 2.0
+"""In half sides: a surface goes on past the edges of its pane up to there, so that a slanting ray which meets the flat
+pane close to an edge meets the bowed one, too. A ray that misses it there meets the flat pane."""
+
+
+class PaneSurfaces:
+    """Surfaces of panes.
+
+    Parameters
+    ----------
+    tilt, bow
+        Whether panes are tilted, and bowed; flat otherwise.
+    """
+
+    def __init__(self, panes: Panes, frames: PaneFrames, tilt: bool = True, bow: bool = True) -> None:
+        self._middles = frames.middles_enu_m
+        self._axes = np.stack([frames.rights, frames.ups, frames.normals])
+        tilts, bows = tilt * panes.tilts_rad, bow * panes.bows_per_m
+        self._shapes = np.stack([half_sides_m(panes, frames), tilts, bows])
+        self.is_flat = not (tilts.any() or bows.any())
+        self.sharpest_per_m = np.abs(bows).max(axis=1, initial=0.0)
+        """The larger curvature of each pane, shape (m,)."""
+
+    def meet(self, met: Meeting, directions_enu: Array) -> tuple[Meeting, Array]:
+        """Meetings of rays with the real panes in place of those with the flat ones; and the real unit normals.
+
+        Both are shape (n, 3) for all rays; the normals of the meetings stay those of the flat panes. A ray that passes
+        the edge of a bulge meets it where it comes closest, and goes on as it came; one that starts between a flat pane
+        and its real surface meets the flat one.
+        """
+        rows = np.flatnonzero(met.panes >= 0)
+        if self.is_flat or not len(rows):
+            return met, met.normals_enu
+        ahead, normals = _met(
+            met.points_enu_m[rows],
+            directions_enu[rows],
+            met.distance_m[rows],
+            met.normals_enu[rows],
+            met.panes[rows],
+            self._middles,
+            self._axes,
+            self._shapes,
+        )
+        distance, points, all_normals = met.distance_m.copy(), met.points_enu_m.copy(), met.normals_enu.copy()
+        distance[rows] += ahead
+        points[rows] += ahead[:, None] * directions_enu[rows]
+        all_normals[rows] = normals
+        return replace(met, distance_m=distance, points_enu_m=points), all_normals
+
+    def heights_m(self, points_enu_m: Array, which: Index, flat: Array) -> Array:
+        """How far points on panes stand before the flat ones, whose normals towards the rays are `flat`, shape (n,)."""
+        if self.is_flat:
+            return np.zeros(len(points_enu_m))
+        return np.asarray(np.einsum("nk,nk->n", points_enu_m - self._middles[which], flat))
+
+
+def half_sides_m(panes: Panes, frames: PaneFrames) -> Array:
+    """How far the corners reach to the right and upwards from the middle, shape (m, 2)."""
+    away = panes.corners_enu_m - frames.middles_enu_m[:, None]
+    sides = [np.abs(np.einsum("mkx,mx->mk", away, axis)).max(axis=1) for axis in (frames.rights, frames.ups)]
+    return np.stack(sides, axis=1)
+
+
+@kernel
+def _met(
+    points: Array, directions: Array, distances: Array, flat: Array, which: Index, middles: Array, axes: Array,
+    shapes: Array,
+) -> tuple[Array, Array]:  # fmt: skip
+    """How much further rays meet the surfaces, shape (n,), and normals towards their origin, shape (n, 3).
+
+    `axes` are rights, ups and normals, shape (3, m, 3); `shapes` half sides, tilts and bows, shape (3, m, 2).
+    """
+    n = len(points)
+    ahead, normals = np.zeros(n), np.empty((n, 3))
+    place, way, slope = np.zeros(3), np.zeros(3), np.zeros(2)
+    for i in range(n):
+        pane, facing = which[i], 0.0
+        for axis in range(3):
+            place[axis] = way[axis] = 0.0
+            for k in range(3):
+                place[axis] += (points[i, k] - middles[pane, k]) * axes[axis, pane, k]
+                way[axis] += directions[i, k] * axes[axis, pane, k]
+        for k in range(3):
+            facing += flat[i, k] * axes[2, pane, k]
+        side = 1.0 if facing >= 0.0 else -1.0
+        # Height above the surface, t further along the ray: square t^2 + linear t + height.
+        square, linear, height = 0.0, way[2], place[2]
+        for axis in range(2):
+            half, tilt, bow = shapes[0, pane, axis], shapes[1, pane, axis], shapes[2, pane, axis]
+            square += 0.5 * bow * way[axis] * way[axis]
+            linear += (tilt + bow * place[axis]) * way[axis]
+            height += tilt * place[axis] + 0.5 * bow * (place[axis] - half) * (place[axis] + half)
+        t = _falling_root(square, linear, height, side)
+        inside = distances[i] + t > 0.0
+        for axis in range(2):
+            inside = inside and abs(place[axis] + t * way[axis]) <= REACH * shapes[0, pane, axis]
+        ahead[i] = t if inside else 0.0
+        length = 1.0
+        for axis in range(2):
+            at = place[axis] + ahead[i] * way[axis]
+            slope[axis] = shapes[1, pane, axis] + shapes[2, pane, axis] * at
+            length += slope[axis] * slope[axis]
+        for k in range(3):
+            along = axes[2, pane, k] + slope[0] * axes[0, pane, k] + slope[1] * axes[1, pane, k]
+            normals[i, k] = side * along / math.sqrt(length)
+    return ahead, normals
+
+
+@kernel
+def _falling_root(square: float, linear: float, height: float, side: float) -> float:
+    """Where a parabola passes 0 downwards (upwards for a side of -1); where it comes closest if it never does.
+
+    NaN where there is no such place.
+    """
+    inner = linear * linear - 4.0 * square * height
+    if inner < 0.0:
+        return -linear / (2.0 * square)
+    root = side * math.sqrt(inner)
+    if linear * side <= 0.0:
+        below = root - linear
+        return 2.0 * height / below if below != 0.0 else math.nan
+    return -(linear + root) / (2.0 * square) if square != 0.0 else math.nan

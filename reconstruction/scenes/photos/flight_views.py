@@ -1,0 +1,151 @@
+"""Cameras of a planned or flown flight, as the photos that are to be rendered."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.geo.frames import Vec3
+from planning.plan import Camera, Plan, Viewpoint
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
+from reconstruction.photos.write import photo_name
+from reconstruction.scenes.photos.camera_model import SHUTTER_S, Moment, Taking, bent_lens
+
+Array = NDArray[np.float64]
+
+FIRST_AT, BETWEEN = datetime(2024, 5, 1, 10, 0, 0), timedelta(seconds=5)
+"""When photos of a plan, which has no clock, are said to be taken."""
+
+BETWEEN_SORTIES = timedelta(hours=1)
+"""From the start of a flown sortie's record to that of the next; records count their own time."""
+
+WIDTHS_PX = (16, 20_000)
+"""Narrower pictures show nothing, wider ones no camera takes."""
+
+SAME_PLACE_M = 0.01
+"""Two places nearer to each other than this give no direction."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """Where a camera was and looked, and when.
+
+    Parameters
+    ----------
+    at
+        Counts from the first sortie's start.
+    sortie
+        Photos of one are told wrong alike.
+    velocity_enu_m_s
+        At the shutter; planned aircraft stop for every photo.
+    exposure_s
+        How long the shutter was open, where that is known.
+    """
+
+    view: Viewpoint
+    at: timedelta
+    sortie: int = 0
+    velocity_enu_m_s: Vec3 = (0.0, 0.0, 0.0)
+    exposure_s: float | None = None
+
+
+def planned_shots(plan: Plan) -> tuple[Shot, ...]:
+    """Shots of a plan in the order of flight; viewpoints that are in no sortie come last."""
+    in_order = [(id_, number) for number, sortie in enumerate(plan.sorties) for id_ in sortie.viewpoint_ids]
+    place = {id_: (index, number) for index, (id_, number) in enumerate(in_order)}
+    last = len(in_order), len(plan.sorties)
+    views = sorted(plan.viewpoints, key=lambda view: place.get(view.id, last)[0])
+    return tuple(Shot(view, n * BETWEEN, place.get(view.id, last)[1]) for n, view in enumerate(views))
+
+
+def lens_of(camera: Camera, width_px: int | None = None, taking: Taking | None = None) -> Intrinsics:
+    """Of a planned camera whose pictures are made `width_px` wide, in the same shape; None: as the camera takes them.
+
+    Raises
+    ------
+    ValueError
+        The width cannot be one of a picture.
+    InputError
+        The distortion folds the picture.
+    """
+    lens = Intrinsics.of(camera)
+    if taking is not None:
+        lens = bent_lens(lens, taking.distortion)
+    if width_px is None:
+        return lens
+    if not WIDTHS_PX[0] <= width_px <= WIDTHS_PX[1]:
+        raise ValueError(f"width_px: expected {WIDTHS_PX[0]} to {WIDTHS_PX[1]}, got {width_px}")
+    return lens.scaled(width_px, max(1, round(width_px * lens.height_px / lens.width_px)))
+
+
+def posed_photos(shots: Iterable[Shot], lens: Intrinsics, folder: Path) -> tuple[PosedPhoto, ...]:
+    """Photos of shots, in the order of time, named as DJI's cameras name them, to lie in `folder`."""
+    photos = []
+    for number, shot in enumerate(_in_order(shots), 1):
+        taken_at = FIRST_AT + shot.at
+        name = photo_name(number, taken_at)
+        photos.append(PosedPhoto(name, folder / name, lens, Pose.of(shot.view), taken_at))
+    return tuple(photos)
+
+
+def moments(shots: Iterable[Shot], taking: Taking) -> tuple[Moment, ...]:
+    """How the photos of shots come about, in the order of `posed_photos`."""
+    found = []
+    for sortie, group in groupby(_in_order(shots), key=lambda shot: shot.sortie):
+        row = list(group)
+        velocities: Array = np.array([shot.velocity_enu_m_s for shot in row], np.float64)
+        if taking.speed_m_s is not None:
+            velocities = taking.speed_m_s * _courses(row)
+        for shot, (east, north, up) in zip(row, velocities.tolist(), strict=True):
+            known_s = SHUTTER_S if shot.exposure_s is None else shot.exposure_s
+            exposure_s = known_s if taking.shutter_s is None else taking.shutter_s
+            found.append(Moment(sortie, (east, north, up), exposure_s))
+    return tuple(found)
+
+
+def _in_order(shots: Iterable[Shot]) -> list[Shot]:
+    return sorted(shots, key=lambda shot: shot.at)
+
+
+def _courses(row: Sequence[Shot]) -> Array:
+    """Unit vectors along which a row of shots is passed: from the one before to the one after, shape (n, 3).
+
+    To the right of the camera where these are in one place.
+    """
+    places = np.array([shot.view.position_enu_m for shot in row])
+    if len(row) == 1:
+        chords = np.zeros((1, 3))
+    else:
+        following, before = np.minimum(np.arange(len(row)) + 1, len(row) - 1), np.maximum(np.arange(len(row)) - 1, 0)
+        chords = places[following] - places[before]
+    lengths = np.linalg.norm(chords, axis=1, keepdims=True)
+    rights = np.array([Pose.of(shot.view).cam_from_enu[0] for shot in row])
+    return np.asarray(np.where(lengths > SAME_PLACE_M, chords / np.maximum(lengths, SAME_PLACE_M), rights))
+
+
+def flown_shots(
+    sorties: Sequence[Sequence[tuple[Viewpoint, float]]],
+    motions: Sequence[Sequence[tuple[Vec3, float | None]]] | None = None,
+) -> tuple[Shot, ...]:
+    """Shots of a flight.
+
+    Parameters
+    ----------
+    sorties
+        Each one's poses with seconds since the start of its record.
+    motions
+        Velocity at the shutter (ENU) and exposure in seconds (None where it is not known) of each; none: all hovered.
+    """
+    held: tuple[Vec3, float | None] = ((0.0, 0.0, 0.0), None)
+    rows = [[held] * len(sortie) for sortie in sorties] if motions is None else motions
+    return tuple(
+        Shot(view, number * BETWEEN_SORTIES + timedelta(seconds=time_s), number, velocity, exposure_s)
+        for number, (sortie, row) in enumerate(zip(sorties, rows, strict=True))
+        for (view, time_s), (velocity, exposure_s) in zip(sortie, row, strict=True)
+    )

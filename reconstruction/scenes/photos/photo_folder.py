@@ -1,0 +1,154 @@
+"""A folder of rendered photos with their truth: begun, gone on with after an interruption, and finished.
+
+It is a data set as `reconstruction.dataset` writes it, with more layers (docs/file-formats.md). `scene.json` says which
+photos are complete; a photo counts only from then on, when all of its files are there.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+
+from planning.base.effects import Decision
+from planning.base.errors import InputError
+from planning.base.files import read_given
+from planning.base.json_file import write_atomically
+from planning.base.progress import QUIET, Monitor
+from planning.geo.mesh import TriangleMesh, from_corners, join
+from planning.site.records import panel_triangles
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.base.ray_casting import RayCaster
+from reconstruction.dataset.points import start_points
+from reconstruction.dataset.records import transforms, write_records
+from reconstruction.photos.decode import PICTURE_FILE, decoded
+from reconstruction.scenes.effects.names import DISTORTION
+from reconstruction.scenes.effects.registry import decide_effects
+from reconstruction.scenes.photos.camera_model import Moment
+from reconstruction.scenes.photos.exposing import captures_of, common_exposure
+from reconstruction.scenes.photos.photo_job import PhotoJob
+from reconstruction.scenes.photos.photo_layers import ARRAYS, BYTES_PER_PIXEL, PICTURES, layer_file
+from reconstruction.scenes.photos.render_workers import photographed
+from reconstruction.scenes.photos.run_record import captures_record, kept_photos, run_record, write_run
+from reconstruction.scenes.world.record import Layer, Scene
+
+
+@dataclass(frozen=True, slots=True)
+class ScenePhotos:
+    """What was written; `n_kept` photos were complete before."""
+
+    folder: Path
+    photos: tuple[PosedPhoto, ...]
+    decisions: tuple[Decision, ...]
+    n_kept: int
+
+
+def photograph(
+    job: PhotoJob, folder: Path, n_processes: int | None = None, monitor: Monitor = QUIET, *, cluster: Any = None
+) -> ScenePhotos:
+    """Render the photos that the folder lacks, and write what belongs to all of them.
+
+    Parameters
+    ----------
+    n_processes
+        That render side by side; one for every four cores by default.
+    cluster
+        Client of a Dask cluster (`planning.base.parallel_map`) whose workers render instead.
+
+    Raises
+    ------
+    InputError
+        There are no photos, the folder holds something else or photos of another run, or it has no room.
+    ReconstructionError
+        A process ended before its photo was done; a cluster is gone, or cannot render one.
+    OperationCancelled
+        From `monitor`; photos that are complete stay, and the same call goes on with the others.
+    """
+    if not job.photos:
+        raise InputError("there are no views to photograph; name a plan or flight that has some")
+    monitor.report("deciding on effects", 0, 1)
+    job = replace(job, moments=job.moments or (Moment(),) * len(job.photos))
+    found = decide_effects(job.scene, job.photos, job.settings, job.taking, job.moments)
+    decisions = tuple(found.values())
+    if not found[DISTORTION].on:
+        straight = tuple(replace(photo, intrinsics=photo.intrinsics.straight()) for photo in job.photos)
+        job = replace(job, photos=straight)
+    decided = replace(job, settings=job.settings.decided(decisions))
+    run = run_record(job, decisions)
+    files = kept_photos(folder, run)
+    missing = [number for number, photo in enumerate(job.photos) if photo.name not in files]
+    _check_room(folder, job.photos, len(missing))
+    _make_folders(folder)
+    exposure = common_exposure(decided)
+    decided = replace(decided, captures=captures_of(decided, exposure, monitor))
+    run |= {"exposure": exposure, "captures": captures_record(decided)}
+    write_run(folder, run, files)
+    for name, content in job.companions.items():
+        write_atomically(folder / name, content)
+    n_kept = len(files)
+    # Closed at once where the user cancels, so that no process goes on.
+    with closing(photographed(decided, folder, exposure, missing, n_processes, monitor, cluster)) as rendered:
+        for number, written in rendered:
+            files[job.photos[number].name] = written
+            write_run(folder, run, files)
+    _write_records(job, folder, decisions, monitor)
+    write_run(folder, run, files, is_complete=True)
+    return ScenePhotos(folder, job.photos, decisions, n_kept)
+
+
+def _mesh(scene: Scene, layers: Sequence[Layer]) -> TriangleMesh:
+    """Bodies of some layers, and all panes."""
+    panes = from_corners(panel_triangles(scene.panes.corners_enu_m))
+    return join([*(body.mesh for body in scene.bodies if body.layer in layers), panes])
+
+
+def _make_folders(folder: Path) -> None:
+    try:
+        for name in ("images", *ARRAYS, *PICTURES):
+            (folder / name).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made ({error.strerror or error}); name another folder") from error
+
+
+def _check_room(folder: Path, photos: Sequence[PosedPhoto], n_missing: int) -> None:
+    """Say before hours of work that the disk is too small for them."""
+    lens = photos[0].intrinsics
+    needed = BYTES_PER_PIXEL * lens.width_px * lens.height_px * n_missing
+    there = next(place for place in (folder.absolute(), *folder.absolute().parents) if place.exists())
+    free = shutil.disk_usage(there).free
+    if needed > free:
+        raise InputError(
+            f"{folder}: {n_missing} photos with their truth take about {_size_text(needed)}, and {_size_text(free)} "
+            "are free there; make room, name a folder on another disk, or ask for smaller pictures (--width)"
+        )
+
+
+def _size_text(n_bytes: int) -> str:
+    size, unit = next(((size, unit) for size, unit in ((1e9, "GB"), (1e6, "MB")) if n_bytes >= size), (1e3, "kB"))
+    return f"{n_bytes / size:.1f} {unit}"
+
+
+def _write_records(job: PhotoJob, folder: Path, decisions: Sequence[Decision], monitor: Monitor) -> None:
+    """Cameras and points for those who train on the photos."""
+    points = start_points(_mesh(job.scene, (Layer.BUILDING, Layer.NEAR)), job.n_points, job.scene.seed)
+    everything = RayCaster(_mesh(job.scene, tuple(Layer)))
+    for done, photo in enumerate(job.photos):
+        monitor.report("colouring points", done, len(job.photos))
+        picture = decoded(read_given(photo.path, PICTURE_FILE), cv2.IMREAD_COLOR, str(photo.path))
+        points.add(photo, np.asarray(picture, np.uint8), everything)
+    monitor.report("writing cameras and points", 0, 1)
+    # What an earlier end of this run left; models are written into empty folders only.
+    shutil.rmtree(folder / "sparse" / "0", ignore_errors=True)
+    write_records(folder, job.photos, job.scene.site.site, points, decisions, 1)
+    content = transforms(job.photos)
+    for photo, frame in zip(job.photos, content["frames"], strict=True):
+        for layer in (*ARRAYS, "glass"):
+            frame[f"{layer}_path"] = layer_file(Path(), layer, photo.name).as_posix()
+    write_atomically(folder / "transforms.json", json.dumps(content, indent=1).encode())

@@ -1,0 +1,1 @@
+"""Virtual scenes: what stands there, and what it is made of."""

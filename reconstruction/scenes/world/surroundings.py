@@ -1,0 +1,215 @@
+"""What stands around a site: ground, the buildings opposite, trees, cars and people."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.geo.mesh import TriangleMesh, extrude, join
+from planning.site.records import Obstacle, SiteModel, box_geometry
+from reconstruction.scenes.world.look import Look
+from reconstruction.scenes.world.record import Body, Layer, Rgb, Texture
+from reconstruction.scenes.world.solids import (
+    CAR_DARK,
+    CAR_PAINT,
+    PERSON_CLOTHES,
+    PERSON_DARK,
+    PERSON_SKIN,
+    Part,
+    boxes,
+    crown,
+    flat,
+    walls,
+)
+from reconstruction.scenes.world.streets import FreeGround, Street, streets
+from reconstruction.scenes.world.textures import grain, paving, windows
+
+Array = NDArray[np.float64]
+
+GROUND_HALF_M = 1500.0
+"""Seen from 20 m above, its edge is 0.8 degrees below the horizon."""
+
+PAVEMENT_M = 5.0
+"""Width of the pavements on both sides of a street."""
+
+BEYOND_M = 25.0
+"""The row of buildings opposite goes on this far beyond the facade at both ends."""
+
+RAISED_M = 0.02
+"""Pavements and markings lie this far above what is below them."""
+
+CAR_COLOURS: tuple[Rgb, ...] = (
+    (0.75, 0.75, 0.76), (0.06, 0.06, 0.07), (0.45, 0.05, 0.05), (0.08, 0.16, 0.4), (0.4, 0.41, 0.42),
+)  # fmt: skip
+CLOTHES: tuple[Rgb, ...] = ((0.7, 0.1, 0.08), (0.1, 0.25, 0.6), (0.8, 0.75, 0.2), (0.15, 0.4, 0.2), (0.8, 0.8, 0.8))
+DARK, SKIN, MARKING = (0.04, 0.04, 0.045), (0.5, 0.34, 0.26), (0.75, 0.75, 0.72)
+WALL_COLOURS: tuple[Rgb, ...] = (
+    (0.75, 0.7, 0.6), (0.55, 0.3, 0.2), (0.8, 0.8, 0.78), (0.45, 0.45, 0.44), (0.7, 0.6, 0.35), (0.5, 0.55, 0.6),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surroundings:
+    """What stands around, and the site with the high ones among its obstacles."""
+
+    model: SiteModel
+    bodies: tuple[Body, ...]
+
+
+def surround(model: SiteModel, look: Look, rng: np.random.Generator) -> Surroundings:
+    """Ground below a site and a street before each of its facades.
+
+    Nothing meets the building, the site's own obstacles, home or rally points; a building that would stand in another
+    facade's street is left out.
+    """
+    sides = streets(model)
+    ground = FreeGround(model, sides, look.street_m)
+    builder = _Builder(rng, look, ground, model.site.airspace.ground_z_m)
+    builder.lay_ground(model, sides)
+    for side in sides:
+        builder.put_buildings(side)
+    for side in sides:
+        builder.put_trees(side)
+        builder.put_cars(side)
+        builder.put_people(side)
+    return Surroundings(_with_obstacles(model, builder.high), builder.bodies())
+
+
+class _Builder:
+    """Collects meshes by what they are made of, so that a scene has few bodies."""
+
+    def __init__(self, rng: np.random.Generator, look: Look, ground: FreeGround, ground_z_m: float) -> None:
+        self._rng, self._look, self._ground, self._z = rng, look, ground, ground_z_m
+        self._meshes: dict[str, list[TriangleMesh]] = defaultdict(list)
+        self._materials: dict[str, tuple[Layer, Rgb, Texture | None]] = {}
+        self.high: list[tuple[str, TriangleMesh]] = []
+        self._facings = [
+            windows(rng, colour, rng.uniform(2.4, 4.2), rng.uniform(2.9, 3.8), tuple(rng.uniform(0.45, 0.8, 2)))
+            for colour in WALL_COLOURS
+        ]
+        self._leaves = grain(rng, (0.13, 0.24, 0.07), 0.5, 60.0)
+
+    def bodies(self) -> tuple[Body, ...]:
+        """All that was built."""
+        return tuple(
+            Body(name, layer, join(self._meshes[name]), albedo, texture)
+            for name, (layer, albedo, texture) in self._materials.items()
+        )
+
+    def _add(
+        self, name: str, mesh: TriangleMesh, albedo: Rgb, texture: Texture | None = None, layer: Layer = Layer.NEAR
+    ) -> None:
+        self._materials.setdefault(name, (layer, albedo, texture))
+        self._meshes[name].append(mesh)
+
+    def lay_ground(self, model: SiteModel, sides: tuple[Street, ...]) -> None:
+        """Asphalt all around, pavements and a dashed line along every street."""
+        rng, width, white = self._rng, self._look.street_m, (1.0, 1.0, 1.0)
+        points = np.array([corner for panel in model.site.panels for corner in panel.corners_enu_m])[:, :2]
+        east, north = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        half = GROUND_HALF_M
+        west, south, east, north = east - half, north - half, east + half, north + half
+        square = np.array([[west, south], [east, south], [east, north], [west, north]])
+        self._add("asphalt", flat(square, self._z), white, grain(rng, (0.13, 0.13, 0.135), 0.25, 40.0), Layer.GROUND)
+        slabs = paving(rng, (0.42, 0.4, 0.37))
+        for side in sides:
+            way = (-side.half_m - BEYOND_M, side.half_m + BEYOND_M)
+            for across in ((0.0, PAVEMENT_M), (width - PAVEMENT_M, width)):
+                strip = flat(side.rectangle(way, across), self._z + RAISED_M)
+                self._add("pavement", strip, white, slabs, Layer.GROUND)
+            for start in np.arange(way[0], way[1] - 3.0, 7.0):
+                dash = side.rectangle((start, start + 3.0), (0.5 * width - 0.08, 0.5 * width + 0.08))
+                self._add("markings", flat(dash, self._z + 2.0 * RAISED_M), MARKING, None, Layer.GROUND)
+
+    def put_buildings(self, side: Street) -> None:
+        """A row along the other side of a street."""
+        rng, look = self._rng, self._look
+        along, end = -side.half_m - BEYOND_M, side.half_m + BEYOND_M
+        while along < end:
+            width, depth = rng.uniform(9.0, 20.0), rng.uniform(10.0, 16.0)
+            front, height = look.street_m + rng.uniform(0.0, 1.5), rng.uniform(*look.opposite_height_m)
+            kind, shade = int(rng.integers(len(self._facings))), rng.uniform(0.75, 1.0)
+            outline = side.rectangle((along, along + width), (front, front + depth))
+            if self._ground.take(outline, "streets"):
+                name = f"opposite-{len(self.high):02d}"
+                top = self._z + height
+                self._add(name, walls(outline, self._z, top), (shade, shade, shade), self._facings[kind])
+                self._add("roofs", flat(outline, top), (0.35, 0.33, 0.32))
+                self.high.append((name, extrude(outline, self._z, top)))
+            along += width + rng.choice([0.1, 0.1, rng.uniform(1.0, 6.0)])
+
+    def _along(self, side: Street, spacing_m: float) -> Array:
+        """Places along a street, about `spacing_m` apart."""
+        if spacing_m <= 0.0:
+            return np.zeros(0)
+        start, end = -side.half_m - BEYOND_M, side.half_m + BEYOND_M
+        places = np.arange(start + 0.5 * spacing_m, end, spacing_m)
+        return np.asarray(places + self._rng.uniform(-0.25, 0.25, len(places)) * spacing_m)
+
+    def put_trees(self, side: Street) -> None:
+        """On the pavement opposite."""
+        rng, across = self._rng, self._look.street_m - 3.0
+        for along in self._along(side, self._look.tree_spacing_m):
+            radius, stem = rng.uniform(1.1, 1.8), rng.uniform(2.4, 3.4)
+            reach = 1.4 * radius
+            outline = side.rectangle((along - reach, along + reach), (across - reach, across + reach))
+            middle = side.points_enu_m(np.array([along, across, stem + radius]))
+            leaves = crown(rng, middle, radius)
+            if self._ground.take(outline, "fronts"):
+                trunk = boxes(side, along, across, (Part((-0.14, 0.14), (-0.14, 0.14), (0.0, stem + radius)),))
+                self._add("trunks", trunk, (0.16, 0.12, 0.09))
+                self._add("crowns", leaves, (1.0, 1.0, 1.0), self._leaves)
+                self.high.append((f"tree-{len(self.high):02d}", join([trunk, leaves])))
+
+    def put_cars(self, side: Street) -> None:
+        """Parked along both kerbs."""
+        for across in (PAVEMENT_M + 1.3, self._look.street_m - PAVEMENT_M - 1.3):
+            for along in self._along(side, self._look.car_spacing_m):
+                colour = int(self._rng.integers(len(CAR_COLOURS)))
+                outline = side.rectangle((along - 2.4, along + 2.4), (across - 1.0, across + 1.0))
+                if self._ground.take(outline, "fronts"):
+                    self._add(f"cars-{colour}", boxes(side, along, across, CAR_PAINT), CAR_COLOURS[colour])
+                    self._add("dark", boxes(side, along, across, CAR_DARK), DARK)
+
+    def put_people(self, side: Street) -> None:
+        """On the pavements of both sides."""
+        rng, width = self._rng, self._look.street_m
+        spacing = self._look.people_spacing_m
+        half = side.half_m + 5.0
+        for _ in range(round(2.0 * half / spacing) if spacing > 0.0 else 0):
+            along = rng.uniform(-half, half)
+            across = rng.uniform(1.0, PAVEMENT_M) + rng.choice([0.0, width - PAVEMENT_M - 1.0])
+            size, colour = rng.uniform(0.9, 1.1), int(rng.integers(len(CLOTHES)))
+            outline = side.rectangle((along - 0.25, along + 0.25), (across - 0.2, across + 0.2))
+            if not self._ground.take(outline, "walls"):
+                continue
+            self._add(f"clothes-{colour}", boxes(side, along, across, PERSON_CLOTHES, size), CLOTHES[colour])
+            self._add("dark", boxes(side, along, across, PERSON_DARK, size), DARK)
+            self._add("skin", boxes(side, along, across, PERSON_SKIN, size), SKIN)
+
+
+def _with_obstacles(model: SiteModel, high: list[tuple[str, TriangleMesh]]) -> SiteModel:
+    """The site with what flights have to keep away from, too."""
+    added = [_obstacle(f"scene-{name}", mesh) for name, mesh in high]
+    meshes = [
+        mesh if obstacle.box_enu_m is None else box_geometry(obstacle)
+        for obstacle, (_, mesh) in zip(added, high, strict=True)
+    ]
+    return replace(
+        model,
+        site=replace(model.site, obstacles=(*model.site.obstacles, *added)),
+        obstacles=(*model.obstacles, *meshes),
+    )
+
+
+def _obstacle(name: str, mesh: TriangleMesh) -> Obstacle:
+    """The box around something, but for buildings at an angle to the axes, whose box would narrow the street."""
+    low, high = mesh.vertices_enu_m.min(axis=0), mesh.vertices_enu_m.max(axis=0)
+    is_aligned = bool((np.isclose(mesh.vertices_enu_m, low) | np.isclose(mesh.vertices_enu_m, high)).all())
+    if "opposite" in name and not is_aligned:
+        return Obstacle(name, mesh=f"{name}.ply")
+    (x0, y0, z0), (x1, y1, z1) = (tuple(float(value) for value in corner) for corner in (low, high))
+    return Obstacle(name, box_enu_m=((x0, y0, z0), (x1, y1, z1)))

@@ -1,0 +1,1 @@
+"""How the number of splats follows the detail there is."""

@@ -1,0 +1,258 @@
+"""Splats as PLY files: what other programs read and show, and what we read back bit by bit.
+
+Files of kind `2dgs` have two sizes per splat, those of kind `3dgs` three: of discs the third is next to nothing, for
+programs that know ellipsoids only. Columns stand in the order that programs go by that do not look at names; ours come
+after them. Other programs show the diffuse colour alone: none of them can render mirrored light. Attributes that only
+one method has are not in the files.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from planning.base.errors import InputError
+from reconstruction.light.shading import BASE_REFLECTANCE, REFLECTIVITY
+from reconstruction.splats.harmonic_colour import N_HARMONICS
+from reconstruction.splats.ply_file import AT_ONCE, PlyHeader, read_blocks, read_header, write_blocks
+from reconstruction.splats.rasterising.raster_types import FLAT, SOLID
+from reconstruction.splats.splats import NO_PANEL, SHAPES, Splats, normals_of
+
+Kind = Literal["2dgs", "3dgs"]
+
+FORMAT = "reflight-splats/1"
+
+ORIGIN = "origin_enu_m"
+
+ELLIPSOIDS = "splats: ellipsoids"
+"""Comment of our files of ellipsoids."""
+
+THICKNESS_LOG_M = math.log(1e-6)
+"""Third size of a disc where there must be one, as 2DGS recommends."""
+
+FLATTEST_LOG = math.log(0.01)
+"""Of ellipsoids, third size over the smaller of the others: where all of a file are flatter, they are discs."""
+
+ODD = np.array([1 if m % 2 == 0 else -1 for degree in range(4) for m in range(-degree, degree + 1)], np.float32)
+"""Other programs' harmonics have the phase (-1)^m, ours have not."""
+
+PLACE = ("x", "y", "z")
+NORMAL = ("nx", "ny", "nz")
+MEAN_COLOUR = tuple(f"f_dc_{i}" for i in range(3))
+SIZES = tuple(f"scale_{i}" for i in range(SOLID))
+ROTATION = tuple(f"rot_{i}" for i in range(4))
+GLASS = ("refgs_r", "refgs_f0_0", "refgs_f0_1", "refgs_f0_2")
+PANEL = "panel_id"
+
+REST_OF_DEGREE = {0: 0, 9: 1, 24: 2, 45: 3}
+"""Degree of the harmonics by the number of `f_rest` columns."""
+
+LARGEST_LOG = 20.0
+"""Of a size in metres: e^20 is further than the moon."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SplatsOfFile:
+    """What a file holds.
+
+    Parameters
+    ----------
+    origin_enu_m
+        Of the frame of the means, in the site's; (0, 0, 0) where the file does not say.
+    """
+
+    splats: Splats
+    origin_enu_m: tuple[float, float, float]
+
+
+def render_mode(mode: Literal["2dgs", "mip", ""]) -> list[str]:
+    """The comment by which a file says how it is to be drawn: as discs, as antialiased ellipsoids, or as usual."""
+    return [f"SplatRenderMode: {mode}"] if mode else []
+
+
+def write_splats(
+    path: Path,
+    splats: Splats,
+    kind: Kind,
+    origin_enu_m: Sequence[float] = (0.0, 0.0, 0.0),
+    comments: Sequence[str] = (),
+) -> None:
+    """Write splats, whole or not at all.
+
+    Parameters
+    ----------
+    kind
+        Ellipsoids can only be `3dgs`.
+    origin_enu_m
+        Of the model's frame, in the site's, written as a comment.
+    comments
+        More of them, each of one line: the site and its place on Earth for example.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    if kind == "2dgs" and not splats.is_flat:
+        raise ValueError("kind: expected '3dgs' for ellipsoids, got '2dgs'")
+    origin = " ".join(repr(float(value)) for value in origin_enu_m)
+    lines = [
+        FORMAT,
+        *([] if splats.is_flat else [ELLIPSOIDS]),
+        *render_mode("2dgs" if kind == "2dgs" else ""),
+        f"{ORIGIN}: {origin}",
+        "axes: x east, y north, z up, metres, counted from the origin",
+        "refgs_r and refgs_f0 are logits, as opacity is; panel_id counts from 0, -1 is no glass",
+        *(" ".join(comment.split()) for comment in comments),
+    ]
+    write_blocks(path, len(splats), _row_type(kind), lines, _blocks(splats, kind))
+
+
+def _row_type(kind: Kind) -> np.dtype[Any]:
+    rest = tuple(f"f_rest_{i}" for i in range(3 * (N_HARMONICS - 1)))
+    sizes = SIZES[:FLAT] if kind == "2dgs" else SIZES
+    names = (*PLACE, *NORMAL, *MEAN_COLOUR, *rest, "opacity", *sizes, *ROTATION, *GLASS)
+    return np.dtype([*((name, "<f4") for name in names), (PANEL, "<i4")])
+
+
+def _blocks(splats: Splats, kind: Kind) -> Iterator[NDArray[Any]]:
+    row = _row_type(kind)
+    for start in range(0, len(splats), AT_ONCE):
+        part = {name: getattr(splats, name).detach()[start : start + AT_ONCE].cpu().numpy() for name in SHAPES}
+        table = np.zeros(len(part["means"]), row)
+        _put(table, PLACE, part["means"])
+        if splats.is_flat:
+            _put(table, NORMAL, normals_of(torch.from_numpy(part["quats"])).numpy())
+        sh = part["sh"] * ODD[:, None]
+        _put(table, MEAN_COLOUR, sh[:, 0])
+        # All of red, then of green, then of blue.
+        rest = sh[:, 1:].transpose(0, 2, 1).reshape(len(sh), -1)
+        _put(table, [f"f_rest_{i}" for i in range(rest.shape[1])], rest)
+        table["opacity"] = part["opacity_logits"]
+        _put(table, SIZES[: part["log_scales"].shape[1]], part["log_scales"])
+        if kind == "3dgs" and splats.is_flat:
+            table["scale_2"] = THICKNESS_LOG_M
+        _put(table, ROTATION, part["quats"])
+        table["refgs_r"] = part["reflectivity_logits"]
+        _put(table, GLASS[1:], part["f0_logits"])
+        table[PANEL] = splats.panels[start : start + AT_ONCE].cpu().numpy()
+        yield table
+
+
+def read_splats(path: Path) -> SplatsOfFile:
+    """Read splats of ours or of another program.
+
+    Lower degrees of harmonics, and no columns of ours, are as good: then nothing is glass. Splats of three sizes are
+    ellipsoids, unless all of them are as good as flat.
+
+    Raises
+    ------
+    InputError
+        The file is missing or damaged, has no splats, or numbers that are not finite.
+    """
+    header = read_header(path)
+    degree = _checked(header, path)
+    n = header.n_rows
+    shapes = SHAPES | {"log_scales": (SOLID if "scale_2" in header.names else FLAT,)}
+    values = {name: np.zeros((n, *shape), np.float32) for name, shape in shapes.items()}
+    values["reflectivity_logits"][:] = math.log(REFLECTIVITY / (1.0 - REFLECTIVITY))
+    values["f0_logits"][:] = math.log(BASE_REFLECTANCE / (1.0 - BASE_REFLECTANCE))
+    panels = np.full(n, NO_PANEL, np.int32)
+    first = 0
+    for block in read_blocks(path, header):
+        rows = slice(first, first + len(block))
+        _take(block, header, degree, values, panels, rows, path)
+        first += len(block)
+    if ELLIPSOIDS not in header.comments and _are_discs(values["log_scales"]):
+        values["log_scales"] = np.ascontiguousarray(values["log_scales"][:, :FLAT])
+    tensors = {name: torch.from_numpy(value) for name, value in values.items()}
+    return SplatsOfFile(Splats(tensors, torch.from_numpy(panels)), _origin(header, path))
+
+
+def _checked(header: PlyHeader, path: Path) -> int:
+    """Degree of the harmonics, after a look whether all columns are there."""
+    needed = (*PLACE, *MEAN_COLOUR, "opacity", *SIZES[:FLAT], *ROTATION)
+    missing = [name for name in needed if name not in header.names]
+    if missing:
+        raise InputError(f"{path}: has no '{missing[0]}', so these are points and not splats")
+    n_rest = sum(name.startswith("f_rest_") for name in header.names)
+    if n_rest not in REST_OF_DEGREE or not header.names.issuperset(f"f_rest_{i}" for i in range(n_rest)):
+        raise InputError(f"{path}: expected 0, 9, 24 or 45 columns f_rest_0 and so on, found {n_rest}")
+    types = dict(header.columns)
+    used = (*needed, *SIZES)
+    wrong = [name for name in types if name in used or name.startswith("f_rest_") if types[name] != "<f4"]
+    if wrong:
+        raise InputError(f"{path}: '{wrong[0]}': expected float, found another type")
+    if not header.n_rows:
+        raise InputError(f"{path}: holds no splats")
+    return REST_OF_DEGREE[n_rest]
+
+
+def _take(
+    block: NDArray[Any],
+    header: PlyHeader,
+    degree: int,
+    values: dict[str, NDArray[np.float32]],
+    panels: NDArray[np.int32],
+    rows: slice,
+    path: Path,
+) -> None:
+    values["means"][rows] = _columns(block, PLACE)
+    values["sh"][rows, 0] = _columns(block, MEAN_COLOUR)
+    n_rest = (degree + 1) ** 2 - 1
+    if n_rest:
+        rest = _columns(block, [f"f_rest_{i}" for i in range(3 * n_rest)])
+        turned = rest.reshape(-1, 3, n_rest).transpose(0, 2, 1)
+        values["sh"][rows, 1 : 1 + n_rest] = turned * ODD[1 : 1 + n_rest, None]
+    values["opacity_logits"][rows] = block["opacity"]
+    sizes = _columns(block, SIZES[: values["log_scales"].shape[1]])
+    # Programs write the logarithm of a thickness of 0, too.
+    sizes[:, FLAT:][np.isneginf(sizes[:, FLAT:])] = THICKNESS_LOG_M
+    values["log_scales"][rows] = sizes
+    values["quats"][rows] = _columns(block, ROTATION)
+    if header.names.issuperset((*GLASS, PANEL)):
+        values["reflectivity_logits"][rows] = block[GLASS[0]]
+        values["f0_logits"][rows] = _columns(block, GLASS[1:])
+        panels[rows] = block[PANEL]
+    for name, value in values.items():
+        if not np.isfinite(value[rows]).all():
+            raise InputError(f"{path}: holds numbers that are not finite, among them {name} of splats")
+    if (values["log_scales"][rows] > LARGEST_LOG).any() or (panels[rows] < NO_PANEL).any():
+        raise InputError(f"{path}: holds sizes or panels that cannot be; the file is damaged")
+
+
+def _are_discs(log_scales: NDArray[np.float32]) -> bool:
+    """Whether the third size, if there is one, says nothing."""
+    if log_scales.shape[1] == FLAT:
+        return True
+    thickness, smaller = log_scales[:, FLAT], log_scales[:, :FLAT].min(axis=1)
+    return bool((thickness <= np.maximum(smaller + FLATTEST_LOG, THICKNESS_LOG_M)).all())
+
+
+def _origin(header: PlyHeader, path: Path) -> tuple[float, float, float]:
+    line = next((comment for comment in header.comments if comment.startswith(f"{ORIGIN}:")), None)
+    if line is None:
+        return (0.0, 0.0, 0.0)
+    try:
+        x, y, z = (float(word) for word in line.removeprefix(f"{ORIGIN}:").split())
+    except ValueError as error:
+        raise InputError(f"{path}: expected three numbers after '{ORIGIN}:', found '{line[:80]}'") from error
+    if not all(map(math.isfinite, (x, y, z))):
+        raise InputError(f"{path}: {ORIGIN}: expected finite numbers, found '{line[:80]}'")
+    return x, y, z
+
+
+def _put(table: NDArray[Any], names: Sequence[str], values: NDArray[np.float32]) -> None:
+    for column, name in enumerate(names):
+        table[name] = values[:, column]
+
+
+def _columns(block: NDArray[Any], names: Sequence[str]) -> NDArray[np.float32]:
+    return np.stack([block[name] for name in names], axis=1)

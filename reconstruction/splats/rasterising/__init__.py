@@ -1,0 +1,1 @@
+"""From splats to pictures: the interface, its backends, and the reference implementation."""

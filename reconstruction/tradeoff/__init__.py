@@ -1,0 +1,1 @@
+"""What accuracy costs in time: settings of searches, rendered photos and trainings, each turned for itself."""

@@ -1,0 +1,122 @@
+"""What effects of simulated photos are worth to who trains on them: a reflection model with and without each.
+
+A model that learned from photos without an effect is scored on unseen views with all of them, which is what the real
+facade would show; and on unseen views of its own kind, which is what a study that left the effect out would report.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from planning.base.effects import Decision, Wish
+from planning.base.progress import QUIET, Monitor
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.light.reflective_panels import ModelName
+from reconstruction.light.scoring import score_views
+from reconstruction.scenes.photos.photo_folder import photograph
+from reconstruction.scenes.photos.photo_job import PhotoJob
+from reconstruction.scenes.photos.renderer import RenderSettings
+from reconstruction.scenes.world.record import Scene
+from reconstruction.tradeoff.downstream import downstream_psnr
+
+N_POINTS = 100
+"""That a folder's records start from; rays on glass need none."""
+
+
+@dataclass(frozen=True, slots=True)
+class EffectWorth:
+    """What leaving an effect out does to a reflection model.
+
+    Parameters
+    ----------
+    effect
+        Empty for the photos with everything that the scene calls for.
+    photos_s
+        That rendering the photos took.
+    psnr_db, worst_db
+        On glass of unseen views with everything: mean and worst view.
+    own_db
+        On glass of unseen views rendered as those that it learned from.
+    """
+
+    effect: str
+    photos_s: float
+    psnr_db: float
+    worst_db: float
+    own_db: float
+
+
+def effects_worth(
+    scene: Scene,
+    photos: Sequence[PosedPhoto],
+    decisions: Sequence[Decision],
+    effects: Sequence[str],
+    folder: Path,
+    *,
+    model: ModelName = "mlp",
+    config: ReflectionConfig | None = None,
+    monitor: Monitor = QUIET,
+) -> tuple[EffectWorth, ...]:
+    """Train with everything that was decided for, and with each effect turned off that is on.
+
+    Parameters
+    ----------
+    photos
+        Of one flight, dozens of them; their paths do not matter.
+    effects
+        That are asked about; those that are off anyway are passed over.
+    folder
+        For the photos, a folder for each effect.
+
+    Raises
+    ------
+    InputError
+        The photos show too little glass, or the disk has no room.
+    OperationCancelled
+        From `monitor`.
+    """
+    decided: dict[str, Wish] = {decision.effect: ("on" if decision.on else "off") for decision in decisions}
+    asked = [decision.effect for decision in decisions if decision.on and decision.effect in effects]
+    everything = folder / "everything"
+    worths = []
+    for number, effect in enumerate(("", *asked)):
+        wishes = {**decided, effect: "off"} if effect else decided
+        here = folder / f"without-{number}" if effect else everything
+        seconds = _rendered_s(scene, photos, RenderSettings(wishes=wishes), here, monitor)
+        found = downstream_psnr(here, everything, model, config, monitor)
+        own = found.score if not effect else score_views(found.trained, read_photo_set(here), found.held_out, monitor)
+        worths.append(EffectWorth(effect, seconds, found.score.mean_db, found.score.worst_db, own.mean_db))
+    return tuple(worths)
+
+
+def _rendered_s(
+    scene: Scene, photos: Sequence[PosedPhoto], settings: RenderSettings, folder: Path, monitor: Monitor
+) -> float:
+    """Seconds that the photos of a folder took."""
+    placed = tuple(replace(photo, path=folder / "images" / photo.name) for photo in photos)
+    started = time.perf_counter()
+    photograph(PhotoJob(scene, placed, settings, {}, n_points=N_POINTS), folder, 1, monitor)
+    return time.perf_counter() - started
+
+
+def worth_rows(worths: Sequence[EffectWorth]) -> list[dict[str, Any]]:
+    """Rows of the table; the first is that of everything."""
+    base = worths[0]
+    return [
+        {
+            "photos": f"without {worth.effect}" if worth.effect else "with all that the scene calls for",
+            "photos_s": round(worth.photos_s, 2),
+            "psnr_db": round(worth.psnr_db, 2),
+            "lost_db": round(base.psnr_db - worth.psnr_db, 2),
+            "worst_db": round(worth.worst_db, 2),
+            "own_db": round(worth.own_db, 2),
+            "misjudged_db": round(worth.own_db - base.psnr_db, 2),
+        }
+        for worth in worths
+    ]

@@ -1,0 +1,145 @@
+"""Who looks on while a training runs, what they are shown, and where it stands."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+from reconstruction.metrics.image_metrics import psnr_db
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.training.losses.objective import display_of, on_device
+from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.photos.exposures import Exposures
+from reconstruction.training.photos.photo_stream import Sample
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Preview:
+    """How a view looks now: its picture, sRGB, shape (h, w, 3), uint8, at a step."""
+
+    step: int
+    picture: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldOut:
+    """A whole photo that is not learned from, and the gain that it is known to have."""
+
+    sample: Sample
+    gain: float
+
+
+VisitState = Literal["training", "paused", "settling"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Visit:
+    """A training between two steps, for somebody who looks at its model and must not change it.
+
+    Parameters
+    ----------
+    model
+        In evaluation mode until the visit ends.
+    exposures
+        Gains of the photos learned from, in the order of the record's `learned`.
+    record
+        Of the model, as `ModelRecord` has it.
+    step, seconds, progress
+        How far it is; progress 0 to 1.
+    terms
+        What each term of the loss was in the last step.
+    history
+        PSNR, dB, of held-out views, by seconds.
+    settings
+        Of the rasteriser.
+    """
+
+    model: SceneModel
+    exposures: Exposures
+    record: dict[str, Any]
+    state: VisitState
+    step: int
+    seconds: float
+    progress: float
+    terms: dict[str, float]
+    history: tuple[tuple[float, float], ...]
+    settings: RasterSettings
+
+
+@dataclass(slots=True, eq=False)
+class Watching:
+    """Who looks on while a training runs.
+
+    Parameters
+    ----------
+    monitor
+        Told about progress; cancels.
+    stop
+        Asked between steps; True: the model is good enough, and settles.
+    pause
+        Asked between steps; nothing goes on while it is True.
+    trace
+        Gets the quality, PSNR of held-out views over their facades, dB.
+    preview
+        Called with a picture of the first held-out view whenever the quality is measured.
+    visit
+        Called after each step, and again and again while it is paused; its time counts as the training's.
+    """
+
+    monitor: Monitor = QUIET
+    stop: Stop = never
+    pause: Stop = never
+    trace: Trace | None = None
+    preview: Callable[[Preview], None] | None = None
+    visit: Callable[[Visit], None] | None = None
+
+
+@torch.no_grad()
+def quality_db(shown: Sequence[HeldOut], displayed: Callable[[HeldOut], Tensor], device: torch.device) -> float:
+    """PSNR, dB, of all shown views together, over their facades; over all of a view that has none.
+
+    Parameters
+    ----------
+    displayed
+        A view as the model shows it, sRGB, 0 to 1, shape (h, w, 3).
+    """
+    squares, n_values = 0.0, 0
+    for held_out in shown:
+        sample = on_device(held_out.sample, device)
+        counted = sample.facade if bool(sample.facade.any()) else torch.ones_like(sample.facade)
+        errors = (displayed(held_out) - display_of(sample))[counted].square()
+        squares, n_values = squares + float(errors.sum(dtype=torch.float64)), n_values + errors.numel()
+    return psnr_db(squares / n_values)
+
+
+@dataclass(slots=True, eq=False)
+class Progress:
+    """Where a training stands; what a checkpoint has besides tensors.
+
+    Parameters
+    ----------
+    scored_step
+        At which the quality was measured last.
+    began_s
+        What had been spent when the joint training began.
+    """
+
+    step: int = 0
+    scored_step: int = -1
+    spent_s: float = 0.0
+    began_s: float = 0.0
+    factor: float = 1.0
+    n_undone: int = 0
+    window_px: int = 0
+    scored_at_s: float = -math.inf
+    saved_at_s: float = 0.0
+    history: list[tuple[float, float]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)

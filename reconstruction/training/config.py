@@ -1,0 +1,300 @@
+"""How a model is trained: one frozen configuration of paper Eqs. 23 to 27 and all that the paper leaves open."""
+
+from __future__ import annotations
+
+import math
+import types
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, is_dataclass
+from pathlib import Path
+from typing import Any, Literal, get_args, get_type_hints
+
+from planning.base.errors import InputError
+from planning.base.json_file import check_settings, to_record
+from reconstruction.light.config import PAPER_STAGES, HighFrequencyStage, ReflectionConfig
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.training.methods.registry import DEFAULT_METHOD, Method, method_named
+
+LightWish = Literal["auto", "harmonics", "environment-map", "mlp", "radiance-grid"]
+"""What mirrored light is learned with; `auto` leaves it to the scene."""
+
+GeometrySource = Literal["panels", "splats"]
+"""Where place and normal of a mirroring pixel come from: the panels' planes, or the splats as rendered."""
+
+StartFrom = Literal["surfaces", "points"]
+"""What splats begin on: panels and mesh, or points of photogrammetry, as published methods do."""
+
+Device = Literal["cpu", "cuda"]
+
+DensifyWish = Literal["adaptive", "mcmc", "none"]
+
+ANTIALIASED = RasterSettings(blur_px=math.sqrt(0.1), antialiased=True)
+"""With the blur of Mip-Splatting (Yu et al., 2024), about as wide as a pixel, which is 1/12 px^2; 3DGS has 0.3."""
+
+
+@dataclass(frozen=True, slots=True)
+class LossWeights:
+    """Weights of the terms, Eq. 27.
+
+    Parameters
+    ----------
+    dssim
+        lambda of Eq. 25; the paper's.
+    normal_consistency
+        lambda_n; the paper's.
+    normal_prior
+        lambda_np; 1 in the paper, where mirrored directions follow the splats' normals: use it with `geometry`
+        `splats`. With exact planes nothing mirrored depends on them, and 1 holds splats back: against 0 it cost 0.34 dB
+        on facades of unseen views, and 0.1 cost 0.11 dB. It still closes panes, behind which nothing is to be seen.
+    normal_smoothness
+        Of changes of normals where the photo does not change (Yao et al., 2025): 0 but for the method it is from.
+    consistent_from
+        Share of the training after which normals have to agree with the depth map (Eq. 26). Before, depths are those
+        of the start and of splats that still move; 2DGS, too, waits for about a quarter.
+    high_frequency
+        tau and lambda_hf, stages of equal length (Eq. 24). The paper's rise from 0.2 and 1 to 0.09 and 10; of the steps
+        between it says nothing. They brought 0.55 dB on facades of unseen views (the paper: 0.53).
+    high_frequency_from
+        Share of the training after which they begin: before, every pixel is among the worst.
+    """
+
+    dssim: float = 0.2
+    normal_consistency: float = 0.05
+    normal_prior: float = 0.1
+    normal_smoothness: float = 0.0
+    consistent_from: float = 0.25
+    high_frequency: tuple[HighFrequencyStage, ...] = PAPER_STAGES
+    high_frequency_from: float = 0.25
+
+    def __post_init__(self) -> None:
+        _require_share("dssim", self.dssim)
+        _require_share("consistent_from", self.consistent_from)
+        _require_share("high_frequency_from", self.high_frequency_from)
+        for name in ("normal_consistency", "normal_prior", "normal_smoothness"):
+            _require(name, getattr(self, name), "0 or more", getattr(self, name) >= 0.0)
+
+    def stage(self, progress: float) -> HighFrequencyStage | None:
+        """Of the high-frequency loss by progress, 0 to 1; None where it does not count."""
+        if not self.high_frequency or progress < self.high_frequency_from:
+            return None
+        share = (progress - self.high_frequency_from) / max(1.0 - self.high_frequency_from, 1e-9)
+        return self.high_frequency[min(int(share * len(self.high_frequency)), len(self.high_frequency) - 1)]
+
+
+@dataclass(frozen=True, slots=True)
+class Rates:
+    """Learning rates of Adam for what splats and pictures are made of.
+
+    The ones of splats are those that 3-D and 2-D Gaussian splatting are known to work with, where not said otherwise.
+
+    Parameters
+    ----------
+    means
+        Share of the scene's size (half the cameras' and splats' extent) a step; falls to `means_last` of it.
+    quats, scales, opacities, colours
+        Of the parameters as they are stored (logarithms, logits).
+    colour_details
+        Of the bands of spherical harmonics above the first, as a share of `colours`.
+    glass_geometry
+        Of places and rotations of splats on panels, as a share of the others'. Where mirrored directions follow them,
+        each step of Adam turns all that is mirrored.
+    reflectivity, f0
+        Of the logits of r and F0: as quick as opacities are slow, since the pre-training has found them.
+    light
+        Of everything in the model of mirrored light, as a share of its own rates when it was learned alone: it has
+        been learned already, and the colours around it settle only now.
+    sky, exposures, corner_loss
+        Of the sky, the gains of photos, and vignetting.
+    last
+        Share of all rates but `means` that is left at the end of half a cosine.
+    warm_up
+        Steps in which all rates rise from 0: the first gradients come from one photo each.
+    """
+
+    means: float = 1.6e-4
+    means_last: float = 0.01
+    quats: float = 1e-3
+    scales: float = 5e-3
+    opacities: float = 5e-2
+    colours: float = 2.5e-3
+    colour_details: float = 0.05
+    glass_geometry: float = 1.0
+    reflectivity: float = 1e-2
+    f0: float = 1e-2
+    light: float = 0.25
+    sky: float = 1e-2
+    exposures: float = 1e-3
+    corner_loss: float = 2e-3
+    last: float = 0.1
+    warm_up: int = 30
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            _require(each.name, value, "0 or more", value >= 0.0)
+        _require_share("means_last", self.means_last)
+        _require_share("glass_geometry", self.glass_geometry)
+        _require_share("last", self.last)
+
+    def share(self, step: int, progress: float) -> float:
+        """Of the rates but that of means: rising over the warm-up, falling along half a cosine."""
+        cosine = 0.5 * (1.0 + math.cos(math.pi * min(progress, 1.0)))
+        return self._rising(step) * (self.last + (1.0 - self.last) * cosine)
+
+    def means_share(self, step: int, progress: float) -> float:
+        """Of the rate of means: falling by the same factor in every step."""
+        return self._rising(step) * math.pow(max(self.means_last, 1e-9), min(progress, 1.0))
+
+    def _rising(self, step: int) -> float:
+        return min(1.0, (step + 1) / (self.warm_up + 1))
+
+
+@dataclass(frozen=True, slots=True)
+class TrainConfig:
+    """Settings of a training.
+
+    Parameters
+    ----------
+    method, light, geometry
+        What is trained, and one of `METHODS` as how. With `panels`, place and normal of glass are exact; with `splats`
+        they are the rendered ones, as in the paper, and errors of both show in what is mirrored.
+    iterations
+        Steps of Adam, one photo or window each.
+    time_limit_s
+        For all of it, from reading photos to writing the model; it ends with its rates at their last. None for none.
+    light_share
+        Of the time that is left when light begins to be learned alone, at most, for that.
+    reflections
+        How light is learned alone, from random rays of glass.
+    start_from
+        With `points`, no mesh and no ground are known, and panels to methods alone that know panels. Points on glass
+        are left out: photogrammetry finds none there that is where it seems.
+    n_splats, max_splats
+        To start from, and never more than.
+    densification
+        2DGS's adaptive control, the Markov chain Monte Carlo one (Kheradmand et al., 2024), or none.
+    densify_from, densify_until
+        Shares of the training between which splats are added: later ones have no time to settle.
+    degree, degree_every
+        Of spherical harmonics at last, and share of the training after which it rises by one.
+    window_px
+        Pixels of a photo that a step looks at, at most: a random window of larger photos.
+    reduce
+        Pixels of a photo, along each side, that one is made of before it is learned from.
+    raster
+        Settings of the rasteriser, but for its threads. Splats are antialiased, other than in 2DGS and 3DGS: frames are
+        finer than a pixel in many photos (`python -m tests.tables --only 3b`).
+    held_out
+        Share of the views that are kept for scoring, chosen by their names and `seed`.
+    memory_bytes
+        For decoded photos, and as much for rays of glass.
+    device
+        `cuda` needs the extra of that name.
+    threads
+        Of torch and the rasteriser. With one of torch, the same seed gives the same bits on a processor.
+    checkpoint_every_s
+        Between checkpoints; the last state is always kept.
+    score_every_s
+        Between looks at views that are held out, for the curve of quality against time.
+    """
+
+    method: str = DEFAULT_METHOD
+    light: LightWish = "auto"
+    geometry: GeometrySource = "panels"
+    iterations: int = 6000
+    time_limit_s: float | None = None
+    light_share: float = 0.35
+    reflections: ReflectionConfig = field(default_factory=ReflectionConfig)
+    start_from: StartFrom = "surfaces"
+    n_splats: int = 12_000
+    max_splats: int = 30_000
+    densification: DensifyWish = "adaptive"
+    densify_from: float = 0.05
+    densify_until: float = 0.6
+    degree: int = 3
+    degree_every: float = 0.0
+    window_px: int = 256 * 192
+    reduce: int = 1
+    raster: RasterSettings = ANTIALIASED
+    losses: LossWeights = field(default_factory=LossWeights)
+    rates: Rates = field(default_factory=Rates)
+    held_out: float = 0.15
+    seed: int = 0
+    memory_bytes: int = 1 << 30
+    device: Device = "cpu"
+    threads: int = 1
+    checkpoint_every_s: float = 120.0
+    score_every_s: float = 20.0
+
+    def __post_init__(self) -> None:
+        method_named(self.method)
+        for name in ("iterations", "n_splats", "max_splats", "window_px", "reduce", "memory_bytes", "threads"):
+            _require(name, getattr(self, name), "1 or more", getattr(self, name) >= 1)
+        _require("max_splats", self.max_splats, f"n_splats ({self.n_splats}) or more", self.max_splats >= self.n_splats)
+        _require("degree", self.degree, "0 to 3", 0 <= self.degree <= 3)
+        for name in ("light_share", "densify_from", "densify_until", "degree_every"):
+            _require_share(name, getattr(self, name))
+        _require("held_out", self.held_out, "above 0 and below 1", 0.0 < self.held_out < 1.0)
+        for name in ("checkpoint_every_s", "score_every_s"):
+            _require(name, getattr(self, name), "more than 0", getattr(self, name) > 0.0)
+        if self.time_limit_s is not None:
+            _require("time_limit_s", self.time_limit_s, "more than 0", self.time_limit_s > 0.0)
+
+    @property
+    def trained_by(self) -> Method:
+        """What its method is."""
+        return method_named(self.method)
+
+    def degree_at(self, progress: float) -> int:
+        """Of spherical harmonics, by progress, 0 to 1."""
+        return self.degree if self.degree_every == 0.0 else min(self.degree, int(progress / self.degree_every))
+
+
+def config_of(content: dict[str, Any], base: TrainConfig, path: Path) -> TrainConfig:
+    """Settings that are those of `base` where `content`, as read from TOML or JSON, does not say otherwise.
+
+    A method that it names brings its own settings.
+
+    Raises
+    ------
+    InputError
+        A key is not known, a value of the wrong type or out of range; the message names file and key.
+    """
+    _check_keys(content, TrainConfig, path, "")
+    try:
+        of_method = method_named(content["method"]).settings if isinstance(content.get("method"), str) else {}
+        return to_record(_merged(_merged(asdict(base), of_method), content), TrainConfig, path)
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _check_keys(content: dict[str, Any], record: type[Any], path: Path, place: str) -> None:
+    check_settings(content, record, path, place)
+    hints = get_type_hints(record)
+    for key, value in content.items():
+        inner = _record_in(hints[key])
+        if inner is not None and isinstance(value, dict):
+            _check_keys(value, inner, path, f"{place}{key}.")
+
+
+def _record_in(hint: Any) -> type[Any] | None:
+    """The dataclass that a field is, or may be."""
+    options = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
+    return next((option for option in options if is_dataclass(option) and isinstance(option, type)), None)
+
+
+def _merged(base: dict[str, Any], content: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in content.items():
+        both = isinstance(value, dict) and isinstance(base.get(key), dict)
+        merged[key] = _merged(base[key], value) if both else value
+    return merged
+
+
+def _require(name: str, value: float, expected: str, is_met: bool) -> None:
+    if not (math.isfinite(value) and is_met):
+        raise ValueError(f"{name}: expected {expected}, got {value}")
+
+
+def _require_share(name: str, value: float) -> None:
+    _require(name, value, "0 to 1", 0.0 <= value <= 1.0)

@@ -1,0 +1,1 @@
+"""Methods that a model can be trained with."""

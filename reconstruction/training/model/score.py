@@ -1,0 +1,127 @@
+"""How good a model's pictures of views are: PSNR, structural similarity and LPIPS, of the facade and of all of it."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from planning.base.errors import InputError
+from planning.base.progress import QUIET, Monitor
+from reconstruction.light.photo_set import PhotoSet
+from reconstruction.light.shading import linear_from_display
+from reconstruction.metrics.image_metrics import PictureScore, score_picture
+from reconstruction.metrics.lpips import lpips
+from reconstruction.metrics.lpips_weights import LpipsWeights
+from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.training.model.record import site_record
+from reconstruction.training.model.render import render_view
+from reconstruction.training.model.saved import TrainedModel
+from reconstruction.training.photos.exposures import HeldOutGain, fitted_gain
+from reconstruction.training.photos.photo_stream import PhotoStream, Sample, StreamSettings
+
+SAME_PANELS_M = 1e-3
+"""Corners of two folders that are further apart are not those of the same panels."""
+
+
+@dataclass(frozen=True, slots=True)
+class ViewScores:
+    """Of one view; LPIPS is None where no weights were given, and facade scores where the view shows none.
+
+    Parameters
+    ----------
+    is_learned
+        Whether the model learned from this photo.
+    """
+
+    name: str
+    is_learned: bool
+    facade: PictureScore
+    whole: PictureScore
+    facade_lpips: float | None = None
+    whole_lpips: float | None = None
+
+
+def score_views(
+    trained: TrainedModel,
+    source: PhotoSet,
+    names: Collection[str],
+    weights: LpipsWeights | None = None,
+    gain: HeldOutGain = "none",
+    threads: int = 0,
+    monitor: Monitor = QUIET,
+) -> tuple[ViewScores, ...]:
+    """Score views of a folder that shows the same panels.
+
+    Where both folders say how they were exposed, the difference is made up for.
+
+    Parameters
+    ----------
+    weights
+        Of LPIPS; without, that is left out.
+    gain
+        Of exposure: what is known of each photo, or fitted to it.
+
+    Raises
+    ------
+    InputError
+        The folder shows other panels, or lacks a view.
+    OperationCancelled
+        From `monitor`.
+    """
+    mine, theirs = trained.record.site.planes.corners_enu_m, site_record(source.folder).planes.corners_enu_m
+    if mine.shape != theirs.shape or not np.allclose(mine, theirs, rtol=0.0, atol=SAME_PANELS_M):
+        raise InputError(f"{source.folder}: shows other panels than the model; name photos of the same site")
+    missing = sorted(set(names) - {photo.name for photo in source.photos})
+    if missing:
+        raise InputError(f"{source.folder}: has no photo '{missing[0]}', which is to be scored; score --views all")
+    model, learned = trained.model, set(trained.record.learned)
+    settings = replace(trained.record.config.raster, threads=threads)
+    exposure = source.exposure / trained.record.exposure
+    scores = []
+    with PhotoStream(source, names, model.origin_enu_m, StreamSettings()) as photos:
+        for done, photo in enumerate(photos.photos):
+            monitor.report("scoring views", done, len(photos.photos))
+            sample = photos.frame(done)
+            factor = exposure * source.own_exposures.get(photo.name, 1.0)
+            if gain == "fitted":
+                factor *= _fitted(model, sample, factor, settings)
+            found = render_view(model, sample.view, (), factor, settings).display
+            scores.append(_scored(photo.name, photo.name in learned, found, sample, weights))
+    return tuple(scores)
+
+
+@torch.no_grad()
+def _fitted(model: torch.nn.Module, sample: Sample, gain: float, settings: RasterSettings) -> float:
+    """Factor on a gain that brings the rendered light closest to the photo's."""
+    display = model(sample.view, gain, settings=settings).display.reshape(-1, 3)
+    truth = sample.display.reshape(-1, 3).float() / 255.0
+    return float(fitted_gain(linear_from_display(display), linear_from_display(truth), truth))
+
+
+def _scored(
+    name: str, is_learned: bool, found: NDArray[np.float32], sample: Sample, weights: LpipsWeights | None
+) -> ViewScores:
+    truth, facade = sample.display.numpy(), sample.facade.numpy()
+    shown = None if sample.shown is None else sample.shown.numpy()
+    facade = facade if shown is None else facade & shown
+    scores = score_picture(found, truth, facade), score_picture(found, truth, shown)
+    if weights is None:
+        return ViewScores(name, is_learned, *scores)
+    return ViewScores(
+        name,
+        is_learned,
+        *scores,
+        lpips(weights, found, truth, facade),
+        lpips(weights, found, truth, shown),
+    )
+
+
+def mean_of(values: Iterable[float | None]) -> float | None:
+    """Mean of those that are known; None where none is."""
+    known = [value for value in values if value is not None]
+    return statistics.fmean(known) if known else None

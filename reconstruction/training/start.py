@@ -1,0 +1,387 @@
+"""From a data set folder to a model that can be trained jointly: splats on what is known, light learned alone first."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from planning.base.effects import Decision
+from planning.base.errors import InputError
+from planning.base.progress import QUIET, Monitor
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.light.choose_light import choose_light
+from reconstruction.light.glass_rays import glass_rays
+from reconstruction.light.light_training import Keeping
+from reconstruction.light.photo_set import PanelPlanes, PhotoSet, held_out_names
+from reconstruction.light.reflective_panels import ReflectivePanels
+from reconstruction.light.shading import display_from_linear, reflected_directions
+from reconstruction.light.training import TrainedReflections, train_reflections
+from reconstruction.splats.harmonic_colour import fitted_harmonics
+from reconstruction.splats.initialise import InitialParameters, initial_splats
+from reconstruction.splats.panel_of_splats import assign_panels
+from reconstruction.splats.ply import read_splats
+from reconstruction.splats.rasterising.views import View
+from reconstruction.splats.sky import Sky
+from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
+from reconstruction.splats.start_data import known_scene, model_origin, points_alone
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.light_stage import BegunLight, LightStage, checksum, write_light
+from reconstruction.training.methods.shader import Shader
+from reconstruction.training.methods.shaders import Surroundings, as_method_has_them, shader_of, with_primitive
+from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.model.record import site_record
+from reconstruction.training.photos.exposures import Exposures
+from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
+from reconstruction.training.photos.pose_corrections import Move, learned_moves, moved
+from reconstruction.training.timer import Stopwatch
+
+Array = NDArray[np.float64]
+
+
+# What the learning of light alone found out about panes, put into the splats on them.
+#
+# Both models say the same picture then, so that the joint training starts where the other ended: with reflectivity,
+# base
+# reflectance and colour from elsewhere, the light that was learned would be wrong for them.
+
+MOST_DIRECTIONS = 96
+"""That a pane's colour is fitted to: far more than a degree has harmonics."""
+
+DEGREE = 2
+"""Of the harmonics that are fitted: cameras see a pane from one side only, which tells no more."""
+
+
+@torch.no_grad()
+def hand_over(
+    panels: ReflectivePanels, splats: Splats, planes: PanelPlanes, origin_enu_m: Array, cameras_enu_m: Array
+) -> None:
+    """Give the splats on each pane its r and F0, and the colour c that its places have.
+
+    Parameters
+    ----------
+    cameras_enu_m
+        From which the colour is to be right, shape (k, 3).
+    """
+    numbers = splats.panels.long()
+    glass = torch.nonzero(numbers >= 0).squeeze(-1)
+    splats.reflectivity_logits[glass] = panels.reflectivity[numbers[glass], 0].to(splats.means)
+    splats.f0_logits[glass] = panels.base_reflectance[numbers[glass]].to(splats.means)
+    middle = planes.middle_enu_m - origin_enu_m
+    points = (splats.means.detach() - torch.from_numpy(middle).to(splats.means)) / planes.half_side_m
+    for panel in torch.unique(numbers[glass]).tolist():
+        rows = torch.nonzero(numbers == panel).squeeze(-1)
+        omega_o = _directions(planes, panel, cameras_enu_m)
+        if omega_o is not None:
+            splats.sh[rows] = _fitted(panels, points[rows], omega_o, planes, panel)
+
+
+def _directions(planes: PanelPlanes, panel: int, cameras_enu_m: Array) -> Array | None:
+    """Unit directions from cameras that see the pane's front to its middle, shape (j, 3); None where there are none."""
+    towards = planes.corners_enu_m[panel].mean(axis=0) - cameras_enu_m
+    directions = towards / np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-9)
+    seen = directions[directions @ planes.normals_enu[panel] < -1e-2]
+    chosen = np.unique(np.linspace(0, len(seen) - 1, min(len(seen), MOST_DIRECTIONS)).astype(int))
+    return seen[chosen] if len(seen) else None
+
+
+def _fitted(panels: ReflectivePanels, points: Tensor, omega_o: Array, planes: PanelPlanes, panel: int) -> Tensor:
+    """Coefficients, shape (n, 16, 3), of the display colours that places of a pane have from some directions."""
+    directions = torch.from_numpy(omega_o).float()
+    normal = torch.from_numpy(planes.normals_enu[panel]).float()
+    mirrored = reflected_directions(directions, normal)
+    n, k = len(points), len(directions)
+    colours = panels.diffuse(
+        points.repeat_interleave(k, dim=0), mirrored.repeat(n, 1), torch.full((n * k,), panel, dtype=torch.long)
+    )
+    return fitted_harmonics(directions, display_from_linear(colours).reshape(n, k, 3), DEGREE)
+
+
+# Splats of a file to start a training from: of an earlier training, or of another program.
+
+PANEL_VIEWS = 32
+"""Photos, evenly chosen, that tell which panel splats belong to."""
+
+PANEL_PX = 256 * 192
+"""About as many pixels of each are looked at."""
+
+REACH_M = 1000.0
+"""From the model's middle; further splats are the sky's business, as of those that are placed."""
+
+
+def given_splats(
+    path: Path,
+    source: PhotoSet,
+    photos: Sequence[PosedPhoto],
+    origin_enu_m: Array,
+    memory_bytes: int,
+    monitor: Monitor = QUIET,
+) -> Splats:
+    """Splats of a PLY file in the model's frame, ENU less `origin_enu_m`.
+
+    Where the file says of no splat which panel it belongs to, photos tell (`assign_panels`). What is too far away is
+    left out.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is of another site.
+    OperationCancelled
+        From `monitor`.
+    """
+    found = read_splats(path)
+    splats, n_panels = found.splats, len(source.panels.corners_enu_m)
+    if int(splats.panels.max()) >= n_panels:
+        raise InputError(
+            f"{path}: has splats on panel {int(splats.panels.max()) + 1}, and {source.folder} has {n_panels} panels; "
+            "name a file of the same site"
+        )
+    means = splats.means.detach().double() + torch.from_numpy(np.array(found.origin_enu_m) - origin_enu_m)
+    kept = means.norm(dim=1) <= REACH_M
+    if not bool(kept.any()):
+        raise InputError(
+            f"{path}: has no splat within {REACH_M:g} m of the panels of {source.folder}; are both in one frame?"
+        )
+    values = {name: value.detach()[kept] for name, value in splats.named_parameters()}
+    splats = Splats(values | {"means": means[kept].float()}, splats.panels[kept])
+    if bool((splats.panels == NO_PANEL).all()):
+        seen = _panels_seen(source, photos, origin_enu_m, memory_bytes)
+        splats.panels.copy_(assign_panels(splats, seen, source.panels.corners_enu_m - origin_enu_m, monitor=monitor))
+    return splats
+
+
+def _panels_seen(
+    source: PhotoSet, photos: Sequence[PosedPhoto], origin_enu_m: Array, memory_bytes: int
+) -> Iterator[tuple[View, NDArray[np.int32]]]:
+    """Views, and the panels of their pixels."""
+    chosen = np.unique(np.linspace(0, len(photos) - 1, min(len(photos), PANEL_VIEWS)).round().astype(int))
+    most = max(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in photos)
+    settings = StreamSettings(memory_bytes, reduce=max(1, math.isqrt(most // PANEL_PX)))
+    with PhotoStream(source, [photos[number].name for number in chosen], origin_enu_m, settings) as stream:
+        for number in range(len(stream.photos)):
+            sample = stream.frame(number)
+            yield sample.view, sample.panels.numpy()
+
+
+LEAST_LIGHT_S = 1.0
+"""For learning light, where nearly all time is gone before it begins."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Start:
+    """A model before its joint training.
+
+    Parameters
+    ----------
+    learned, held_out
+        Photos to learn from, and names of those that are kept for scoring.
+    extent_m
+        Size of the scene: how far the cameras are from their middle.
+    light_name
+        What mirrored light was learned with; "" for splats alone.
+    decisions
+        About effects.
+    moves
+        Corrections of the poses of photos learned from; none where they were not learned.
+    notes
+        What learning light had to survive.
+    """
+
+    model: SceneModel
+    exposures: Exposures
+    learned: tuple[PosedPhoto, ...]
+    held_out: tuple[str, ...]
+    extent_m: float
+    light_name: str
+    decisions: tuple[Decision, ...] = ()
+    moves: tuple[Move, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def start_model(
+    source: PhotoSet,
+    config: TrainConfig,
+    monitor: Monitor = QUIET,
+    watch: Stopwatch | None = None,
+    checkpoint: Path | None = None,
+    begun: BegunLight | None = None,
+    given: Path | None = None,
+) -> Start:
+    """Place splats, learn the light that glass mirrors from its rays alone, and put both together.
+
+    Parameters
+    ----------
+    watch
+        Of the whole training; None for one that begins now.
+    checkpoint
+        File that learning light can go on from if it is interrupted; None for none.
+    begun
+        What it goes on from.
+    given
+        PLY file of splats to start from; None for new ones.
+
+    Raises
+    ------
+    InputError
+        The folder has too few photos, nothing to start from, or no glass to be seen; or `begun` is of other photos.
+    ReconstructionError
+        Learning light failed.
+    OperationCancelled
+        From `monitor`.
+    """
+    watch = watch or Stopwatch()
+    held_out = held_out_names([photo.name for photo in source.photos], config.held_out, config.seed)
+    learned = tuple(photo for photo in source.photos if photo.name not in held_out)
+    scene = known_scene(source)
+    origin = model_origin(scene)
+    if begun is not None:
+        splats = splats_from_tensors(begun.splats, str(checkpoint))
+    elif given is not None:
+        splats = given_splats(given, source, learned, origin, config.memory_bytes, monitor)
+        splats = with_primitive(splats, config.trained_by.primitive)
+    else:
+        parameters = InitialParameters(n_splats=config.n_splats, seed=config.seed)
+        if config.start_from == "points":
+            known = points_alone(scene, source.folder, knows_panels=config.trained_by.knows_panels)
+        else:
+            known = scene
+        splats = initial_splats(known, learned, origin, parameters, source.picture, monitor)
+    light: TrainedReflections | None = None
+    shader: Shader | None = None
+    decisions: tuple[Decision, ...] = ()
+    if not config.trained_by.knows_panels:
+        triangles = (scene.mesh.corners_enu_m - origin).astype(np.float32).reshape(-1, 3, 3)
+        shader = shader_of(config, Surroundings(triangles))
+        splats = as_method_has_them(splats, config, shader)
+    else:
+        light, decisions = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, begun)
+    moves = learned_moves(None if light is None else light.panels.light, len(learned))
+    cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
+    if light is not None:
+        hand_over(light.panels, splats, source.panels, origin, cameras)
+    exposures = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
+    return Start(
+        _joined(source, learned, splats, light, shader, origin, config),
+        Exposures(exposures),
+        learned,
+        held_out,
+        _extent_m(cameras),
+        "" if light is None else light.model,
+        decisions,
+        moves,
+        () if light is None else light.notes,
+    )
+
+
+def _learned_light(
+    source: PhotoSet,
+    learned: Sequence[PosedPhoto],
+    config: TrainConfig,
+    splats: Splats,
+    monitor: Monitor,
+    watch: Stopwatch,
+    checkpoint: Path | None,
+    begun: BegunLight | None,
+) -> tuple[TrainedReflections, tuple[Decision, ...]]:
+    """The light, and the decisions about what learns it."""
+    settings = replace(config.reflections, seed=config.seed, threads=config.threads, memory_bytes=config.memory_bytes)
+    rays = glass_rays(source, learned, settings.memory_bytes, settings.seed, monitor)
+    if not len(rays):
+        raise InputError(
+            f"{source.folder}: none of {len(learned)} photos has a pixel that lies whole on a panel; take larger "
+            "photos or come closer, or train splats alone (--method 2dgs)"
+        )
+    digest = checksum(rays)
+    no_decisions: tuple[Decision, ...] = ()
+    if begun is None:
+        name, decisions = config.light, no_decisions
+        if name == "auto":
+            tried = replace(settings, time_limit_s=_light_limit_s(config, watch))
+            name, decisions = choose_light(rays, source.panels, tried, monitor, device=config.device)
+        limit_s = _light_limit_s(config, watch)
+        stage = LightStage(config, site_record(source.folder), name, decisions, limit_s, digest)
+    else:
+        stage = begun.stage
+        if digest != stage.rays_sha256:
+            raise InputError(
+                f"{source.folder}: its photos, cameras or panels are not those that the training was begun with; name "
+                "that data set"
+            )
+    keeping = None
+    if checkpoint is not None:
+        placed = splats_to_tensors(splats)
+        write = lambda state: write_light(checkpoint, BegunLight(stage, placed, state, watch()))  # noqa: E731
+        keeping = Keeping(write, config.checkpoint_every_s, None if begun is None else begun.state)
+    settings = replace(settings, time_limit_s=stage.time_limit_s)
+    try:
+        trained = train_reflections(
+            rays,
+            source.panels,
+            stage.name,
+            settings,
+            source.exposure,
+            monitor=monitor,
+            keeping=keeping,
+            device=config.device,
+            clock=watch.clock,
+        )
+    except ValueError as error:
+        if begun is None:
+            raise
+        raise InputError(
+            f"{checkpoint}: is of another version, or damaged ({error}); begin the training anew"
+        ) from error
+    return trained, stage.decisions
+
+
+def _light_limit_s(config: TrainConfig, watch: Stopwatch) -> float | None:
+    """For learning light: its share of the time that is left."""
+    wished = config.reflections.time_limit_s
+    if config.time_limit_s is None:
+        return wished
+    share_s = max(LEAST_LIGHT_S, config.light_share * (config.time_limit_s - watch()))
+    return share_s if wished is None else min(share_s, wished)
+
+
+def _joined(
+    source: PhotoSet,
+    learned: Sequence[PosedPhoto],
+    splats: Splats,
+    light: TrainedReflections | None,
+    shader: Shader | None,
+    origin_enu_m: Array,
+    config: TrainConfig,
+) -> SceneModel:
+    model = SceneModel(
+        splats,
+        Sky(),
+        None if light is None else light.panels.light,
+        source.panels,
+        origin_enu_m,
+        corner_square(learned),
+        config.geometry,
+        "float32" if light is None else light.precision,
+        shader,
+    )
+    if light is not None:
+        if model.light is not None:
+            model.light.finish(config.reflections)
+        with torch.no_grad():
+            model.corner_loss.copy_(light.panels.corner_loss)
+    return model
+
+
+def corner_square(photos: Sequence[PosedPhoto]) -> float:
+    """Squared tangent of the angle between the optical axis and the pictures' corners, mean over photos."""
+    lenses = [photo.intrinsics for photo in photos]
+    return float(np.mean([0.25 * ((x.width_px / x.fx_px) ** 2 + (x.height_px / x.fy_px) ** 2) for x in lenses]))
+
+
+def _extent_m(cameras_enu_m: Array) -> float:
+    return max(1.0, float(np.linalg.norm(cameras_enu_m - cameras_enu_m.mean(axis=0), axis=1).max()))

@@ -1,0 +1,264 @@
+"""A whole training: data set folder in, trained model out; begun, or gone on with from its checkpoint."""
+
+from __future__ import annotations
+
+import math
+from contextlib import ExitStack
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from planning.base.errors import InputError
+from planning.base.json_file import to_record
+from planning.base.progress import QualityPoint
+from reconstruction.light.photo_set import PhotoSet, read_photo_set
+from reconstruction.training.allocator import freed_memory_kept
+from reconstruction.training.callbacks import HeldOut, Watching
+from reconstruction.training.checkpoints import read_checkpoint
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.light_stage import begun_light
+from reconstruction.training.model.record import ModelRecord, empty_model, light_record, site_record
+from reconstruction.training.model.saved import TrainedModel
+from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
+from reconstruction.training.photos.pose_corrections import moved
+from reconstruction.training.ranks import ALONE, Ranks
+from reconstruction.training.start import Start, start_model
+from reconstruction.training.strategies import strategy_of
+from reconstruction.training.timer import Stopwatch
+from reconstruction.training.trainer import SHOWN_VIEWS, Trainer
+
+SHOWN_PX = 512 * 384
+"""About as many pixels of them are looked at: larger photos are made smaller, so that looking takes no time."""
+
+SHOWN_SHARE = 0.25
+"""Of the memory for photos, at most, for held-out ones that the quality is measured on."""
+
+
+@freed_memory_kept()
+def train_model(
+    folder: Path,
+    config: TrainConfig,
+    watching: Watching | None = None,
+    checkpoint: Path | None = None,
+    *,
+    given: Path | None = None,
+    ranks: Ranks = ALONE,
+    watch: Stopwatch | None = None,
+) -> TrainedModel:
+    """Train a model of a data set folder.
+
+    Parameters
+    ----------
+    checkpoint
+        File that the training can go on from if it is interrupted; None for none.
+    given
+        PLY file of splats to start from; None for new ones, on what is known of the scene.
+    ranks
+        Processes that train together; all but the first begin with the checkpoint that that one writes.
+    watch
+        Of all that counts for the time limit; None where that begins now.
+
+    Raises
+    ------
+    InputError
+        The folder is no data set, or too little of one.
+    ReconstructionError
+        The training came to nothing; see `Trainer`.
+    OperationCancelled
+        From the monitor.
+    """
+    watching, watch = watching or Watching(), watch or Stopwatch()
+    _check_device(config)
+    if not ranks.is_first:
+        if checkpoint is None:
+            raise ValueError("checkpoint: expected one where several processes train together")
+        return _joined_later(folder, checkpoint, watching, ranks, watch)
+    source = read_photo_set(folder)
+    start = start_model(source, config, watching.monitor, watch, checkpoint, given=given)
+    return _started(source, start, config, watching, checkpoint, ranks, watch)
+
+
+def _started(
+    source: PhotoSet,
+    start: Start,
+    config: TrainConfig,
+    watching: Watching,
+    checkpoint: Path | None,
+    ranks: Ranks,
+    watch: Stopwatch,
+) -> TrainedModel:
+    """The joint training after its start."""
+    record = ModelRecord(
+        config,
+        light_record(start.model, start.light_name),
+        site_record(source.folder),
+        tuple(start.model.origin_enu_m.tolist()),
+        start.model.corner_square,
+        source.exposure,
+        tuple(photo.name for photo in start.learned),
+        start.held_out,
+        start.extent_m,
+        start.decisions,
+        start.moves,
+        tuple(tuple(photo.pose.position_enu_m.tolist()) for photo in moved(start.learned, start.moves)),
+    )
+    with ExitStack() as closing:
+        photos, shown = _photos(source, record, closing)
+        trainer = Trainer(
+            start.model,
+            start.exposures,
+            photos,
+            strategy_of(config, len(start.model.splats)),
+            config,
+            shown=shown,
+            extent_m=start.extent_m,
+            checkpoint=checkpoint,
+            record=asdict(record),
+            notes=start.notes,
+            ranks=ranks,
+            watch=watch,
+        )
+        trainer.save()
+        ranks.wait()
+        return _finished(trainer, record, watching)
+
+
+@freed_memory_kept()
+def resume_model(
+    folder: Path,
+    checkpoint: Path,
+    watching: Watching | None = None,
+    *,
+    method: str | None = None,
+    ranks: Ranks = ALONE,
+    watch: Stopwatch | None = None,
+) -> TrainedModel:
+    """Go on with a training, with the settings that it was begun with.
+
+    Parameters
+    ----------
+    method
+        That is expected; None for any.
+
+    Raises
+    ------
+    InputError
+        The checkpoint is missing or damaged, or of another method or other photos.
+    """
+    watching, watch = watching or Watching(), watch or Stopwatch()
+    content = read_checkpoint(checkpoint)
+    # Nobody writes another one before all have read this one.
+    ranks.wait()
+    begun = begun_light(content, checkpoint)
+    if begun is None:
+        return _resumed(folder, checkpoint, content, watching, method, ranks, watch)
+    config = begun.stage.config
+    _check_method(config, method, checkpoint)
+    if not ranks.is_first:
+        return _joined_later(folder, checkpoint, watching, ranks, watch)
+    if site_record(folder) != begun.stage.site:
+        raise InputError(f"{folder}: shows other panels; name the data set that the training was begun with")
+    watch.before_s += begun.spent_s
+    source = read_photo_set(folder)
+    start = start_model(source, config, watching.monitor, watch, checkpoint, begun)
+    return _started(source, start, config, watching, checkpoint, ranks, watch)
+
+
+def _joined_later(folder: Path, checkpoint: Path, watching: Watching, ranks: Ranks, watch: Stopwatch) -> TrainedModel:
+    """The part of a process that waits until the first one has learned light."""
+    ranks.wait()
+    return _resumed(folder, checkpoint, read_checkpoint(checkpoint), watching, None, ranks, watch)
+
+
+def _resumed(
+    folder: Path,
+    checkpoint: Path,
+    content: dict[str, Any],
+    watching: Watching,
+    method: str | None,
+    ranks: Ranks,
+    watch: Stopwatch,
+) -> TrainedModel:
+    """A joint training that is gone on with."""
+    record = to_record(content.get("record"), ModelRecord, checkpoint)
+    _check_method(record.config, method, checkpoint)
+    state = content.get("training")
+    if not isinstance(state, dict) or not isinstance(state.get("model"), dict):
+        raise InputError(f"{checkpoint}: holds no state of a training; begin the training anew")
+    source = read_photo_set(folder)
+    missing = {*record.learned, *record.held_out} - {photo.name for photo in source.photos}
+    if missing or site_record(folder) != record.site:
+        what = f"lacks the photo '{min(missing)}'" if missing else "shows other panels"
+        raise InputError(f"{folder}: {what}; name the data set that the training was begun with")
+    try:
+        model, exposures = empty_model(record, state["model"])
+    except ValueError as error:
+        raise InputError(f"{checkpoint}: is damaged ({error}); begin the training anew") from error
+    with ExitStack() as closing:
+        photos, shown = _photos(source, record, closing)
+        trainer = Trainer(
+            model,
+            exposures,
+            photos,
+            strategy_of(record.config, len(model.splats)),
+            record.config,
+            shown=shown,
+            extent_m=record.extent_m,
+            checkpoint=checkpoint,
+            record=asdict(record),
+            ranks=ranks,
+            watch=watch,
+        )
+        trainer.restore(state)
+        watch.before_s += trainer.at.spent_s
+        return _finished(trainer, record, watching)
+
+
+def _check_method(config: TrainConfig, method: str | None, checkpoint: Path) -> None:
+    _check_device(config)
+    if method not in (None, config.method):
+        raise InputError(f"{checkpoint}: is of a training of {config.method}; resume with that method")
+
+
+def _check_device(config: TrainConfig) -> None:
+    if config.device == "cuda" and not torch.cuda.is_available():
+        raise InputError("device: 'cuda' is asked for, and torch finds no CUDA device; leave it out")
+
+
+def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[PhotoStream, tuple[HeldOut, ...]]:
+    """The stream of photos to learn from, and held-out ones to show."""
+    config, origin = record.config, np.array(record.origin_enu_m)
+    source = _corrected(source, record)
+    with_normals = config.trained_by.knows_panels and config.losses.normal_prior > 0.0
+    settings = StreamSettings(
+        round((1.0 - SHOWN_SHARE) * config.memory_bytes), config.window_px, config.reduce, with_normals
+    )
+    photos = closing.enter_context(PhotoStream(source, record.learned, origin, settings))
+    names = record.held_out[:: -(-len(record.held_out) // SHOWN_VIEWS)]
+    most = max(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in source.photos)
+    few = StreamSettings(max(1, round(SHOWN_SHARE * config.memory_bytes)), reduce=max(1, math.isqrt(most // SHOWN_PX)))
+    shown = closing.enter_context(PhotoStream(source, names, origin, few))
+    return photos, tuple(
+        HeldOut(shown.frame(number), source.own_exposures.get(photo.name, 1.0))
+        for number, photo in enumerate(shown.photos)
+    )
+
+
+def _corrected(source: PhotoSet, record: ModelRecord) -> PhotoSet:
+    """With the photos that are learned from where learning light found them to be; held-out ones stay."""
+    if not record.moves:
+        return source
+    learned = {photo.name: photo for photo in moved(source.named(record.learned), record.moves)}
+    return replace(source, photos=tuple(learned.get(photo.name, photo) for photo in source.photos))
+
+
+def _finished(trainer: Trainer, record: ModelRecord, watching: Watching) -> TrainedModel:
+    trainer.run(watching)
+    trainer.model.cpu()
+    trainer.exposures.cpu()
+    at = trainer.at
+    history = tuple(QualityPoint(t_s, value) for t_s, value in at.history)
+    return TrainedModel(record, trainer.model, trainer.exposures, history, at.step, at.spent_s, tuple(at.notes))

@@ -1,0 +1,345 @@
+"""The joint training: steps of Adam on photos, kept alive, kept on disk, and told about while it runs.
+
+How it ends, besides by itself, and as `TrainingState` says:
+
+- the user cancels: the state is written before `OperationCancelled` goes on, so that the training can, too;
+- the user stops: rates fall to their last within a twentieth of the time spent, see `settling`;
+- time is up: the model is what it is then, for its rates are at their last.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from planning.base.errors import OperationCancelled
+from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
+from reconstruction.splats.densification.strategy import Densification, FixedNumber
+from reconstruction.training.callbacks import HeldOut, Preview, Progress, Visit, VisitState, Watching, quality_db
+from reconstruction.training.checkpoints import write_checkpoint
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.losses.objective import objective, on_device
+from reconstruction.training.model.joint_model import Picture, SceneModel
+from reconstruction.training.photos.exposures import Exposures
+from reconstruction.training.photos.photo_stream import PhotoStream, Sample
+from reconstruction.training.ranks import ALONE, Ranks
+from reconstruction.training.rates import set_rates, take_step
+from reconstruction.training.strategies import show
+from reconstruction.training.timer import Stopwatch
+from reconstruction.training.training_state import TrainingState
+
+# The end of a training that was stopped: its rates fall to their last in a short time.
+#
+# While rates are high, parameters dance about what they are on average, and pictures are worse than they could be. A
+# training that ends by itself has let its rates fall; one that is stopped goes the rest of that way quickly, adds no
+# more
+# splats, and keeps the losses that it has. Nothing is chosen: what is kept is where it ends.
+
+SHARE = 0.05
+"""Of the time spent, for settling: the user has just said that it is enough."""
+
+MOST_S = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Settling:
+    """How far a stopped training has settled.
+
+    Parameters
+    ----------
+    progress
+        Of the training when it was stopped, 0 to 1.
+    begun_s
+        That it had taken then.
+    """
+
+    progress: float
+    begun_s: float
+
+    @property
+    def lasts_s(self) -> float:
+        """All in all."""
+        return min(MOST_S, SHARE * self.begun_s)
+
+    def share(self, spent_s: float) -> float:
+        """Of settling, 0 to 1, when the training has taken `spent_s`."""
+        done_s = spent_s - self.begun_s
+        return 1.0 if done_s >= self.lasts_s else max(0.0, done_s / self.lasts_s)
+
+    def progress_of_rates(self, spent_s: float) -> float:
+        """Progress that the rates are to be those of: the rest of the training, gone through evenly."""
+        return self.progress + (1.0 - self.progress) * self.share(spent_s)
+
+
+PAUSE_S = 0.05
+"""Between looks at whether a pause is over."""
+
+SHOWN_VIEWS = 4
+"""Held-out views that the quality is measured on while training runs."""
+
+WRITTEN = 2.0
+"""Time that a finished model takes to be written, as weights and for other programs, against a checkpoint's."""
+
+SEEDS = 1_000_003
+"""Between the seeds of two steps, so that trainings with neighbouring seeds share none."""
+
+
+class Trainer(TrainingState):
+    """A training of one model.
+
+    Parameters
+    ----------
+    exposures
+        Of the photos.
+    strategy
+        Adds and takes away splats, until `densify_until` of the training.
+    shown
+        What the history is measured on; nothing is chosen by them.
+    extent_m
+        Size of the scene.
+    checkpoint
+        File to write; None for none.
+    record
+        Of the model, to be written with each checkpoint.
+    notes
+        What had to be survived before.
+    ranks
+        Processes that train it together; each has a trainer of its own.
+    watch
+        Of all that counts for the time limit, what went before included.
+    """
+
+    def __init__(
+        self,
+        model: SceneModel,
+        exposures: Exposures,
+        photos: PhotoStream,
+        strategy: Densification,
+        config: TrainConfig,
+        *,
+        shown: Sequence[HeldOut] = (),
+        extent_m: float = 1.0,
+        checkpoint: Path | None = None,
+        record: dict[str, Any] | None = None,
+        notes: Sequence[str] = (),
+        ranks: Ranks = ALONE,
+        watch: Stopwatch | None = None,
+    ) -> None:
+        at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
+        super().__init__(model, exposures, photos, strategy, config, extent_m, checkpoint, at)
+        self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Stopwatch()
+        self.at.spent_s = self.at.saved_at_s = self.at.began_s = self._watch()
+        self._settings = replace(config.raster, threads=config.threads)
+        self._no_more, self._ranks = FixedNumber(), ranks
+        self._reserve_s = 0.0
+        self._with_glass = config.trained_by.knows_panels
+        self._settling: Settling | None = None
+        self._terms: dict[str, float] = {}
+
+    @property
+    def progress(self) -> float:
+        """Of the joint training, 0 to 1: by steps or by time, whichever is further.
+
+        Time counts from its own beginning: what light took before is no part of what rates and losses go through.
+        """
+        at, limit_s = self.at, self.config.time_limit_s
+        by_steps = min(1.0, at.step / self.config.iterations)
+        if limit_s is None:
+            return by_steps
+        left_s = limit_s - at.began_s
+        by_time = 1.0 if left_s <= 0.0 else (at.spent_s + self._reserve_s - at.began_s) / left_s
+        return min(1.0, max(by_steps, by_time))
+
+    def run(self, watching: Watching) -> None:
+        """Train to the end, until stopped and settled, or until time is up.
+
+        Raises
+        ------
+        ReconstructionError
+            The training came to nothing: too many steps without numbers, or no memory at all.
+        OperationCancelled
+            From the monitor; the state is on the disk then.
+        """
+        before = torch.get_num_threads()
+        torch.set_num_threads(self.config.threads)
+        try:
+            self._run(watching)
+        except OperationCancelled:
+            self.save()
+            raise
+        finally:
+            torch.set_num_threads(before)
+
+    def _run(self, watching: Watching) -> None:
+        self.model.train()
+        self._score(watching)
+        self._visit(watching)
+        while not self._is_settled(watching) and self.progress < 1.0:
+            self._report(watching)
+            self._wait(watching)
+            self._survived_step()
+            self._visit(watching)
+            if self.at.spent_s - self.at.scored_at_s >= self.config.score_every_s:
+                self._score(watching)
+            if self.at.spent_s - self.at.saved_at_s >= self.config.checkpoint_every_s:
+                self.save()
+        self.model.finish(self.config.reflections)
+        self._score(watching)
+        self.at.spent_s = self._watch()
+        self._visit(watching)
+
+    def _report(self, watching: Watching) -> None:
+        settling = self._settling
+        if settling is None:
+            watching.monitor.report("training", self.progress, 1.0)
+        else:
+            watching.monitor.report("settling", settling.share(self.at.spent_s), 1.0)
+
+    def _wait(self, watching: Watching) -> None:
+        with self._watch.paused():
+            while watching.pause():
+                watching.monitor.report("paused", self.progress, 1.0)
+                self._visit(watching, "paused")
+                time.sleep(PAUSE_S)
+
+    def _visit(self, watching: Watching, state: VisitState = "training") -> None:
+        """Let somebody look at the model as it is."""
+        if watching.visit is None or not self._ranks.is_first:
+            return
+        at, was_training = self.at, self.model.training
+        state = "settling" if self._settling is not None and state == "training" else state
+        self.model.eval()
+        watching.visit(
+            Visit(
+                self.model,
+                self.exposures,
+                self._record,
+                state,
+                at.step,
+                self._watch(),
+                self.progress,
+                {**self._terms},
+                tuple(at.history),
+                self._settings,
+            )
+        )
+        self.model.train(was_training)
+
+    def _is_settled(self, watching: Watching) -> bool:
+        """Whether it was stopped, and its rates have fallen; all processes know what the first one has spent."""
+        numbers = [self._watch(), self._needed_s(), float(watching.stop())]
+        self.at.spent_s, self._reserve_s, is_stopped = self._ranks.agreed(numbers)
+        if is_stopped and self._settling is None:
+            self._settling = Settling(self.progress, self.at.spent_s)
+        return self._settling is not None and self._settling.share(self.at.spent_s) >= 1.0
+
+    def _needed_s(self) -> float:
+        """For the last look at the quality, and for writing the model."""
+        return self._watch.lasted_s.get("look", 0.0) + WRITTEN * self._watch.lasted_s.get("save", 0.0)
+
+    def _survived_step(self) -> None:
+        try:
+            self.step()
+        except NotFinite as error:
+            self.undo(str(error))
+        except (MemoryError, RuntimeError) as error:
+            # One process alone cannot take a step again.
+            if not is_out_of_memory(error) or self._ranks.n > 1:
+                raise
+            self.shrink(error)
+
+    def step(self) -> dict[str, float]:
+        """One step; what each term of the loss was.
+
+        Raises
+        ------
+        NotFinite
+            The loss or a gradient is no number; parameters are as they were.
+        """
+        at, config, splats = self.at, self.config, self.model.splats
+        samples = [self.photos.sample(self.generator) for _ in range(self._ranks.n)]
+        sample = on_device(samples[self._ranks.rank], self.device)
+        self.n_pixels = sample.facade.numel()
+        settling = self._settling
+        falling = self.progress if settling is None else settling.progress_of_rates(at.spent_s)
+        set_rates(self.optimiser, config.rates, at.step, max(self.progress, falling), at.factor)
+        offsets = torch.zeros(len(splats), 2, device=self.device, requires_grad=True)
+        picture = self.picture(sample, self.exposures(sample.number), offsets)
+        loss, terms = objective(picture, sample, config.losses, self.progress, self._with_glass)
+        glass = self.model.light
+        more = None if glass is None else glass.regulariser(config.reflections, at.step)
+        loss = loss if more is None else loss + more
+        self.optimiser.zero_grad(set_to_none=True)
+        loss.backward()  # type: ignore[no-untyped-call]
+        parameters = [value for group in self.optimiser.param_groups for value in group["params"]]
+        require_finite(self._ranks.average_gradients(parameters, loss.detach()), parameters)
+        self.is_editing = True
+        is_growing = settling is None and config.densify_from <= self.progress < config.densify_until
+        strategy = self.strategy if is_growing else self._no_more
+        stage = config.losses.stage(self.progress) if self._with_glass else None
+        show(strategy, picture.raster, offsets, samples, self._ranks, 0.0 if stage is None else stage.weight)
+        strategy.before_step(at.step, splats, self.optimiser)
+        take_step(self.optimiser, splats, config.rates)
+        self.exposures.project()
+        strategy.after_step(at.step, splats, self.optimiser, self.generator)
+        self.optimiser.zero_grad(set_to_none=True)
+        if glass is not None:
+            glass.after_step(config.reflections, at.step, 1.0)
+        self.is_editing = False
+        at.step += 1
+        self._terms = terms
+        return terms
+
+    def picture(self, sample: Sample, gain: Tensor | float, offsets: Tensor | None = None) -> Picture:
+        """What the model shows where a photo was taken; with `offsets` as a step looks at it."""
+        picture: Picture = self.model(
+            sample.view,
+            gain,
+            self.config.degree_at(self.progress),
+            settings=self._settings,
+            screen_offsets=offsets,
+            generator=None if offsets is None else self._jitter(),
+        )
+        return picture
+
+    def _jitter(self) -> torch.Generator:
+        """Of places within pixels: another one in each step and process, without a state of its own."""
+        number = self.at.step * self._ranks.n + self._ranks.rank
+        return torch.Generator().manual_seed(self.config.seed + SEEDS * (number + 1))
+
+    def _score(self, watching: Watching) -> None:
+        """Measure the quality where it was not measured at this step, and show it."""
+        at = self.at
+        at.scored_at_s = at.spent_s
+        if not self._ranks.is_first or not self.shown or at.scored_step == at.step:
+            return
+        at.scored_step = at.step
+
+        def displayed(held_out: HeldOut) -> Tensor:
+            self._report(watching)
+            display = self.picture(on_device(held_out.sample, self.device), held_out.gain).display.clamp(0.0, 1.0)
+            if held_out is self.shown[0] and watching.preview is not None:
+                watching.preview(Preview(at.step, (255.0 * display).round().to(torch.uint8).cpu().numpy()))
+            return display
+
+        was_training = self.model.training
+        self.model.eval()
+        with self._watch.timing("look"):
+            at.history.append((at.spent_s, quality_db(self.shown, displayed, self.device)))
+        self.model.train(was_training)
+        if watching.trace is not None:
+            watching.trace.record(at.history[-1][1])
+
+    def save(self) -> None:
+        """Write a checkpoint; of a state that is no good, none."""
+        if self.path is None or not self._ranks.is_first or not self.is_finite():
+            return
+        self.at.saved_at_s = self.at.spent_s
+        with self._watch.timing("save"):
+            write_checkpoint(self.path, {"record": self._record, "training": self.state()})

@@ -1,0 +1,97 @@
+"""Cyclic garbage is searched for in the window's thread only, and Python takes the search back afterwards."""
+
+import gc
+import threading
+
+import pytest
+
+
+class Cycle:
+    def __init__(self):
+        self.me = self
+
+
+@pytest.fixture
+def collections():
+    """Threads in which searches ran."""
+    threads = []
+
+    def note(phase, _info):
+        if phase == "start":
+            threads.append(threading.get_ident())
+
+    gc.callbacks.append(note)
+    yield threads
+    gc.callbacks.remove(note)
+
+
+def litter(n=5000):
+    for _ in range(n):
+        Cycle()
+
+
+def test_a_job_that_makes_garbage_searches_for_none(application, collections):
+    from groundstation.gui.application.garbage import GarbageCollector
+
+    before = gc.isenabled()
+    gc.enable()
+    collector = GarbageCollector()
+    try:
+        collector.settle()
+        collections.clear()  # Python may have searched here before the collector took over
+        worker = threading.Thread(target=litter)
+        worker.start()
+        worker.join()
+        assert not collections
+        collector._collect()
+        assert set(collections) == {threading.get_ident()}
+    finally:
+        collector.close()
+    assert gc.isenabled()
+    collections.clear()
+    worker = threading.Thread(target=litter)
+    worker.start()
+    worker.join()
+    assert worker.ident in collections, "left to itself, Python searches on any thread"
+    if not before:
+        gc.disable()
+
+
+def test_a_round_frees_what_was_left_behind(application):
+    import weakref
+
+    from groundstation.gui.application.garbage import FULL_EVERY, GarbageCollector
+
+    collector = GarbageCollector()
+    try:
+        thing = Cycle()
+        gone = weakref.ref(thing)
+        del thing
+        for _ in range(FULL_EVERY):
+            collector._collect()
+        assert gone() is None
+    finally:
+        collector.close()
+
+
+def test_the_long_search_waits_while_the_window_is_busy(application):
+    import weakref
+
+    from groundstation.gui.application.garbage import FULL_EVERY, GarbageCollector
+
+    busy = [True]
+    collector = GarbageCollector(is_busy=lambda: busy[0])
+    try:
+        thing = Cycle()
+        litter(gc.get_threshold()[0] + 1)
+        collector._collect()
+        gone = weakref.ref(thing)
+        del thing  # older than a round: only the long search finds it
+        for _ in range(2 * FULL_EVERY):
+            collector._collect()
+        assert gone() is not None
+        busy[0] = False
+        collector._collect()
+        assert gone() is None
+    finally:
+        collector.close()

@@ -1,0 +1,400 @@
+"""Projects in the window: saved, opened, recovered; damaged ones, read-only folders and full disks are survived."""
+
+import os
+import shutil
+import subprocess
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtWidgets import QLabel, QLineEdit
+
+from groundstation.services.jobs.runner import JobState
+from groundstation.services.project.document import PlanEntry
+from groundstation.services.project.folder import open_project
+from planning.base.errors import InputError
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from planning.site.bundled import roof
+from tests.gui.driving import (
+    accept_button,
+    choose,
+    click_on,
+    clicked,
+    close_desk,
+    escape,
+    press,
+    shut,
+    trigger,
+    turn_until,
+    turn_until_idle,
+    type_into,
+)
+from tests.planning.revision.cases import QUICK
+from tests.services.project_cases import small_disk
+
+
+@pytest.fixture
+def make_desk(application, worker, tmp_path, monkeypatch):
+    monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
+    from groundstation.gui.window.project_controller import Desk
+
+    desks = []
+
+    def make():
+        desk = Desk(application, worker=worker)
+        desk.show()
+        turn_until(application, lambda: desk.window.stage.scene() is not None)
+        desks.append(desk)
+        return desk
+
+    def end(desk):
+        close_desk(desk)
+        desks.remove(desk)
+
+    make.end = end
+    yield make
+    for desk in list(desks):
+        end(desk)
+
+
+@pytest.fixture(scope="module")
+def entry():
+    return PlanEntry("plan-1", "First", plan_flight(roof(), PlanRequest(n_views=4, greedy=QUICK)).plan)
+
+
+def with_site(application, desk):
+    desk.window.tab("site").left.opener.open_bundled("roof")
+    turn_until_idle(application, desk)
+
+
+def test_a_project_is_saved_and_opened_again(application, make_desk, entry, tmp_path):
+    desk = make_desk()
+    assert "Begin with a site" in desk.window.tab("site").left.start.findChild(QLabel).text()
+    with_site(application, desk)
+    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+    assert desk.window.isWindowModified()
+    with clicked(choose(tmp_path / "my roof")):
+        desk.save()
+    turn_until_idle(application, desk)
+    assert not desk.window.isWindowModified()
+    assert desk.window.windowTitle() == "my roof[*] - Reflight"
+    assert "Saved in" in desk.window.messages.texts()
+    desk.workspace.session.undo()
+    assert desk.window.isWindowModified()
+    with clicked(choose(tmp_path / "my roof"), "Discard"):
+        trigger(desk.window, "Open project ...")
+    turn_until_idle(application, desk)
+    assert [found.title for found in desk.workspace.document.plans] == ["First"], desk.window.messages.texts()
+    assert desk.workspace.document.current.plan == entry.plan
+    assert desk.settings().recent_projects == (str(tmp_path / "my roof"),)
+
+
+def test_leaving_unsaved_work_asks_first(application, make_desk, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    for no in ("Cancel", escape, shut):
+        with clicked(no) as asked:
+            trigger(desk.window, "New project")
+        assert "This project has changes that are not saved" in asked[0]
+        assert desk.workspace.document.site is not None
+        with clicked(no):
+            assert not desk.window.close()
+    with clicked("Save", escape):
+        trigger(desk.window, "New project")
+    assert desk.workspace.document.site is not None, "no folder was named: nothing is saved, nothing is lost"
+    with clicked("Save", choose(tmp_path / "kept")):
+        trigger(desk.window, "New project")
+    turn_until_idle(application, desk)
+    assert desk.workspace.document.site is None
+    assert open_project(tmp_path / "kept").document.site.site.name == "roof"
+
+
+def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_desk, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    bad = tmp_path / "bad"
+    bad.mkdir()
+    (bad / "project.json").write_text('{"format": "reflight-project/2", "plans": [')
+    with clicked("Discard"):
+        desk.open_folder(bad)
+    turn_until_idle(application, desk)
+    assert "project.json" in desk.window.messages.texts()
+    assert "Error" in desk.window.messages.texts()
+    assert desk.workspace.document.site.site.name == "roof"
+    desk.open_recent(str(tmp_path / "gone"))
+    assert "not there any more" in desk.window.messages.texts()
+
+
+def test_a_full_disk_leaves_the_work_in_the_window(application, make_desk, entry, tmp_path, monkeypatch):
+    desk = make_desk()
+    with_site(application, desk)
+    desk.save_in(tmp_path / "project")
+    turn_until_idle(application, desk)
+    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+
+    def full(_path, _content):
+        raise InputError("plan-1.plan.json: cannot be written (No space left on device)")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("groundstation.services.project.store.write_atomically", full)
+        desk.save()
+        turn_until_idle(application, desk)
+    assert "No space left on device" in desk.window.messages.texts()
+    assert desk.window.isWindowModified()
+    assert open_project(tmp_path / "project").document.plans == ()
+    desk.save()
+    turn_until_idle(application, desk)
+    assert len(open_project(tmp_path / "project").document.plans) == 1
+
+
+@contextmanager
+def not_writable(folder):
+    """A folder that nobody can write to: by its mode, or for root, who may write all the same, by its file system."""
+    if os.geteuid() != 0:
+        folder.chmod(0o555)
+        yield
+        folder.chmod(0o755)
+        return
+    with small_disk(folder.parent / "disk", 4096) as disk:
+        if disk is None:
+            pytest.skip("no file system can be mounted here")
+        shutil.copytree(folder, disk / "project")
+        subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
+        folder.rename(folder.with_name("elsewhere"))
+        folder.symlink_to(disk / "project")
+        yield
+
+
+def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_desk, entry, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    folder = tmp_path / "project"
+    desk.save_in(folder)
+    turn_until_idle(application, desk)
+    desk.new_project()
+    with not_writable(folder):
+        desk.open_folder(folder)
+        turn_until_idle(application, desk)
+        assert "cannot be locked for editing" in desk.window.messages.texts()
+        assert desk.workspace.document.site.site.name == "roof"
+        desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+        desk.autosave_now()
+        with clicked(choose(tmp_path / "copy")):
+            desk.save()
+        turn_until_idle(application, desk)
+        assert not desk.window.isWindowModified()
+    assert len(open_project(tmp_path / "copy").document.plans) == 1
+
+
+def test_unsaved_work_is_offered_after_a_crash(application, make_desk, entry, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    folder = tmp_path / "project"
+    desk.save_in(folder)
+    turn_until_idle(application, desk)
+    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+    desk.autosave_now()
+    turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
+    # What a crash leaves: the folder as it is now, and no process that has it open.
+    shutil.copytree(folder, tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
+    with clicked("Discard", "Restore") as asked:
+        desk.open_folder(tmp_path / "crashed")
+    turn_until_idle(application, desk)
+    assert "plan 'First' is new" in asked[-1]
+    assert [found.title for found in desk.workspace.document.plans] == ["First"]
+    assert desk.window.isWindowModified(), "it is still not saved"
+    desk.save()
+    turn_until_idle(application, desk)
+    assert not (tmp_path / "crashed" / ".autosave").exists()
+    assert len(open_project(tmp_path / "crashed").document.plans) == 1
+
+
+def crashed(application, make_desk, tmp_path):
+    """A folder of a project with a copy of unsaved work, and a window in which nothing is open."""
+    desk = make_desk()
+    with_site(application, desk)
+    desk.save_in(tmp_path / "project")
+    turn_until_idle(application, desk)
+    desk.workspace.change("Rename", replace(desk.workspace.document, request=PlanRequest(n_views=9)))
+    desk.autosave_now()
+    turn_until(application, lambda: (tmp_path / "project" / ".autosave" / "autosave.json").exists())
+    shutil.copytree(tmp_path / "project", tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
+    make_desk.end(desk)
+    return tmp_path / "crashed", make_desk()
+
+
+def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, make_desk, tmp_path):
+    folder, desk = crashed(application, make_desk, tmp_path)
+    for later in ("Decide later", escape, shut):
+        with clicked(later):
+            desk.open_folder(folder)
+        turn_until_idle(application, desk)
+        assert desk.workspace.document.request.n_views is None
+        assert (folder / ".autosave").exists()
+    with clicked("Delete the copy"):
+        desk.open_folder(folder)
+    turn_until_idle(application, desk)
+    assert not (folder / ".autosave").exists()
+    desk.open_folder(folder)
+    turn_until_idle(application, desk)
+    assert desk.workspace.document.request.n_views is None
+
+
+def test_save_as_proposes_a_name_that_is_free(application, make_desk, tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    (tmp_path / "roof").mkdir()
+    desk = make_desk()
+    with_site(application, desk)
+    seen = []
+
+    def accept(dialog):
+        line = dialog.findChild(QLineEdit, "fileNameEdit")
+        seen.append((dialog.directory().absolutePath(), line.text()))
+        press("Save")(dialog)
+
+    with clicked(accept):
+        trigger(desk.window, "Save as ...")
+    turn_until_idle(application, desk)
+    assert seen == [(str(tmp_path), "roof 2")]
+    assert open_project(tmp_path / "roof 2").document.site.site.name == "roof"
+    with clicked(accept):
+        trigger(desk.window, "Save as ...")
+    turn_until_idle(application, desk)
+    assert seen[-1] == (str(tmp_path), "roof 3")
+
+
+def test_a_folder_that_is_there_is_gone_into_and_the_name_stays(application, make_desk, tmp_path):
+    (tmp_path / "here").mkdir()
+    desk = make_desk()
+    with_site(application, desk)
+
+    def into(dialog):
+        line, there = dialog.findChild(QLineEdit, "fileNameEdit"), tmp_path / "here"
+
+        def is_typed():
+            # While it reads its folder, Qt's dialog forgets what was typed.
+            if line.text() != str(there):
+                type_into(line, str(there))
+                return False
+            return accept_button(dialog).isEnabled()
+
+        turn_until(application, is_typed)
+        click_on(dialog, accept_button(dialog))
+        turn_until(application, lambda: dialog.directory().absolutePath() == str(there))
+        assert dialog.isVisible()
+        turn_until(application, lambda: line.text() == "roof" and accept_button(dialog).isEnabled())
+        click_on(dialog, accept_button(dialog))
+
+    with clicked(into):
+        trigger(desk.window, "Save as ...")
+    turn_until_idle(application, desk)
+    assert open_project(tmp_path / "here" / "roof").document.site.site.name == "roof"
+
+
+@pytest.mark.parametrize(
+    ("text", "name"), [("Haus 3/4: Nord", "Haus 3-4- Nord"), ("..", "-"), ("a" * 300, "a" * 80), ("Rö\\of", "Rö-of")]
+)
+def test_names_of_sites_become_names_that_every_system_takes(text, name):
+    from groundstation.gui.widgets.questions import file_name
+
+    assert file_name(text) == name
+
+
+def test_work_without_a_project_survives_a_crash_too(application, make_desk, tmp_path):
+    first = make_desk()
+    with_site(application, first)
+    first.autosave_now()
+    place = first.keeper.place()
+    turn_until(application, lambda: (place / ".autosave" / "autosave.json").exists())
+    shutil.copytree(place, place.with_name("crashed"), ignore=shutil.ignore_patterns(".lock*"))
+    make_desk.end(first)
+    assert not place.exists(), "an orderly end leaves nothing behind"
+    with clicked("Restore") as asked:
+        second = make_desk()
+    turn_until_idle(application, second)
+    assert second.workspace.document.site.site.name == "roof"
+    assert "Nothing is lost" in asked[0]
+    assert "it was never saved as a project" in asked[0]
+    assert "What was saved" not in asked[0], "nothing was"
+    assert "cannot" not in asked[0]
+    assert "Your work is back. It is not saved yet" in second.window.messages.texts()
+
+
+@pytest.mark.slow
+def test_a_second_window_on_one_project_is_told(application, make_desk, tmp_path):
+    first = make_desk()
+    with_site(application, first)
+    first.save_in(tmp_path / "project")
+    turn_until_idle(application, first)
+    second = make_desk()
+    second.open_folder(tmp_path / "project")
+    turn_until_idle(application, second)
+    assert "open in another Reflight" in second.window.messages.texts()
+    assert second.workspace.document.site is not None
+
+
+def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, make_desk, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    desk.save_in(tmp_path / "project")
+    turn_until_idle(application, desk)
+    desk.window.show_tab("plan")
+    desk.window.tab("plan").desk.set_request(PlanRequest(n_views=25, time_budget_s=60.0))
+    desk.window.tab("plan").desk.plan()
+    turn_until(application, lambda: any(job.state is JobState.RUNNING for job in desk.workspace.jobs()))
+    jobs = desk.workspace.jobs()
+    assert desk.window.close()
+    assert all(job.wait(120.0) for job in jobs)
+    assert open_project(tmp_path / "project").document.site.site.name == "roof"
+
+
+def test_damaged_settings_are_told_kept_aside_and_the_window_opens_as_at_first(application, make_desk, tmp_path):
+    config = tmp_path / "config"
+    config.mkdir()
+    damaged = {
+        "settings": b'theme = "drak"\n', "flight": b"a = " + b"[" * 100_000, "connection": b"a." * 100_000 + b"a = 1",
+    }  # fmt: skip
+    for name, content in damaged.items():
+        (config / f"{name}.toml").write_bytes(content)
+    desk = make_desk()
+    desk.window.show_tab("fly")
+    turn_until_idle(application, desk)
+    turn_until(application, lambda: "connection.damaged.toml" in desk.window.messages.texts())
+    said = desk.window.messages.texts()
+    assert "drak" in said
+    for name, content in damaged.items():
+        assert f"{name}.damaged.toml" in said
+        assert (config / f"{name}.damaged.toml").read_bytes() == content
+    desk.choose(text_scale=1.15)
+    assert "text_scale = 1.15" in (config / "settings.toml").read_text()
+    desk.choose(text_scale=1.0)
+
+
+def test_the_layout_is_remembered(application, make_desk):
+    first = make_desk()
+    first.window._around.setSizes([500, 700])
+    turn_until_idle(application, first)
+    width = first.window._around.sizes()[0]
+    make_desk.end(first)
+    second = make_desk()
+    turn_until_idle(application, second)
+    assert second.window._around.sizes()[0] == pytest.approx(width, abs=3)
+
+
+def test_work_that_was_thrown_away_is_not_offered_again(application, make_desk, entry, tmp_path):
+    desk = make_desk()
+    with_site(application, desk)
+    folder = tmp_path / "project"
+    desk.save_in(folder)
+    turn_until_idle(application, desk)
+    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+    desk.autosave_now()
+    turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
+    with clicked("Discard") as asked:
+        desk.open_folder(folder)
+    turn_until_idle(application, desk)
+    assert asked[-1].startswith("Unsaved changes")
+    assert desk.workspace.document.plans == ()
+    assert not desk.window.isWindowModified()

@@ -1,0 +1,71 @@
+"""What splats begin on."""
+
+import numpy as np
+import pytest
+
+from planning.base.errors import InputError
+from planning.geo.mesh import from_corners, write_mesh
+from reconstruction.dataset.records import coloured_ply
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.splats.splats import NO_PANEL
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.start import start_model
+from tests.reconstruction.training.made_data_set import write_data_set
+
+WALL_Y_M = 0.5
+"""Of a mesh behind the panels, which are in the plane y = 0."""
+
+LIGHT = ReflectionConfig(environment_rows=8, steps=2, batch=64)
+
+
+@pytest.fixture
+def source(tmp_path):
+    """Panels before a wall, and points that all lie on the wall."""
+    folder = tmp_path / "glass"
+    write_data_set(folder, n=4)
+    panels = read_photo_set(folder).panels.corners_enu_m
+    low, high = panels.reshape(-1, 3).min(axis=0) - 3.0, panels.reshape(-1, 3).max(axis=0) + 3.0
+    a, b, c, d = [
+        (x, WALL_Y_M, z) for x, z in ((low[0], low[2]), (high[0], low[2]), (high[0], high[2]), (low[0], high[2]))
+    ]
+    write_mesh(folder / "building.ply", from_corners(np.array([[a, b, c], [a, c, d]])))
+    places = np.random.default_rng(0).uniform(low, high, (400, 3))
+    places[:, 1] = WALL_Y_M
+    (folder / "points.ply").write_bytes(coloured_ply(places, np.full((400, 3), 99, np.uint8)))
+    return read_photo_set(folder)
+
+
+def begun(source, method, start_from):
+    config = TrainConfig(
+        method=method, light="environment-map", reflections=LIGHT, n_splats=300, max_splats=300, start_from=start_from
+    )
+    start = start_model(source, config)
+    splats = start.model.splats
+    heights = splats.means.detach().numpy()[:, 1] + start.model.origin_enu_m[1]
+    return heights, splats.panels.numpy() != NO_PANEL
+
+
+def test_splats_begin_on_panels_and_what_is_beside_them(source):
+    y_m, _ = begun(source, "2dgs", "surfaces")
+    assert (np.abs(y_m) < 1e-3).mean() > 0.3
+    assert (np.abs(y_m - WALL_Y_M) < 1e-3).any()
+
+
+def test_splats_that_begin_at_points_are_there_alone(source):
+    y_m, _ = begun(source, "2dgs", "points")
+    assert np.abs(y_m - WALL_Y_M).max() < 1e-3
+    assert 100 < len(y_m) <= 400
+
+
+def test_a_method_that_knows_panels_begins_on_them_and_at_points(source):
+    y_m, is_on_panel = begun(source, "refglass-gs", "points")
+    assert is_on_panel.any()
+    assert np.abs(y_m[is_on_panel]).max() < 1e-3
+    assert np.abs(y_m[~is_on_panel] - WALL_Y_M).max() < 1e-3
+
+
+def test_a_start_at_points_that_are_not_there_is_refused(source):
+    (source.folder / "points.ply").unlink()
+    with pytest.raises(InputError, match="of 0 points of photogrammetry none is away from glass"):
+        begun(source, "2dgs", "points")

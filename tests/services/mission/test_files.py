@@ -1,0 +1,122 @@
+"""Exports and imports of plans in memory: what is said first, what is written, what is refused."""
+
+from pathlib import Path
+
+import pytest
+
+from groundstation.services.mission import files as mission_files
+from groundstation.services.mission.files import (
+    SUFFIXES,
+    export_paths,
+    in_order_of_sorties,
+    missions_as_plan,
+    prepare_export,
+    write_export,
+)
+from groundstation.services.mission.preflight import preflight
+from missions.dji.write import LinkLoss
+from missions.formats.encode import ExportOptions
+from missions.mission.model import FileFormat, HeightReference
+from planning.base.errors import InputError
+from planning.base.findings import Severity
+from planning.planner import plan_flight
+from planning.request import PlanRequest
+from tests.missions.plans import example_plan
+from tests.planning.plan_cases import kiosk
+from tests.planning.revision.cases import QUICK
+
+
+@pytest.fixture(scope="module")
+def planned():
+    model = kiosk()
+    return plan_flight(model, PlanRequest(n_views=12, greedy=QUICK)).plan, model
+
+
+@pytest.mark.parametrize("file_format", list(FileFormat))
+def test_every_format_is_prepared_and_then_written(planned, tmp_path, file_format):
+    plan, model = planned
+    prepared = prepare_export(plan, model, file_format)
+    assert prepared.can_be_written
+    path = tmp_path / f"out{SUFFIXES[file_format][0]}"
+    assert not list(tmp_path.iterdir())
+    assert write_export(prepared, path) == export_paths(prepared, path) == tuple(sorted(tmp_path.iterdir()))
+    back, _ = missions_as_plan([path], model)
+    assert len(back.viewpoints) == 12
+    assert back.coverage.covered == plan.coverage.covered
+
+
+def test_a_return_height_below_the_building_is_said_and_keeps_files_from_being_written(planned):
+    plan, model = planned
+    options = ExportOptions(rth_height_m=5.0, link_loss=LinkLoss.GO_HOME)
+    prepared = prepare_export(plan, model, FileFormat.DJI_KMZ, options)
+    assert not prepared.can_be_written
+    assert any(f.code == "return-height" and f.severity is Severity.ERROR for f in prepared.findings)
+
+
+def test_what_a_format_cannot_do_is_a_refusal_with_its_reason(planned):
+    plan, model = planned
+    options = ExportOptions(height_reference=HeightReference.ELLIPSOID)
+    prepared = prepare_export(plan, model, FileFormat.MAVLINK_PLAN, options)
+    assert prepared.encoded is None
+    assert "no heights above the ellipsoid" in prepared.refusal
+    assert export_paths(prepared, None) == ()
+    with pytest.raises(ValueError, match="nothing to write"):
+        write_export(prepared, None)
+
+
+def test_a_plan_that_is_not_ready_is_exported_with_a_warning():
+    from dataclasses import replace
+
+    plan = replace(example_plan(), site="kiosk", home_enu_m=None, origin=None)
+    model = kiosk(home_enu_m=(3.0, -40.0, 1.5))
+    prepared = prepare_export(plan, model, FileFormat.KML)
+    assert "not-ready" in [finding.code for finding in prepared.findings]
+    assert prepared.can_be_written
+
+
+def test_a_file_named_twice_is_refused(planned, tmp_path):
+    plan, model = planned
+    path = tmp_path / "a.kml"
+    write_export(prepare_export(plan, model, FileFormat.KML), path)
+    with pytest.raises(InputError, match="named twice"):
+        missions_as_plan([path, tmp_path / "." / "a.kml"], model)
+
+
+def test_preflight_counts_the_panels_of_every_photo(planned):
+    from planning.checks import check_plan
+    from tests.planning.plan_cases import seen_by_contract
+
+    plan, model = planned
+    found = preflight(plan, model)
+    rules = check_plan(plan, model)
+    assert found.findings[: len(rules)] == rules, "what the day brings comes behind the rules"
+    assert found.is_of(plan, model)
+    assert not found.is_of(plan, None)
+    for view in plan.viewpoints:
+        seen = seen_by_contract(model, plan.camera, (view,), 30.0, plan.constraints.occlusion == "on")
+        assert found.panels_covered[view.id] == len({panel for panel, _ in seen})
+
+
+def test_files_of_one_export_come_in_the_order_of_its_sorties_however_they_are_named():
+    names = ["roof-10.plan", "roof-2.plan", "roof.plan", "roof-1x.plan", "attic-2.plan", "attic.plan"]
+    assert [path.name for path in in_order_of_sorties([Path(name) for name in names])] == [
+        "attic.plan",
+        "attic-2.plan",
+        "roof.plan",
+        "roof-2.plan",
+        "roof-10.plan",
+        "roof-1x.plan",
+    ]
+
+
+def test_two_exports_of_one_plan_share_it_out_alike(planned, monkeypatch):
+    plan, model = planned
+    monkeypatch.setattr("missions.mavlink.items.photos_that_fit", lambda _autopilot: 5)
+    n_shared = []
+    real = mission_files.share_out_anew
+    monkeypatch.setattr(mission_files, "share_out_anew", lambda *a: n_shared.append(1) or real(*a))
+    first = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)
+    amsl = ExportOptions(height_reference=HeightReference.AMSL)
+    second = prepare_export(plan, model, FileFormat.MAVLINK_PLAN, amsl)
+    assert first.n_files == second.n_files > 1
+    assert len(n_shared) == 1

@@ -1,0 +1,183 @@
+"""Poses of photos: their own, refined ones that were kept, and those of a COLMAP model."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from groundstation.services.photos.intake import take_in_photos, with_poses
+from groundstation.services.photos.poses import LENS_UNKNOWN, BetterPoses, RefineWish, better_poses, still_true
+from groundstation.services.photos.repose import repose
+from planning.base.errors import InputError
+from planning.base.findings import Finding, Severity
+from planning.photos.folder import read_photos
+from reconstruction.colmap.folder import write_model
+from reconstruction.colmap.georeference import georeference, model_of
+from reconstruction.colmap.pycolmap_run import RefineParameters
+from reconstruction.colmap.refine import Refinement
+from reconstruction.colmap.refined_folder import write_refined
+from reconstruction.photos.poses import pose_photos
+from tests.reconstruction.colmap.models import covariance, turned
+from tests.services.photo_cases import draft_of, site_model, true_photos, with_paths, write_photos
+
+TURN_RAD = np.radians([0.0, 0.5, 0.0])
+GOOD = covariance(0.01, 0.05)
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory):
+    """Three photos as files, with the poses that they state."""
+    folder = tmp_path_factory.mktemp("flight") / "photos"
+    write_photos(folder)
+    return folder, pose_photos(read_photos(folder).photos, site_model().site, folder)
+
+
+def refinement(stated, left_out=0):
+    """As if COLMAP had found all photos turned by half a degree, and their lenses a little longer."""
+    refined = []
+    for photo in stated[: len(stated) - left_out]:
+        pose = replace(turned(photo, np.array([0.01, 0.0, 0.0]), TURN_RAD).pose, covariance=GOOD)
+        refined.append(
+            replace(photo, pose=pose, intrinsics=replace(photo.intrinsics, fx_px=photo.intrinsics.fx_px + 1))
+        )
+    model = model_of(refined)
+    names = tuple(photo.name for photo in stated[len(stated) - left_out :])
+    laid = georeference(model_of(stated), stated)
+    return Refinement(tuple(refined), model, laid, 0.5, names, ())
+
+
+@pytest.fixture
+def kept(flight, tmp_path):
+    """A folder of refined poses of these photos, of which the last found no place."""
+    _, posed = flight
+    write_refined(tmp_path / "kept", refinement(posed.photos, left_out=1), posed.photos, RefineParameters())
+    return tmp_path / "kept"
+
+
+def test_photos_keep_their_own_poses_where_nothing_else_is_wished_for(flight):
+    folder, posed = flight
+    found = better_poses(posed, folder)
+    assert (found.photos, found.findings, found.refined) == (posed.photos, (), None)
+
+
+def test_refined_poses_that_were_kept_are_taken_without_colmap(flight, kept, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pycolmap", None)
+    folder, posed = flight
+    found = better_poses(posed, folder, refine=RefineWish(kept))
+    assert [photo.name for photo in found.photos] == [photo.name for photo in posed.photos]
+    assert found.photos[2] is posed.photos[2]
+    np.testing.assert_allclose(found.photos[0].pose.covariance, GOOD)
+    outcome = found.refined
+    assert (outcome.n_refined, outcome.n_photos, outcome.was_kept) == (2, 3, True)
+    assert outcome.moved_m == pytest.approx((0.01, 0.01))
+    assert outcome.turned_deg == pytest.approx((0.5, 0.5), rel=1e-6)
+    assert outcome.not_joined == (posed.photos[2].name,)
+    told = found.findings[0]
+    assert told.code == "poses-refined"
+    assert "2 of 3 photos" in told.message
+    assert "0.010 m" in told.message
+
+
+def test_a_colmap_model_that_was_kept_counts_as_refined(flight, kept):
+    folder, posed = flight
+    by_model = better_poses(posed, folder, kept)
+    by_wish = better_poses(posed, folder, refine=RefineWish(kept))
+    for one, other in zip(by_model.photos, by_wish.photos, strict=True):
+        np.testing.assert_array_equal(one.pose.position_enu_m, other.pose.position_enu_m)
+
+
+def test_of_any_other_model_photos_that_are_not_in_it_are_left_out(flight, tmp_path):
+    folder, posed = flight
+    write_model(tmp_path / "model", model_of(posed.photos))
+    found = better_poses(posed, folder, tmp_path / "model")
+    assert found.refined is None
+    for one, other in zip(found.photos, posed.photos, strict=True):
+        np.testing.assert_allclose(one.pose.position_enu_m, other.pose.position_enu_m, atol=1e-6)
+        # No better than adjustments usually are, however well the model lies in the site.
+        sigmas = np.sqrt(np.diag(one.pose.covariance))
+        np.testing.assert_allclose(sigmas, [0.02] * 3 + [np.radians(0.1)] * 3)
+
+
+@pytest.mark.parametrize("size", [None, 1600])
+def test_a_kept_refinement_of_the_size_wished_for_is_taken(flight, kept, size):
+    folder, posed = flight
+    assert better_poses(posed, folder, refine=RefineWish(kept, size)).refined.was_kept
+
+
+def test_another_size_or_other_photos_are_computed_and_pycolmap_missing_is_said(flight, kept, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pycolmap", None)
+    folder, posed = flight
+    with pytest.raises(InputError, match=r"pip install 'reflight\[colmap\]'"):
+        better_poses(posed, folder, refine=RefineWish(kept, 800))
+    fewer = replace(posed, photos=posed.photos[:2])
+    with pytest.raises(InputError, match=r"pip install 'reflight\[colmap\]'"):
+        better_poses(fewer, folder, refine=RefineWish(kept))
+
+
+def test_a_damaged_folder_says_what_to_remove(flight, kept):
+    folder, posed = flight
+    (kept / "images.bin").write_bytes(b"\x01")
+    with pytest.raises(InputError, match="remove the folder"):
+        better_poses(posed, folder, refine=RefineWish(kept))
+
+
+def test_refined_poses_lie_beside_the_photos_unless_a_folder_is_named(tmp_path):
+    assert RefineWish().kept_in(tmp_path / "DCIM") == tmp_path / "DCIM.refined"
+    assert RefineWish(tmp_path / "x").kept_in(tmp_path / "DCIM") == tmp_path / "x"
+    with pytest.raises(InputError, match="a whole drive"):
+        RefineWish().kept_in(Path(tmp_path.anchor))
+    with pytest.raises(ValueError, match="at least 1"):
+        RefineWish(max_image_size_px=0)
+
+
+def test_other_poses_change_coverage_and_findings_and_the_way_back_leads_where_it_began(flight, kept):
+    folder, posed = flight
+    model = site_model()
+    before = take_in_photos(folder, model)
+    refined = with_poses(before, better_poses(posed, folder, refine=RefineWish(kept)), model, None)
+    assert refined.photos[0].pose.heading_deg != before.photos[0].pose.heading_deg
+    assert "poses-refined" in {finding.code for finding in refined.findings}
+    assert refined.quality is before.quality  # no picture is looked at again
+    back = with_poses(refined, BetterPoses(refined.posed.photos), model, None)
+    assert back.photos == before.photos
+    assert sorted(back.findings, key=str) == sorted(before.findings, key=str)
+    np.testing.assert_array_equal(back.coverage.counts, before.coverage.counts)
+    with pytest.raises(ValueError, match="same photos"):
+        with_poses(before, BetterPoses(before.photos[:1]), model, None)
+
+
+def test_lenses_that_were_refined_are_no_longer_called_unknown(flight, tmp_path):
+    folder, posed = flight
+    said = (Finding(Severity.NOTE, LENS_UNKNOWN, "bent lines"), Finding(Severity.NOTE, "height-reference", "heights"))
+    assert still_true(said, better_poses(posed, folder)) == said
+    for left_out, left in ((0, said[1:]), (1, said)):
+        where = tmp_path / f"kept-{left_out}"
+        write_refined(where, refinement(posed.photos, left_out), posed.photos, RefineParameters())
+        assert still_true(said, better_poses(posed, folder, refine=RefineWish(where))) == left
+
+
+def test_panels_that_were_found_are_solved_with_the_new_poses_and_keep_their_corrections(flight):
+    folder, _ = flight
+    model = site_model()
+    intake = take_in_photos(folder, model)
+    draft = with_paths(draft_of(), [photo.path for photo in intake.photos])
+    named = tuple(replace(photo, name=own.name) for photo, own in zip(draft.photos, intake.photos, strict=True))
+    draft = replace(draft, photos=named)
+    true = tuple(
+        replace(photo, name=own.name, path=own.path, pose=replace(photo.pose, covariance=GOOD))
+        for photo, own in zip(true_photos(), intake.photos, strict=True)
+    )
+    found = repose(intake, draft, BetterPoses(true), model, None)
+    assert found.intake.photos == true
+    assert not found.draft.unsolved
+    assert found.draft.found.grids is draft.found.grids
+    panels = found.draft.facade("A").panels
+    assert len(panels) == len(draft.facade("A").panels)
+    # Better poses make better corners.
+    usual = [np.median([np.trace(p.covariance_m2[0]) for p in d.facade("A").panels]) for d in (draft, found.draft)]
+    assert usual[1] < 0.5 * usual[0]
+    assert repose(intake, None, BetterPoses(true), model, None).draft is None

@@ -1,0 +1,169 @@
+"""Use cases around plans: planning writes what it returns, checks look at files."""
+
+import json
+import time
+from dataclasses import replace
+
+import pytest
+
+from groundstation.services.plan.planning import (
+    check_files,
+    finding_summary,
+    locked_viewpoints,
+    plan_document_site,
+    plan_site,
+    planned_summary,
+)
+from planning.base.errors import InfeasibleError, InputError, OperationCancelled
+from planning.base.findings import Finding, Severity, is_flyable
+from planning.checks import check_plan
+from planning.plan import Constraints, read_plan, write_plan
+from planning.planner import FEWEST_ROUTED
+from planning.request import PlanRequest
+from planning.site.bundled import SCENES, write_scene
+from planning.site.file import read_site, write_site
+from tests.planning.revision.cases import QUICK
+
+
+@pytest.fixture
+def site(tmp_path):
+    return write_scene("single-panel", tmp_path)
+
+
+def test_the_plan_returned_is_the_plan_written_and_passes_its_check(site, tmp_path):
+    out = tmp_path / "plan.json"
+    planned = plan_site(site, PlanRequest(n_views=4, greedy=QUICK), out)
+    assert read_plan(out) == planned.plan
+    assert is_flyable(check_files(out, site))
+
+
+def test_without_an_output_nothing_is_written(site, tmp_path):
+    before = set(tmp_path.iterdir())
+    assert len(plan_site(site, PlanRequest(n_views=2, greedy=QUICK), None).plan.viewpoints) == 2
+    assert set(tmp_path.iterdir()) == before
+
+
+def test_impossible_wishes_and_cancelled_work_write_nothing(site, tmp_path):
+    class Cancelling:
+        def report(self, stage, done, total):
+            raise OperationCancelled("cancelled")
+
+    before = set(tmp_path.iterdir())
+    with pytest.raises(InfeasibleError):
+        plan_site(site, PlanRequest(constraints=Constraints(min_distance_m=400.0)), tmp_path / "plan.json")
+    with pytest.raises(OperationCancelled):
+        plan_site(site, PlanRequest(), tmp_path / "plan.json", monitor=Cancelling())
+    with pytest.raises(InputError, match="would replace"):
+        plan_site(site, PlanRequest(), site)
+    assert set(tmp_path.iterdir()) == before
+
+
+def test_where_the_time_is_up_the_most_telling_views_are_flown_and_the_rest_is_told():
+    model = SCENES["library"]()
+    request = PlanRequest(n_views=160, time_budget_s=5.0, greedy=QUICK)
+    planned = plan_document_site(model, request, started_s=time.perf_counter() - 10.0)
+    assert len(planned.plan.viewpoints) == FEWEST_ROUTED
+    assert is_flyable(check_plan(planned.plan, model))
+    told = {finding.code: finding for finding in planned.findings}
+    assert told["time-budget"].severity is Severity.WARNING
+    assert told["time-budget"].value == 160 - FEWEST_ROUTED
+    assert "fewer-views" not in told, "more time would have shown more"
+    # The first of 160 views are not the best 100: those that were left out show what others show, too.
+    few = plan_document_site(model, replace(request, n_views=FEWEST_ROUTED), started_s=time.perf_counter() - 10.0)
+    assert planned.plan.coverage.covered >= 0.98 * few.plan.coverage.covered
+
+
+def test_no_more_views_are_left_out_than_the_time_asks_for(site):
+    request = PlanRequest(n_views=FEWEST_ROUTED + 50, time_budget_s=5.0, greedy=QUICK)
+    planned = plan_document_site(read_site(site), request, started_s=time.perf_counter() - 10.0)
+    assert len(planned.plan.viewpoints) == FEWEST_ROUTED, "though a third of them show all there is"
+
+
+@pytest.mark.parametrize(
+    ("request_", "codes"),
+    [
+        (PlanRequest(n_views=3, greedy=QUICK), []),
+        (PlanRequest(n_views=300, greedy=QUICK), ["fewer-views"]),
+        (PlanRequest(n_batteries=9, greedy=QUICK, time_budget_s=0.5), ["fewer-sorties"]),
+        (PlanRequest(n_batteries=1, greedy=QUICK, time_budget_s=0.5), []),
+        (PlanRequest(share=0.5, greedy=QUICK), []),
+        (PlanRequest(share=1.0, method="noto", time_budget_s=5.0), ["less-coverage"]),
+    ],
+)
+def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
+    planned = plan_site(site, request_, None)
+    assert [finding.code for finding in planned.findings] == codes
+    for finding in planned.findings:
+        assert finding.value < finding.limit
+
+
+def test_a_lower_flight_than_usual_is_allowed_and_said_and_the_plan_holds_it(site, tmp_path):
+    low = replace(PlanRequest(n_views=12, greedy=QUICK), constraints=Constraints(min_height_above_ground_m=2.5))
+    out = tmp_path / "low.plan.json"
+    planned = plan_site(site, low, out)
+    assert [finding.code for finding in planned.findings] == ["low-flight-allowed"]
+    assert read_plan(out).constraints.min_height_above_ground_m == 2.5
+    assert planned_summary(planned, 1.0)["lowest_height_m"] < 5.0
+    found = {finding.code: finding.severity for finding in check_files(out, site)}
+    assert (found["low-flight"], found["low-flight-allowed"]) == (Severity.OK, Severity.WARNING)
+    usual = plan_site(site, PlanRequest(n_views=12, greedy=QUICK), tmp_path / "usual.plan.json")
+    summary = planned_summary(usual, 1.0)
+    assert usual.plan.constraints.min_height_above_ground_m == 5.0
+    assert 5.0 <= summary["lowest_height_m"] < 10.0 < summary["below_10_m_s"] < summary["duration_s"]
+
+
+def test_the_lowest_height_of_the_site_holds_where_none_is_asked_for(site, tmp_path):
+    model = read_site(site)
+    airspace = replace(model.site.airspace, min_height_above_ground_m=9.0)
+    write_site(tmp_path / "high.site.json", replace(model.site, airspace=airspace))
+    planned = plan_site(tmp_path / "high.site.json", PlanRequest(n_views=6, greedy=QUICK), None)
+    assert planned.plan.constraints.min_height_above_ground_m == 9.0
+    assert min(viewpoint.position_enu_m[2] for viewpoint in planned.plan.viewpoints) >= 9.0
+    again = plan_document_site(planned.prepared.site_model, PlanRequest(n_views=5, greedy=QUICK), planned.prepared)
+    assert again.prepared is planned.prepared
+    lower = Constraints(min_height_above_ground_m=6.0)
+    other = plan_document_site(
+        planned.prepared.site_model, PlanRequest(n_views=5, greedy=QUICK, constraints=lower), planned.prepared
+    )
+    assert other.prepared is not planned.prepared
+
+
+def test_summaries_are_json(site):
+    planned = plan_site(site, PlanRequest(n_views=3, greedy=QUICK), None)
+    summary = planned_summary(planned, 1.23456)
+    assert json.loads(json.dumps(summary, allow_nan=False)).keys() == summary.keys()
+    assert summary["seconds"] == 1.235
+    assert [count["covered"] for count in summary["depth"]] == sorted(
+        (count["covered"] for count in summary["depth"]), reverse=True
+    )
+    assert finding_summary(Finding(Severity.WARNING, "code", "text", "place", 1.0, 2.0, "m")) == {
+        "severity": "warning",
+        "code": "code",
+        "message": "text",
+        "place": "place",
+        "value": 1.0,
+        "limit": 2.0,
+        "unit": "m",
+    }
+
+
+def test_planning_an_open_site_again_uses_what_the_first_plan_prepared_where_it_fits(site):
+    model, request = read_site(site), PlanRequest(n_views=3, greedy=QUICK)
+    first = plan_document_site(model, request)
+    again = plan_document_site(model, replace(request, n_views=4), first.prepared)
+    assert again.prepared is first.prepared
+    for other in (replace(request, seed=1), replace(request, constraints=Constraints(min_distance_m=8.0))):
+        assert plan_document_site(model, other, first.prepared).prepared is not first.prepared
+    cut_short = replace(first.prepared, is_cut_short=True)
+    assert plan_document_site(model, request, cut_short).prepared is not cut_short
+
+
+def test_locked_viewpoints_are_read_from_a_plan_that_has_some(site, tmp_path):
+    path = tmp_path / "plan.json"
+    plan = plan_site(site, PlanRequest(n_views=3, greedy=QUICK), path).plan
+    with pytest.raises(InputError, match=r"plan\.json: none of the viewpoints is locked"):
+        locked_viewpoints(path)
+    held = replace(plan.viewpoints[1], locked=True)
+    write_plan(path, replace(plan, viewpoints=(plan.viewpoints[0], held, plan.viewpoints[2])))
+    assert locked_viewpoints(path) == (held,)
+    assert path.read_text().count("locked") == 1

@@ -1,0 +1,179 @@
+"""Finished models that are looked at: cut, coloured and asked what is where."""
+
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from groundstation.services.model.objects import organise_files
+from groundstation.services.reconstruct.messages import Look, Probe, Section, Subject
+from groundstation.services.reconstruct.render_queue import Darkroom
+from groundstation.services.reconstruct.shown_models import TINT_SHARE, ShownModels
+from reconstruction.light.config import ReflectionConfig
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.model.saved import save_model
+from reconstruction.training.train import train_model
+from tests.reconstruction.training.made_data_set import write_data_set
+
+LIGHT = ReflectionConfig(environment_rows=8, steps=10, batch=256)
+CONFIG = TrainConfig(iterations=3, n_splats=300, max_splats=400, reflections=LIGHT, score_every_s=1e9)
+
+
+@contextmanager
+def made_model(folder):
+    """A data set, a model of it, and that as objects; torch has one thread meanwhile."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    write_data_set(folder / "data", n=4)
+    save_model(train_model(folder / "data", CONFIG), folder / "model")
+    organise_files(folder / "model", folder / "scene")
+    yield folder
+    torch.set_num_threads(threads)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    with made_model(tmp_path_factory.mktemp("shown")) as folder:
+        yield folder
+
+
+@pytest.fixture
+def darkroom():
+    return Darkroom(lambda _message: None)
+
+
+def look(folder, camera, **more):
+    return Look("left", 1, Subject("model", folder), camera, **more)
+
+
+def camera(folders):
+    return read_photo_set(folders / "data").photos[0]
+
+
+def test_a_model_and_its_objects_are_the_same_picture(folders, darkroom):
+    pictures = [darkroom.seen(look(folders / name, camera(folders))).picture for name in ("model", "scene")]
+    assert np.array_equal(*pictures)
+    assert pictures[0].any()
+
+
+def test_colours_lie_on_their_panels_and_nowhere_else(folders, darkroom):
+    plain = darkroom.seen(look(folders / "scene", camera(folders))).picture.astype(float)
+    red = darkroom.seen(look(folders / "scene", camera(folders), tints=((0, (255, 0, 0)), (99, (1, 2, 3))))).picture
+    panels = darkroom._models.of(folders / "scene").model(_view(folders)).panels.numpy()
+    mixed = np.round(plain * (1.0 - TINT_SHARE) + np.array([255.0, 0.0, 0.0]) * TINT_SHARE)
+    is_red = (red == mixed).all(axis=2) & (red != plain).any(axis=2)
+    assert ((panels == 0) & is_red).sum() > 0.9 * is_red.sum() > 20
+    assert (red == plain).all(axis=2)[panels != 0].all()
+
+
+def _view(folders):
+    from reconstruction.splats.rasterising.views import View
+
+    model = ShownModels().of(folders / "scene").model
+    return View.of(camera(folders), model.origin_enu_m)
+
+
+def test_what_lies_beyond_a_section_is_not_there(folders, darkroom):
+    means = darkroom._models.of(folders / "scene").model.splats.means.detach().numpy()
+    origin = darkroom._models.of(folders / "scene").model.origin_enu_m
+    at_m = float(np.median(means[:, 0]) + origin[0])
+    shown = darkroom._models.of(folders / "scene")
+    for is_above in (True, False):
+        kept = darkroom._models.cut(shown, Section(0, at_m, is_above)).splats.means[:, 0] + origin[0]
+        assert (kept <= at_m).all() if is_above else (kept >= at_m).all()
+        assert 0.3 * len(means) < len(kept) < 0.7 * len(means)
+    whole = darkroom.seen(look(folders / "scene", camera(folders))).picture
+    nothing = darkroom.seen(look(folders / "scene", camera(folders), section=Section(0, -1e6)))
+    assert nothing.problem == ""
+    assert not np.array_equal(whole, nothing.picture)
+    assert np.array_equal(
+        whole, darkroom.seen(look(folders / "scene", camera(folders), section=Section(0, 1e6))).picture
+    )
+
+
+def test_the_same_section_of_two_models_is_cut_once_each(folders, darkroom):
+    section = Section(2, 1.0)
+    shown = [darkroom._models.of(folders / "scene"), ShownModels().of(folders / "scene")]
+    first = [darkroom._models.cut(each, section) for each in shown]
+    assert first[0] is not first[1]
+    for each, cut in zip(shown, first, strict=True):
+        assert darkroom._models.cut(each, section) is cut
+        assert darkroom._models.cut(each, Section(2, 2.0)) is not cut
+
+
+def test_quick_pictures_of_small_models_are_as_they_are(folders, darkroom):
+    plain, quick = (darkroom.seen(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True))
+    assert np.array_equal(plain, quick)
+    assert not darkroom._models._of_detail
+
+
+def test_quick_pictures_of_large_models_look_like_them_and_have_sections(folders, darkroom, monkeypatch):
+    """A model that counts as large, from so far away that pixels are as coarse as its cubes."""
+    monkeypatch.setattr("groundstation.services.reconstruct.shown_models.LARGE", 100)
+    monkeypatch.setattr("reconstruction.splats.detail_tree.FEWEST", 20)
+    near = camera(folders)
+    lens = near.intrinsics
+    small = replace(near, intrinsics=lens.scaled(lens.width_px // 4, lens.height_px // 4))
+    shown = darkroom._models.of(folders / "scene")
+    n = len(darkroom._models.quick(shown, None, _view_of(small, shown)).splats)
+    assert 0 < n < len(shown.model.splats)
+    plain, quick = (
+        darkroom.seen(look(folders / "scene", small, is_quick=is_quick)).picture.astype(float)
+        for is_quick in (False, True)
+    )
+    assert 0.0 < np.abs(plain - quick).mean() < 10.0
+    means = shown.model.splats.means.detach().numpy()
+    at_m = float(np.median(means[:, 0]) + shown.model.origin_enu_m[0])
+    cut = darkroom._models.quick(shown, Section(0, at_m), _view_of(small, shown)).splats
+    assert 0 < len(cut) < n
+    assert (cut.means[:, 0].detach().numpy() + shown.model.origin_enu_m[0] <= at_m).all()
+    assert len(darkroom._models._of_detail) == 1
+    assert not darkroom.prepare()
+
+
+def test_a_large_model_is_made_ready_while_nobody_waits(folders, darkroom, monkeypatch):
+    assert not darkroom.prepare()
+    darkroom.seen(look(folders / "scene", camera(folders)))
+    assert not darkroom.prepare()
+    monkeypatch.setattr("groundstation.services.reconstruct.shown_models.LARGE", 100)
+    assert [darkroom.prepare(), darkroom.prepare()] == [True, False]
+
+
+def test_where_there_is_no_memory_for_it_quick_pictures_are_as_they_are(folders, darkroom, monkeypatch):
+    def no_memory(_splats):
+        raise MemoryError
+
+    monkeypatch.setattr("groundstation.services.reconstruct.shown_models.LARGE", 100)
+    monkeypatch.setattr("reconstruction.splats.merged_splats.splats_of_detail", no_memory)
+    plain, quick = (darkroom.seen(look(folders / "scene", camera(folders), is_quick=q)).picture for q in (False, True))
+    assert np.array_equal(plain, quick)
+    assert not darkroom.prepare()
+
+
+def _view_of(photo, shown):
+    from reconstruction.splats.rasterising.views import View
+
+    return View.of(photo, shown.model.origin_enu_m)
+
+
+def test_a_probe_tells_panel_and_place(folders, darkroom):
+    source = read_photo_set(folders / "data")
+    photo, corners = source.photos[0], source.panels.corners_enu_m
+    middle = corners[0].mean(axis=0)
+    in_camera = photo.pose.points_cam(middle[None])[0]
+    lens = photo.intrinsics
+    at = (
+        lens.cx_px + lens.fx_px * in_camera[0] / in_camera[2],
+        lens.cy_px + lens.fy_px * in_camera[1] / in_camera[2],
+    )
+    found = darkroom.probed(Probe("pick", 1, Subject("model", folders / "scene"), photo, at))
+    assert found.panel == 0
+    np.testing.assert_allclose(found.point_enu_m, middle, atol=1e-6)
+    sky = darkroom.probed(Probe("pick", 2, Subject("model", folders / "scene"), photo, (-500.0, -5000.0)))
+    assert (sky.panel, sky.point_enu_m) == (None, None)
+    missing = darkroom.probed(Probe("pick", 3, Subject("model", Path("nowhere")), photo, at))
+    assert "make one with `organise`" in missing.problem or "no finished model" in missing.problem
