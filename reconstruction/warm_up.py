@@ -25,7 +25,7 @@ from reconstruction.metrics.overlaps import pixel_overlaps
 from reconstruction.metrics.raster import index_image
 from reconstruction.panels.search.segment import segment_rectified
 from reconstruction.photos.sharpness import sharpness
-from reconstruction.scenes.effects.names import NEAR_FIELD
+from reconstruction.scenes.effect_names import NEAR_FIELD
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
 from reconstruction.scenes.world.bundled import bundled_scene
 from reconstruction.splats.detail_tree import FEWEST, detail_tree

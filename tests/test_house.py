@@ -105,7 +105,7 @@ READERS = {
     "planning/geo/geoid.py", "planning/geo/make_egm96_grid.py", "planning/base/step_physical_file.py",
     "planning/site/importing/ifc_file.py", "reconstruction/records/ifc/process.py",
     "reconstruction/exports/web/page.py",
-    "reconstruction/scenes/photos/cluster_workers.py", "reconstruction/scenes/photos/run_record.py",
+    "reconstruction/scenes/runs/cluster_workers.py", "reconstruction/scenes/runs/run_record.py",
     "reconstruction/objects/organise.py", "groundstation/services/reconstruct/choices.py",
     "groundstation/services/fly/sitl.py", "groundstation/cli/tradeoff_train.py",
 }  # fmt: skip

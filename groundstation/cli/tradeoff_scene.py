@@ -122,7 +122,7 @@ def run_scene(options: argparse.Namespace) -> int:
 
 def _wish(options: argparse.Namespace) -> SceneWish:
     from groundstation.services.scenes.views import SceneWish
-    from reconstruction.scenes.effects.names import EFFECTS
+    from reconstruction.scenes.effect_names import EFFECTS
     from reconstruction.scenes.photos.renderer import RenderSettings
 
     wishes = effect_wishes(options.effects, EFFECTS)

@@ -9,7 +9,7 @@ from typing import Any
 
 from groundstation.cli.lists import above_zero, count
 from planning.base.errors import InputError
-from reconstruction.training.methods.registry import DEFAULT_METHOD, METHODS
+from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 from reconstruction.training.names import PRESETS
 
 DEFAULT_SECONDS = 60.0

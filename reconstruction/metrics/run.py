@@ -20,9 +20,10 @@ from reconstruction.metrics.pictures import pictures_in, read_labels
 from reconstruction.metrics.raster import found_index, found_region
 from reconstruction.metrics.sets import PhotoSet, ScoredPhoto
 from reconstruction.panels.rectify.curvature import ViewKind, decide_view, drawn_view
+from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.rectify.view import SurfaceView
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.search.record import Rectification, Segmentation
+from reconstruction.panels.search.record import Segmentation
 from reconstruction.panels.search.segment import segment_image, segment_views
 from reconstruction.panels.solving.register import registered
 

@@ -14,9 +14,9 @@ from reconstruction.base.cameras import Intrinsics
 from reconstruction.metrics.annotated import READERS, RECTIFIED_SETS, SHOWABLE_SETS, AnnotatedPhoto
 from reconstruction.metrics.overlaps import MOST_PANELS
 from reconstruction.metrics.pictures import pictures_in, read_labels, read_picture
+from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
-from reconstruction.panels.search.record import Rectification
 from reconstruction.panels.search.views import WholePicture
 from reconstruction.panels.solving.adjustment import moved_pose
 from reconstruction.scenes.facades.cases import Shape, case_name, photo_of, random_case

@@ -19,10 +19,10 @@ from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.scoring import score_views
-from reconstruction.scenes.photos.photo_folder import photograph
-from reconstruction.scenes.photos.photo_job import PhotoJob
 from reconstruction.scenes.photos.renderer import RenderSettings
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
+from reconstruction.scenes.runs.photo_folder import photograph
+from reconstruction.scenes.runs.photo_job import PhotoJob
 from reconstruction.tradeoff.downstream import downstream_psnr
 
 N_POINTS = 100

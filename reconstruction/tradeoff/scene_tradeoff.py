@@ -30,7 +30,7 @@ from reconstruction.metrics.sets import EXTENT_MARGIN_M, ScoredPhoto
 from reconstruction.panels.rectify.fit import fit_cylinder, fit_plane
 from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
-from reconstruction.scenes.effects.names import (
+from reconstruction.scenes.effect_names import (
     DISTORTION,
     EFFECTS,
     EXPOSURE,
@@ -41,7 +41,7 @@ from reconstruction.scenes.effects.names import (
 )
 from reconstruction.scenes.photos.lens_effects import developed, metered_exposure
 from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
 
 # Rendered photos of scenes as photos to score: what they show of each facade is known from pose and site.
 

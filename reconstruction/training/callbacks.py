@@ -15,8 +15,8 @@ from torch import Tensor
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from reconstruction.metrics.image_metrics import psnr_db
 from reconstruction.splats.rasterising.raster_types import RasterSettings
-from reconstruction.training.losses.objective import display_of, on_device
 from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.objective import display_of, on_device
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import Sample
 

@@ -13,7 +13,7 @@ from planning.base.errors import InputError
 from planning.base.json_file import check_settings, to_record
 from reconstruction.light.config import PAPER_STAGES, HighFrequencyStage, ReflectionConfig
 from reconstruction.splats.rasterising.raster_types import RasterSettings
-from reconstruction.training.methods.registry import DEFAULT_METHOD, Method, method_named
+from reconstruction.training.method_registry import DEFAULT_METHOD, Method, method_named
 
 LightWish = Literal["auto", "harmonics", "environment-map", "mlp", "radiance-grid"]
 """What mirrored light is learned with; `auto` leaves it to the scene."""

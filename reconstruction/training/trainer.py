@@ -24,8 +24,8 @@ from reconstruction.splats.densification.strategy import Densification, FixedNum
 from reconstruction.training.callbacks import HeldOut, Preview, Progress, Visit, VisitState, Watching, quality_db
 from reconstruction.training.checkpoints import write_checkpoint
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.losses.objective import objective, on_device
 from reconstruction.training.model.joint_model import Picture, SceneModel
+from reconstruction.training.objective import objective, on_device
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, Sample
 from reconstruction.training.ranks import ALONE, Ranks

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from planning.base.errors import InputError
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import (
+from reconstruction.scenes.effect_names import (
     CURVATURE,
     DOUBLING,
     FRESNEL,
@@ -28,8 +28,8 @@ from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.mitsuba.renderer import MitsubaRenderer
 from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, grey_levels
 from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.record import Scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
-from reconstruction.scenes.world.record import Scene
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, stopwatch
 from tests.benchmarks.scenes import facing_photo
 

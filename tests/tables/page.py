@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from reconstruction.training.methods.registry import METHODS
+from reconstruction.training.method_registry import METHODS
 from tests.tables.definitions import Above, Table
 from tests.tables.measured import gap_section, measured_sections
 from tests.tables.results import Result, of_case, older_of_case

@@ -20,7 +20,7 @@ from planning.request import GreedyParameters, PlanRequest
 from planning.viewpoints.candidates import spread_candidates
 from planning.viewpoints.plan_records import as_written, viewpoints_of
 from planning.viewpoints.problem import take
-from reconstruction.scenes.photos.photo_job import DEFAULT_POINTS
+from reconstruction.scenes.runs.photo_job import DEFAULT_POINTS
 from reconstruction.scenes.world.bundled import curved_site, planar_site
 
 FARTHEST_M = 40.0

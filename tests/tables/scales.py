@@ -9,7 +9,7 @@ from typing import Any
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.methods.registry import METHODS
+from reconstruction.training.method_registry import METHODS
 from reconstruction.training.presets import preset
 
 LEAST_STEPS = 1000

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from groundstation.cli.lists import above_zero, count
 from groundstation.cli.options import new_folder
 from planning.base.errors import InputError, OperationCancelled
-from reconstruction.training.methods.registry import DEFAULT_METHOD, METHODS
+from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 from reconstruction.training.names import LIGHTS, PRESETS
 
 if TYPE_CHECKING:

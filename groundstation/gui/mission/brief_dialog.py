@@ -19,10 +19,10 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.application.context import Workspace
 from groundstation.gui.application.translate import finding_in_own_words
-from groundstation.gui.widgets.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
+from groundstation.gui.mission.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
 from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.questions import choose_new_file, file_name
-from groundstation.gui.window.job_bar import DialogFoot
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.map.shapes import plan_shapes, site_shapes
 from groundstation.services.mission.brief import flight_brief

@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QCheckBox, QDialog, QHBoxLayout, QLabel, QPushButt
 from groundstation.gui.application.context import Workspace
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, LengthBox
+from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.questions import agrees, choose_new_file, file_name
-from groundstation.gui.window.job_bar import DialogFoot
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.files import (
     MAVLINK_FORMATS,

@@ -14,11 +14,11 @@ from typing import Any
 from PySide6.QtCore import QLocale, QObject, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF, QTextDocument
 
+from groundstation.gui.mission.brief_printer import BriefDocument, write_pdf
 from groundstation.gui.model.model_controller import ModelDesk
 from groundstation.gui.model.picture_places import places_in
 from groundstation.gui.model.record_side import KIND_TITLES, line_of
 from groundstation.gui.reconstruct.looks import NUMBERS, image_of
-from groundstation.gui.widgets.brief_printer import BriefDocument, write_pdf
 from groundstation.services.model.scene_card import PanelRow, SceneCard, view_of
 from groundstation.services.model.scene_records import Attachment
 from groundstation.services.reconstruct.guided_camera import sized

@@ -23,7 +23,7 @@ from groundstation.services.reconstruct.folders import (
 from planning.base.files import real_path
 from planning.base.findings import Severity
 from reconstruction.light.photo_set import held_out_names
-from reconstruction.training.methods.registry import METHODS
+from reconstruction.training.method_registry import METHODS
 
 HELD_OUT, SEED = 0.15, 0
 """Share and seed that trainings hold views out by unless their settings say otherwise."""

@@ -23,7 +23,7 @@ from groundstation.services.reconstruct.guided_camera import sized
 from groundstation.services.reconstruct.messages import Seen, Subject
 from groundstation.services.units import UnitSystem, length_unit
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.training.methods.registry import METHODS
+from reconstruction.training.method_registry import METHODS
 from reconstruction.training.names import PICTURE
 
 # Above the picture: the layer that is shown, what it is compared with, and the way back to the photo.

@@ -30,9 +30,9 @@ from groundstation.gui.view3d.drawing_tools import PickedRectangle, RectangleToo
 from groundstation.gui.view3d.layers import Layer
 from groundstation.gui.view3d.scene_view import SceneView
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, LengthBox
+from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.scrolling import scrolled
 from groundstation.gui.widgets.value_boxes import ErrorLine, NameBox
-from groundstation.gui.window.job_bar import DialogFoot
 from groundstation.services.jobs.runner import Job, JobContext, JobProgress
 from groundstation.services.site.edits import height_above_sea_m
 from groundstation.services.site.sources import (

@@ -24,9 +24,9 @@ from groundstation.gui.application.context import Workspace
 from groundstation.gui.application.loading import BackgroundImport
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.tabs import Place, Tab, TabSpec, find_tabs
+from groundstation.gui.widgets.job_bar import JobBar
 from groundstation.gui.widgets.scrolling import CurrentStack, scrolled
 from groundstation.gui.widgets.tab_order import first_in, next_in_order
-from groundstation.gui.window.job_bar import JobBar
 from groundstation.gui.window.message_area import MessageArea
 
 SIDE_WIDTH_PX, DETAIL_WIDTH_PX = 300, 330

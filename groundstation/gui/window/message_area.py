@@ -12,17 +12,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from PySide6.QtCore import QCoreApplication, QEvent, QObject, QPoint, QRect, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import (
     QColor,
     QFont,
     QGuiApplication,
     QKeySequence,
-    QMouseEvent,
-    QPainter,
-    QPaintEvent,
     QShortcut,
-    QTextLayout,
 )
 from PySide6.QtWidgets import (
     QFrame,
@@ -31,7 +27,6 @@ from PySide6.QtWidgets import (
     QListWidget,
     QListWidgetItem,
     QPushButton,
-    QSizePolicy,
     QStyle,
     QToolButton,
     QVBoxLayout,
@@ -39,14 +34,13 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import Message, Workspace
+from groundstation.gui.widgets.short_text import ShortText, severity_words
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Document
 from planning.base.findings import Severity
 
 MAX_MESSAGES = 500
 
-N_LINES = 2
-"""Of a message in the line; the list has all of it."""
 
 EVENT_S, TROUBLE_S = 12.0, 60.0
 """How long the line shows what happened, and an error or a warning that nobody settles."""
@@ -214,67 +208,6 @@ class MessageArea(QWidget):
             self._workspace.jump_to(message.item)
 
 
-class ShortText(QLabel):
-    """A text in two lines at most, so that a long one pushes nothing away; the tool tip has all of it.
-
-    Signals
-    -------
-    clicked()
-    """
-
-    clicked = Signal()
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setTextFormat(Qt.TextFormat.PlainText)
-        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-
-    def setText(self, text: str) -> None:  # noqa: N802
-        """Show a text."""
-        super().setText(text)
-        self.setToolTip(text)
-
-    def sizeHint(self) -> QSize:  # noqa: N802
-        """As high as its lines, whatever stands in it: nothing moves when a message comes."""
-        return QSize(100, N_LINES * self.fontMetrics().lineSpacing())
-
-    def minimumSizeHint(self) -> QSize:  # noqa: N802
-        """The same."""
-        return self.sizeHint()
-
-    def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
-        """A click asks for more."""
-        if event.button() == Qt.MouseButton.LeftButton:
-            self.clicked.emit()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
-        """Break lines at words, and end in dots where there is more."""
-        painter, metrics = QPainter(self), self.fontMetrics()
-        lines = self._lines()
-        top = max(0, (self.height() - len(lines) * metrics.lineSpacing()) // 2)
-        for number, line in enumerate(lines):
-            room = QRect(0, top + number * metrics.lineSpacing(), self.width(), metrics.lineSpacing())
-            flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-            self.style().drawItemText(painter, room, flags, self.palette(), True, line, self.foregroundRole())
-        painter.end()
-
-    def _lines(self) -> list[str]:
-        layout, lines, text = QTextLayout(self.text(), self.font()), [], self.text()
-        layout.beginLayout()
-        while len(lines) < N_LINES:
-            line = layout.createLine()
-            if not line.isValid():
-                break
-            line.setLineWidth(self.width())
-            start = line.textStart()
-            end = start + line.textLength()
-            is_last = len(lines) == N_LINES - 1
-            shown = text[start:] if is_last else text[start:end]
-            lines.append(self.fontMetrics().elidedText(shown.strip(), Qt.TextElideMode.ElideRight, self.width()))
-        layout.endLayout()
-        return lines
-
-
 class MessageSheet(QFrame):
     """The list of all messages; it lies over the window, above the line.
 
@@ -411,14 +344,3 @@ class MessageSheet(QFrame):
         chosen = self._chosen()
         if chosen is not None:
             signal.emit(chosen)  # type: ignore[attr-defined]
-
-
-def severity_words() -> dict[Severity, str]:
-    """Severities of messages in the user's language."""
-    translate = QCoreApplication.translate
-    return {
-        Severity.ERROR: translate("MessageArea", "Error"),
-        Severity.WARNING: translate("MessageArea", "Warning"),
-        Severity.NOTE: translate("MessageArea", "Note"),
-        Severity.OK: translate("MessageArea", "Done"),
-    }

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from groundstation.services.reconstruct.folders import DataSetCard
 from groundstation.services.reconstruct.request import TrainWish
-from reconstruction.training.methods.registry import DEFAULT_METHOD, METHODS
+from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 from reconstruction.training.names import LIGHTS, PRESETS
 from reconstruction.training.photos.decoded_photo import DECODING_BYTES_PER_PX, Decoding, decoded_bytes
 

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from planning.base.effects import Decision
     from reconstruction.light.photo_set import PhotoSet
     from reconstruction.training.callbacks import Visit
+    from reconstruction.training.model.photo_errors import PhotoErrors
     from reconstruction.training.model.saved import TrainedModel
-    from reconstruction.training.photos.photo_errors import PhotoErrors
 
 
 # Layers of a model as pictures that somebody can look at.
@@ -265,7 +265,7 @@ class Darkroom:
         return True
 
     def _turn_to(self, wanted: WatchErrors, shown: ShownModel) -> None:
-        from reconstruction.training.photos.photo_errors import PhotoErrors
+        from reconstruction.training.model.photo_errors import PhotoErrors
 
         if self._errors is not None and self._errors[0] == wanted and self._errors[1] is shown.version:
             return

@@ -25,9 +25,9 @@ from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.scenes.mitsuba.plugins import mitsuba
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Taking, read_taking
 from reconstruction.scenes.photos.flight_views import lens_of, moments, posed_photos
-from reconstruction.scenes.photos.photo_folder import ScenePhotos, photograph
-from reconstruction.scenes.photos.photo_job import PhotoJob
-from reconstruction.scenes.photos.run_record import check_folder
+from reconstruction.scenes.runs.photo_folder import ScenePhotos, photograph
+from reconstruction.scenes.runs.photo_job import PhotoJob
+from reconstruction.scenes.runs.run_record import check_folder
 
 
 @dataclass(frozen=True, slots=True)

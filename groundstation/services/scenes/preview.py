@@ -24,7 +24,7 @@ from planning.geo.solids import Solids
 from planning.plan import Camera, Viewpoint
 from planning.site.file import site_sha256
 from planning.site.records import SiteModel
-from reconstruction.scenes.effects.names import EXPOSURE, GIMBAL_ERROR, POSITION_ERROR, SKY_OCCLUSION
+from reconstruction.scenes.effect_names import EXPOSURE, GIMBAL_ERROR, POSITION_ERROR, SKY_OCCLUSION
 from reconstruction.scenes.world.look import Look
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.photos.flight_views import lens_of, planned_shots, posed_photos
 from reconstruction.scenes.photos.square_views import square_photos
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
 from reconstruction.tradeoff.scene_tradeoff import (
     ERROR_AXIS,
     MakeRenderer,

@@ -29,14 +29,14 @@ from planning.site.file import is_planned_on, site_bytes, site_sha256
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.photos.flight_views import WIDTHS_PX, Shot, flown_shots, lens_of, planned_shots, posed_photos
-from reconstruction.scenes.photos.photo_job import DEFAULT_POINTS
 from reconstruction.scenes.photos.renderer import RenderSettings
-from reconstruction.scenes.photos.run_record import RUN_FILE
 from reconstruction.scenes.photos.square_views import square_shots
+from reconstruction.scenes.record import Scene
+from reconstruction.scenes.runs.photo_job import DEFAULT_POINTS
+from reconstruction.scenes.runs.run_record import RUN_FILE
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
 from reconstruction.scenes.world.look import read_look
-from reconstruction.scenes.world.record import Scene
 
 # Photos of a flight file: where they were taken and looked, and how the aircraft moved meanwhile.
 

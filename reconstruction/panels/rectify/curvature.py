@@ -16,8 +16,8 @@ from planning.base.effects import Assessment, Decision, Wish, decide
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.rectify.fit import SurfaceFit
 from reconstruction.panels.rectify.polynomial import polynomial_view
+from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.rectify.view import SurfaceView, TangentView, surface_view
-from reconstruction.panels.search.record import Rectification
 
 Array = NDArray[np.float64]
 

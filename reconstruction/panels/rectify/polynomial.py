@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InfeasibleError
-from reconstruction.panels.search.record import Rectification
+from reconstruction.panels.rectify.rectification import Rectification
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.panels.search.record import Rectification
+from reconstruction.panels.rectify.rectification import Rectification
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

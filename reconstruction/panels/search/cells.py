@@ -9,10 +9,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.search.cutting import Cut, cut_pieces
 from reconstruction.panels.search.inclined import BESIDE_GRID_PX
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine, InclinedLine, Rectification
+from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine, InclinedLine
 
 Array = NDArray[np.float64]
 

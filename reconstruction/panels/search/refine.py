@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from planning.base.jit import run_parallel
 from planning.base.progress import QUIET, Monitor
+from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.rectify.warp import warp
 from reconstruction.panels.search.edges import measured_edge, vertical_edges
 from reconstruction.panels.search.frame_edges import MOST_BIAS_PX, regressed_width, unbiased_edges
-from reconstruction.panels.search.record import GridLine, InclinedLine, Rectification
+from reconstruction.panels.search.record import GridLine, InclinedLine
 from reconstruction.panels.search.views import CorrectedView, grey
 
 Array = NDArray[np.float64]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InfeasibleError
 from planning.base.progress import QUIET, Monitor
 from planning.site.importing.facades import facade_name
+from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.rectify.vanishing_view import vanishing_view
 from reconstruction.panels.rectify.warp import warp
 from reconstruction.panels.search.cells import facade_grid
@@ -20,7 +21,7 @@ from reconstruction.panels.search.fuse import fused
 from reconstruction.panels.search.grid import Axes, find_grid
 from reconstruction.panels.search.outline import arranged
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.search.record import FacadeGrid, Rectification, Segmentation
+from reconstruction.panels.search.record import FacadeGrid, Segmentation
 from reconstruction.panels.search.refine import refined_inclined, refined_lines
 from reconstruction.panels.search.segments import Grey, find_segments, lengths
 from reconstruction.panels.search.straighten import straightening, straightening_of_grid

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
-from reconstruction.panels.search.record import Rectification
+from reconstruction.panels.rectify.rectification import Rectification
 
 # Pictures as the search for lines wants them.
 

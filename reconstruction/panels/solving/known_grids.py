@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.panels.panels_file import OPEN_SIDES, FileFacade, FileInclined, FileLine, FilePanel, PanelsFile
+from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.rectify.surface import FacadeSurface
 from reconstruction.panels.search.cells import facade_grid
-from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine, InclinedLine, Rectification
+from reconstruction.panels.search.record import FacadeGrid, FoundPanel, GridLine, InclinedLine
 from reconstruction.panels.solving.facades import Facade
 
 Array = NDArray[np.float64]

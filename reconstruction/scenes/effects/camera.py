@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planning.base.effects import Assessment
-from reconstruction.scenes.effects.names import DISTORTION, NOISE, VIGNETTING
+from reconstruction.scenes.effect_names import DISTORTION, NOISE, VIGNETTING
 from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.effects.terms import SECONDS_PER_ANGLE, TOLERANCE_GREY, TOLERANCE_PX, cost_s
 from reconstruction.scenes.photos.lens_effects import MIDDLE_GREY, USUAL_SENSOR, Sensor, grey_levels

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
+from reconstruction.scenes.effect_names import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
 from reconstruction.scenes.effects.probe import N_PHOTOS, QUANTILE, Probe, spread
 from reconstruction.scenes.effects.terms import RAYS_PER_PIXEL, SECONDS_PER_RAY, TOLERANCE_GREY, TOLERANCE_PX
 from reconstruction.scenes.light.optics import mirrored
@@ -19,7 +19,7 @@ from reconstruction.scenes.photos.lens_effects import DARKEST, MIDDLE_GREY, grey
 from reconstruction.scenes.photos.motion_blur import MOST_TIMES, NEAREST_M, PX_PER_TIME
 from reconstruction.scenes.photos.pose_errors import told_poses
 from reconstruction.scenes.photos.renderer import FINE
-from reconstruction.scenes.world.record import Layer
+from reconstruction.scenes.record import Layer
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planning.base.effects import Assessment
-from reconstruction.scenes.effects.names import INTERIOR, OCCLUSION, SHADOW, SKY_OCCLUSION
+from reconstruction.scenes.effect_names import INTERIOR, OCCLUSION, SHADOW, SKY_OCCLUSION
 from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.effects.terms import NO_GLASS, SECONDS_PER_SHADOW, TOLERANCE_GREY, cost_s
 from reconstruction.scenes.light.optics import pane_light

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Assessment
-from reconstruction.scenes.effects.names import CURVATURE, DOUBLING, FRESNEL, NEAR_FIELD, SECOND_BOUNCE, TILT
+from reconstruction.scenes.effect_names import CURVATURE, DOUBLING, FRESNEL, NEAR_FIELD, SECOND_BOUNCE, TILT
 from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.effects.terms import (
     NO_GLASS,

@@ -18,7 +18,7 @@ from reconstruction.scenes.light.shading import SkyLight
 from reconstruction.scenes.light.tracing import Switches, Tracer, layer_mask
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Moment, Taking
 from reconstruction.scenes.photos.lens_effects import DARKEST, MIDDLE_GREY, grey_levels
-from reconstruction.scenes.world.record import Layer, Scene
+from reconstruction.scenes.record import Layer, Scene
 
 Array = NDArray[np.float64]
 

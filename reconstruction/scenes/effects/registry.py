@@ -20,7 +20,7 @@ from reconstruction.scenes.effects.terms import TOLERANCE_GREY, TOLERANCE_PX
 from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Moment, Taking
 from reconstruction.scenes.photos.lens_effects import USUAL_SENSOR, Sensor
 from reconstruction.scenes.photos.renderer import RenderSettings
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
 
 
 def effects(tolerance: float = 1.0, sensor: Sensor = USUAL_SENSOR) -> tuple[Effect[Probe], ...]:

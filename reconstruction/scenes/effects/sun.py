@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from planning.base.effects import Assessment
 from planning.base.jit import kernel
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import SUN_GLARE
+from reconstruction.scenes.effect_names import SUN_GLARE
 from reconstruction.scenes.effects.probe import Probe
 from reconstruction.scenes.effects.terms import TOLERANCE_GREY
 from reconstruction.scenes.light.pane_surfaces import half_sides_m

@@ -12,7 +12,7 @@ from planning.base.jit import chunks, run_chunks
 from reconstruction.scenes.light.ambient import Ambient, Gather
 from reconstruction.scenes.light.geometry import Geometry
 from reconstruction.scenes.light.shading import MattLight, SkyLight, look_up
-from reconstruction.scenes.world.record import Layer, Panes, Scene
+from reconstruction.scenes.record import Layer, Panes, Scene
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from planning.base.jit import kernel
 from planning.geo.mesh import TriangleMesh, join
 from reconstruction.base.ray_casting import RayCaster
-from reconstruction.scenes.world.record import Panes, Scene
+from reconstruction.scenes.record import Panes, Scene
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

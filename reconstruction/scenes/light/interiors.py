@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from planning.base.jit import kernel
 from reconstruction.scenes.light.geometry import PaneFrames
 from reconstruction.scenes.light.pane_surfaces import half_sides_m
-from reconstruction.scenes.world.record import Interiors, Panes
+from reconstruction.scenes.record import Interiors, Panes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
-from reconstruction.scenes.world.record import Glass
+from reconstruction.scenes.record import Glass
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from planning.base.jit import kernel
 from reconstruction.scenes.light.geometry import Meeting, PaneFrames
-from reconstruction.scenes.world.record import Panes
+from reconstruction.scenes.record import Panes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

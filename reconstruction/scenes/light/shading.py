@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from planning.base.jit import kernel
 from reconstruction.scenes.light.geometry import Geometry, texture_axes
-from reconstruction.scenes.world.record import Body, Sky, Texture
+from reconstruction.scenes.record import Body, Sky, Texture
 
 if TYPE_CHECKING:
     from reconstruction.scenes.light.ambient import Ambient

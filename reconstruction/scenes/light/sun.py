@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.scenes.world.record import Sky
+from reconstruction.scenes.record import Sky
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from reconstruction.scenes.light.optics import mirrored, pane_light
 from reconstruction.scenes.light.pane_surfaces import PaneSurfaces
 from reconstruction.scenes.light.shading import MattLight, SkyLight
 from reconstruction.scenes.light.sun import Sun
-from reconstruction.scenes.world.record import Layer, Scene
+from reconstruction.scenes.record import Layer, Scene
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

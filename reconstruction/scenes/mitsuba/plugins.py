@@ -16,7 +16,7 @@ from planning.base.errors import InputError
 from planning.base.jit import n_threads
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.mitsuba.trial import render_pixel, survives
-from reconstruction.scenes.world.record import Glass
+from reconstruction.scenes.record import Glass
 
 Array = NDArray[np.float64]
 

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Wish
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import DISTORTION, INTERIOR, MOTION_BLUR, SUN_GLARE
+from reconstruction.scenes.effect_names import DISTORTION, INTERIOR, MOTION_BLUR, SUN_GLARE
 from reconstruction.scenes.mitsuba.plugins import lens, mitsuba
 from reconstruction.scenes.mitsuba.scene import middle_enu_m, mitsuba_scene
 from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from reconstruction.scenes.light.pane_surfaces import half_sides_m
 from reconstruction.scenes.light.shading import SkyLight
 from reconstruction.scenes.light.tracing import DUST_ALBEDO, Switches
 from reconstruction.scenes.mitsuba.plugins import SheetRole
-from reconstruction.scenes.world.record import Body, Glass, Panes, Scene, Sky
+from reconstruction.scenes.record import Body, Glass, Panes, Scene, Sky
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import chunks
-from reconstruction.scenes.effects.names import NOISE, SUN_GLARE, VIGNETTING
+from reconstruction.scenes.effect_names import NOISE, SUN_GLARE, VIGNETTING
 from reconstruction.scenes.photos.lens_glare import bloomed
 from reconstruction.scenes.photos.renderer import Photograph
 

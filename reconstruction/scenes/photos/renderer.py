@@ -19,7 +19,7 @@ from planning.base.effects import Decision, Wish
 from planning.base.errors import InputError
 from planning.base.jit import chunks, run_chunks
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import (
+from reconstruction.scenes.effect_names import (
     CURVATURE,
     DISTORTION,
     DOUBLING,
@@ -40,7 +40,7 @@ from reconstruction.scenes.effects.names import (
 from reconstruction.scenes.light.environment import ROWS
 from reconstruction.scenes.light.tracing import Light, Switches, Tracer
 from reconstruction.scenes.photos.motion_blur import moved_px, n_times, times, varies, windows
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]

@@ -14,7 +14,7 @@ from planning.plan import Viewpoint
 from planning.site.records import Facade
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.scenes.photos.flight_views import BETWEEN, Shot, posed_photos
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
 
 Array = NDArray[np.float64]
 

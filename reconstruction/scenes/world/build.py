@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from planning.coverage.sections import PanelFrames, panel_frames
 from planning.geo.mesh import TriangleMesh
 from planning.site.records import Site, SiteModel, panel_corners, require_panels
+from reconstruction.scenes.record import Body, Glass, Interiors, Layer, Panes, Scene, Sky
 from reconstruction.scenes.world.look import Look
 from reconstruction.scenes.world.panorama import panorama
 from reconstruction.scenes.world.profiles import edge_neighbours, profile_rings
-from reconstruction.scenes.world.record import Body, Glass, Interiors, Layer, Panes, Scene, Sky
 from reconstruction.scenes.world.rooms import furnished, painted, shared_rooms
 from reconstruction.scenes.world.surroundings import surround
 from reconstruction.scenes.world.textures import grain

@@ -11,9 +11,9 @@ from planning.base.errors import InputError
 from planning.geo.mesh import TriangleMesh, box_mesh, extrude, join
 from planning.site.bundled import ORIGIN, arc_grid, court, panel_grid
 from planning.site.records import Airspace, Facade, Panel, Site, SiteModel
+from reconstruction.scenes.record import Glass, Scene
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
-from reconstruction.scenes.world.record import Glass, Scene
 
 AIRSPACE = Airspace((-70.0, -50.0, 3.0), (70.0, 75.0, 60.0), ground_z_m=0.0)
 HOME = (50.0, 14.0, 0.0)

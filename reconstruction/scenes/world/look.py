@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.base.json_file import check_settings, read_toml, to_record
-from reconstruction.scenes.world.record import Glass, Rgb
+from reconstruction.scenes.record import Glass, Rgb
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.scenes.world.record import Sky
+from reconstruction.scenes.record import Sky
 from reconstruction.scenes.world.textures import smooth_noise
 
 Picture = NDArray[np.float32]

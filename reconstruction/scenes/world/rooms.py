@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from reconstruction.scenes.light.geometry import PaneFrames
 from reconstruction.scenes.light.interiors import SLAT_SHADE, room_shares
 from reconstruction.scenes.light.pane_surfaces import half_sides_m
-from reconstruction.scenes.world.record import Interiors, Panes
+from reconstruction.scenes.record import Interiors, Panes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

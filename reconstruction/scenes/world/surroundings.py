@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from planning.geo.mesh import TriangleMesh, extrude, join
 from planning.site.records import Obstacle, SiteModel, box_geometry
+from reconstruction.scenes.record import Body, Layer, Rgb, Texture
 from reconstruction.scenes.world.look import Look
-from reconstruction.scenes.world.record import Body, Layer, Rgb, Texture
 from reconstruction.scenes.world.solids import (
     CAR_DARK,
     CAR_PAINT,

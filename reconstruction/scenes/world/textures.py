@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from reconstruction.scenes.world.record import Rgb, Texture
+from reconstruction.scenes.record import Rgb, Texture
 
 Picture = NDArray[np.float32]
 

@@ -14,10 +14,10 @@ from torch import Tensor
 from reconstruction.splats.ellipsoid_axes import flattened
 from reconstruction.splats.splats import NO_PANEL, SHAPES, Splats
 from reconstruction.training.config import TrainConfig
+from reconstruction.training.method_registry import Primitive
 from reconstruction.training.methods.gaussian_shader import GaussianShader
 from reconstruction.training.methods.ref_gaussian import RefGaussian
 from reconstruction.training.methods.ref_gs import RefGs
-from reconstruction.training.methods.registry import Primitive
 from reconstruction.training.methods.shader import Shader
 
 FLATNESS = 0.3

@@ -124,7 +124,7 @@ def test_closing_cancels_what_runs_and_what_waits(application, runner):
 
 
 def test_the_job_bar_shows_progress_queue_and_time_and_cancels(application, workspace):
-    from groundstation.gui.window.job_bar import JobBar
+    from groundstation.gui.widgets.job_bar import JobBar
 
     bar, gate = JobBar(workspace), Gate()
     workspace.start("first", gate)
@@ -142,7 +142,7 @@ def test_the_job_bar_shows_progress_queue_and_time_and_cancels(application, work
 
 
 def test_a_short_job_does_not_make_the_bar_flash(application, workspace):
-    from groundstation.gui.window.job_bar import JobBar
+    from groundstation.gui.widgets.job_bar import JobBar
 
     bar, seen = JobBar(workspace), []
     done = []

@@ -27,7 +27,7 @@ from planning.site.bundled import write_scene
 from planning.site.file import read_site
 from planning.site.importing.options import ImportOptions
 from planning.site.records import Airspace
-from reconstruction.training.methods.registry import METHODS
+from reconstruction.training.method_registry import METHODS
 from tests.gui.source_sentences import collect, files_of_the_window
 from tests.planning.plan_cases import kiosk
 
@@ -41,7 +41,7 @@ OTHER_TABLES = {"parts", "window"}
 NOT_SHOWN = {
     "reconstruction/dataset/effects.py": "the decision about each effect, for the command line",
     "reconstruction/dataset/records.py": "file content",
-    "reconstruction/training/methods/registry.py": "but for what each method is: where it is from, what changed",
+    "reconstruction/training/method_registry.py": "but for what each method is: where it is from, what changed",
     "reconstruction/training/names.py": "the window has names of its own for layers",
     "planning/base/effects.py": "the decision as one line, for the command line; the window has a card",
     "planning/geo/enu.py": "descriptions of transformations for PROJ",

@@ -16,7 +16,7 @@ from groundstation.gui.sentences.window import IN_WINDOW, OPTION_FIELDS
 from groundstation.gui.site.findings_list import FindingsList as SiteFindingsList
 from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.findings_list import FindingsList
-from groundstation.gui.window.job_bar import JobBar
+from groundstation.gui.widgets.job_bar import JobBar
 from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.plan.effects import EffectChoice
 from groundstation.services.project.document import Document

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from planning.geo.mesh import from_corners
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.scenes.world.record import Body, Glass, Layer, Panes, Scene, Sky, Texture
+from reconstruction.scenes.record import Body, Glass, Layer, Panes, Scene, Sky, Texture
 from tests.planning.plan_cases import kiosk
 
 SQUARE_M = 0.5

@@ -25,7 +25,7 @@ from planning.base.errors import InputError
 from planning.geo.mesh import box_mesh
 from planning.site.bundled import single_panel
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.scenes.effects.names import INTERIOR, SUN_GLARE
+from reconstruction.scenes.effect_names import INTERIOR, SUN_GLARE
 from reconstruction.scenes.light.optics import fresnel, pane_light
 from reconstruction.scenes.light.shading import GROUND_ALBEDO
 from reconstruction.scenes.mitsuba import plugins as mitsuba_plugins
@@ -35,9 +35,9 @@ from reconstruction.scenes.mitsuba.trial import survives
 from reconstruction.scenes.photos.lens_effects import grey_levels
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
 from reconstruction.scenes.photos.square_views import square_photos
+from reconstruction.scenes.record import Body, Glass, Layer, Rgb, Scene, Sky, Texture
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
-from reconstruction.scenes.world.record import Body, Glass, Layer, Rgb, Scene, Sky, Texture
 from tests.reconstruction.scenes.small_scenes import BOARD_Y_M, checkerboard, photo, quad, scene, with_panes
 
 Array = NDArray[np.float64]

@@ -21,15 +21,15 @@ from reconstruction.colmap.georeference import posed_photos as of_colmap
 from reconstruction.colmap.similarity import Similarity
 from reconstruction.photos.lens import LensSource
 from reconstruction.photos.poses import pose_photos
-from reconstruction.scenes.effects.names import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR
+from reconstruction.scenes.effect_names import DISTORTION, EXPOSURE, GIMBAL_ERROR, MOTION_BLUR
 from reconstruction.scenes.photos.camera_model import GimbalErrors, Moment, PositionErrors, Taking, bent_lens
-from reconstruction.scenes.photos.photo_folder import ScenePhotos, photograph
-from reconstruction.scenes.photos.photo_job import PhotoJob
 from reconstruction.scenes.photos.renderer import RenderSettings
+from reconstruction.scenes.record import Scene
+from reconstruction.scenes.runs.photo_folder import ScenePhotos, photograph
+from reconstruction.scenes.runs.photo_job import PhotoJob
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
-from reconstruction.scenes.world.record import Scene
-from tests.reconstruction.scenes.photos.test_photo_folder import job_for
+from tests.reconstruction.scenes.runs.test_photo_folder import job_for
 
 BEND = (-0.35, 0.05, 0.002, -0.001, -0.02)
 LENS = bent_lens(Intrinsics(64, 48, 60.0, 60.0, 32.0, 24.0), BEND)

@@ -9,7 +9,7 @@ import pytest
 
 from planning.base.errors import InputError
 from reconstruction.base.cameras import Intrinsics
-from reconstruction.scenes.effects.names import NEAR_FIELD, NOISE, SHADOW
+from reconstruction.scenes.effect_names import NEAR_FIELD, NOISE, SHADOW
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
 from reconstruction.scenes.photos.square_views import square_photos

@@ -7,7 +7,7 @@ import pytest
 
 from planning.base.errors import InputError
 from reconstruction.training.config import LossWeights, Rates, TrainConfig, config_of
-from reconstruction.training.methods.registry import METHODS
+from reconstruction.training.method_registry import METHODS
 from reconstruction.training.names import LIGHTS, PRESETS
 from reconstruction.training.presets import preset, with_wishes
 

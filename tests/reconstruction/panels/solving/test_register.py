@@ -11,8 +11,8 @@ import pytest
 
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.metrics.sets import surface_of
+from reconstruction.panels.rectify.rectification import Rectification
 from reconstruction.panels.rectify.view import SurfaceView, surface_view
-from reconstruction.panels.search.record import Rectification
 from reconstruction.panels.solving.adjustment import moved_pose
 from reconstruction.panels.solving.register import registered
 from reconstruction.scenes.facades.cases import simple_case, wide_camera

@@ -11,11 +11,11 @@ import pytest
 from planning.base.effects import Decision
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import CURVATURE, INTERIOR, NOISE, OCCLUSION, SUN_GLARE, TILT, VIGNETTING
+from reconstruction.scenes.effect_names import CURVATURE, INTERIOR, NOISE, OCCLUSION, SUN_GLARE, TILT, VIGNETTING
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.photos.lens_effects import developed, grey_levels, metered_exposure
 from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
-from reconstruction.scenes.world.record import Body, Glass, Interiors, Layer, Scene, Sky
+from reconstruction.scenes.record import Body, Glass, Interiors, Layer, Scene, Sky
 from tests.reconstruction.scenes.small_scenes import DULL, board, facing_south, ground, photo, ramp, scene, with_panes
 
 BEHIND = Sky(sun_heading_deg=185.0, sun_elevation_deg=10.0)

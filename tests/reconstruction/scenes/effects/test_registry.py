@@ -14,7 +14,7 @@ from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import (
+from reconstruction.scenes.effect_names import (
     DISTORTION,
     DOUBLING,
     EFFECTS,
@@ -32,8 +32,8 @@ from reconstruction.scenes.light.optics import pane_light
 from reconstruction.scenes.photos.camera_model import Taking
 from reconstruction.scenes.photos.lens_effects import Sensor, developed, grey_levels, metered_exposure, vignette
 from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky, Texture
 from reconstruction.scenes.world.bundled import bundled_scene
-from reconstruction.scenes.world.record import Body, Glass, Layer, Scene, Sky, Texture
 from tests.reconstruction.scenes.small_scenes import MIRROR, board, facing_south, ground, photo, ramp, scene, with_panes
 from tests.slow import slow
 

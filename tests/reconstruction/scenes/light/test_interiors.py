@@ -17,10 +17,10 @@ from planning.site.records import Facade, panel_corners
 from reconstruction.scenes.light.geometry import PaneFrames
 from reconstruction.scenes.light.interiors import CEILING, FADES_M, FLANK, FLOOR, SIDE, TOP, RoomLight
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
+from reconstruction.scenes.record import Glass, Interiors, Scene
 from reconstruction.scenes.world.build import PAINT, build_scene, facade_bows_per_m
 from reconstruction.scenes.world.bundled import bundled_scene, curved_site, planar_site
 from reconstruction.scenes.world.look import Look
-from reconstruction.scenes.world.record import Glass, Interiors, Scene
 from reconstruction.scenes.world.rooms import shared_rooms
 from tests.reconstruction.scenes.small_scenes import facing_south, panes, photo, scene
 

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reconstruction.scenes.light.optics import fresnel, mirrored, pane_light
-from reconstruction.scenes.world.record import Glass
+from reconstruction.scenes.record import Glass
 
 CLEAR = (1.0, 1.0, 1.0)
 ANGLES = np.concatenate([np.linspace(1.0, 0.0, 500), 10.0 ** -np.arange(2.0, 320.0)])

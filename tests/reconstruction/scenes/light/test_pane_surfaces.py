@@ -18,7 +18,7 @@ from reconstruction.scenes.light.geometry import Geometry
 from reconstruction.scenes.light.optics import mirrored, pane_light
 from reconstruction.scenes.light.pane_surfaces import PaneSurfaces
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
-from reconstruction.scenes.world.record import Glass, Scene, Texture
+from reconstruction.scenes.record import Glass, Scene, Texture
 from tests.reconstruction.scenes.small_scenes import MIRROR, board, checkerboard, facing_south, photo, scene, with_panes
 
 Array = NDArray[np.float64]

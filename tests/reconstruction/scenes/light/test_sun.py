@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import SUN_GLARE
+from reconstruction.scenes.effect_names import SUN_GLARE
 from reconstruction.scenes.light.optics import pane_light
 from reconstruction.scenes.light.sun import RADIUS_RAD, Sun
 from reconstruction.scenes.photos.lens_effects import developed, metered_exposure
 from reconstruction.scenes.photos.lens_glare import SCATTERED, bloomed
 from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
-from reconstruction.scenes.world.record import Body, Glass, Layer, Sky
+from reconstruction.scenes.record import Body, Glass, Layer, Sky
 from tests.reconstruction.scenes.small_scenes import MIRROR, facing_south, ground, photo, scene, with_panes
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import GIMBAL_ERROR, POSITION_ERROR
+from reconstruction.scenes.effect_names import GIMBAL_ERROR, POSITION_ERROR
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.photos.camera_model import GimbalErrors, Moment, PositionErrors, Taking
 from reconstruction.scenes.photos.pose_errors import told_poses

@@ -15,8 +15,8 @@ from planning.geo.mesh import box_mesh
 from reconstruction.base.cameras import Intrinsics
 from reconstruction.scenes.light.optics import pane_light
 from reconstruction.scenes.photos.renderer import Photograph, Renderer, RenderSettings
+from reconstruction.scenes.record import Body, Glass, Layer, Scene, Sky
 from reconstruction.scenes.world.bundled import bundled_scene
-from reconstruction.scenes.world.record import Body, Glass, Layer, Scene, Sky
 from tests.reconstruction.scenes.small_scenes import (
     BOARD_Y_M,
     DULL,

@@ -18,10 +18,10 @@ from planning.site.bundled import SCENES as SITES
 from planning.site.free_space import free_space
 from planning.site.records import Airspace, Facade, Panel, Site, SiteModel, panel_corners, panel_triangles
 from reconstruction.base.ray_casting import RayCaster
+from reconstruction.scenes.record import Glass, Layer, Scene
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look, read_look
 from reconstruction.scenes.world.profiles import edge_gaps, profile_rings
-from reconstruction.scenes.world.record import Glass, Layer, Scene
 from reconstruction.scenes.world.solids import crown
 from reconstruction.scenes.world.wall_cut import without_openings
 

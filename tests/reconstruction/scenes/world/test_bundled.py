@@ -15,8 +15,8 @@ from planning.geo.mesh import TriangleMesh, from_corners, join
 from planning.site.free_space import free_space
 from planning.site.records import panel_corners, panel_triangles
 from reconstruction.base.ray_casting import RayCaster
+from reconstruction.scenes.record import Interiors, Layer, Scene
 from reconstruction.scenes.world.bundled import SCENES, bundled_scene
-from reconstruction.scenes.world.record import Interiors, Layer, Scene
 from tests.slow import slow
 
 scene_of = cache(bundled_scene)

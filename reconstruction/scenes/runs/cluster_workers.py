@@ -27,7 +27,7 @@ import reconstruction
 from planning.base.errors import GroundStationError, InputError, ReconstructionError
 from planning.base.json_file import write_atomically
 from planning.base.progress import Monitor
-from reconstruction.scenes.photos.photo_job import PATIENCE_S, Photographer, PhotoJob, written
+from reconstruction.scenes.runs.photo_job import PATIENCE_S, Photographer, PhotoJob, written
 
 TOKEN_FILE = ".reflight-cluster"
 """In the folder while a cluster works for it: a worker that reads the same content there sees the same folder."""

@@ -16,8 +16,8 @@ from planning.base.errors import InputError
 from planning.base.files import sha256_given
 from planning.base.folders import is_empty
 from planning.base.json_file import expect_format, read_json, write_atomically
-from reconstruction.scenes.photos.photo_job import PhotoJob
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
+from reconstruction.scenes.runs.photo_job import PhotoJob
 
 SCENE_PHOTOS_FORMAT = "reflight-scene-photos/1"
 RUN_FILE = "scene.json"

@@ -19,7 +19,7 @@ from reconstruction.scenes.photos.camera_model import USUAL_TAKING, Capture, Mom
 from reconstruction.scenes.photos.lens_effects import developed
 from reconstruction.scenes.photos.photo_layers import facade_mask, layer_contents, layer_file
 from reconstruction.scenes.photos.renderer import RenderSettings
-from reconstruction.scenes.world.record import Scene
+from reconstruction.scenes.record import Scene
 
 DEFAULT_POINTS = 100_000
 """As many as `prepare` writes."""

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
+from reconstruction.scenes.effect_names import EXPOSURE, GIMBAL_ERROR, MOTION_BLUR, POSITION_ERROR
 from reconstruction.scenes.photos.camera_model import SHUTTERS_S, Capture, in_stops
 from reconstruction.scenes.photos.lens_effects import metered_exposure
-from reconstruction.scenes.photos.photo_job import PhotoJob
 from reconstruction.scenes.photos.pose_errors import told_poses
 from reconstruction.scenes.photos.renderer import Renderer
+from reconstruction.scenes.runs.photo_job import PhotoJob
 
 Array = NDArray[np.float64]
 

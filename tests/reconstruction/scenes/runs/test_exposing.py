@@ -9,14 +9,14 @@ import pytest
 
 from planning.base.effects import Wish
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.scenes.effects.names import EXPOSURE
+from reconstruction.scenes.effect_names import EXPOSURE
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.photos.camera_model import SHUTTERS_S, Moment, Taking
-from reconstruction.scenes.photos.exposing import captures_of, common_exposure
 from reconstruction.scenes.photos.lens_effects import grey_levels
-from reconstruction.scenes.photos.photo_job import PhotoJob
 from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
-from reconstruction.scenes.world.record import Layer, Scene
+from reconstruction.scenes.record import Layer, Scene
+from reconstruction.scenes.runs.exposing import captures_of, common_exposure
+from reconstruction.scenes.runs.photo_job import PhotoJob
 from tests.reconstruction.scenes.small_scenes import photo, quad, scene
 
 SMALL = {"width_px": 32, "height_px": 24, "focal_px": 60.0}

@@ -13,12 +13,12 @@ import pytest
 
 from planning.base.errors import InputError, OperationCancelled, ReconstructionError
 from planning.site.bundled import single_panel
-from reconstruction.scenes.photos.cluster_workers import TOKEN_FILE, Studio, program_sha256
-from reconstruction.scenes.photos.photo_folder import photograph
-from reconstruction.scenes.photos.photo_job import Photographer
+from reconstruction.scenes.runs.cluster_workers import TOKEN_FILE, Studio, program_sha256
+from reconstruction.scenes.runs.photo_folder import photograph
+from reconstruction.scenes.runs.photo_job import Photographer
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
-from tests.reconstruction.scenes.photos.test_photo_folder import StopsAfter, job_for, record_of
+from tests.reconstruction.scenes.runs.test_photo_folder import StopsAfter, job_for, record_of
 
 ROOT = Path(__file__).resolve().parents[4]
 IN_PROCESS = {"threads_per_worker": 1, "processes": False, "dashboard_address": ":0"}

@@ -5,7 +5,7 @@ import pytest
 
 from planning.base.errors import InputError
 from reconstruction.training.config import TrainConfig, config_of
-from reconstruction.training.methods.registry import DEFAULT_METHOD, METHODS
+from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 
 HERE = Path("settings.toml")
 

@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from reconstruction.training.config import LossWeights
+from reconstruction.training.losses.normals import normal_smoothness
 from reconstruction.training.losses.terms import (
     colour_loss,
     normal_consistency,
@@ -15,7 +16,6 @@ from reconstruction.training.losses.terms import (
     surface_normals,
     worst_pixels,
 )
-from reconstruction.training.methods.normals import normal_smoothness
 from reconstruction.training.model.joint_model import Picture
 from reconstruction.training.photos.photo_stream import Sample
 

@@ -15,7 +15,7 @@ from typing import Any
 from planning.base.errors import ReconstructionError
 from planning.base.jit import n_threads
 from planning.base.progress import Monitor
-from reconstruction.scenes.photos.photo_job import PATIENCE_S, Photographer, PhotoJob, written
+from reconstruction.scenes.runs.photo_job import PATIENCE_S, Photographer, PhotoJob, written
 
 CORES_EACH = 4
 """The threads of a renderer share each photo: on 2 cores a second process took 27 % longer (12 photos of 1024 px)."""
@@ -57,7 +57,7 @@ def photographed(
     n_processes = min(max(1, n_threads() // CORES_EACH) if n_processes is None else n_processes, len(numbers))
     if cluster is not None:
         # It needs Dask, which nobody else does.
-        from reconstruction.scenes.photos.cluster_workers import photographed_by
+        from reconstruction.scenes.runs.cluster_workers import photographed_by
 
         yield from photographed_by(cluster, photographer, job, folder, numbers, monitor)
     elif n_processes <= 1:

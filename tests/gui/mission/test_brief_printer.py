@@ -28,7 +28,7 @@ UNITS = UnitSystem.METRIC
 
 @pytest.fixture
 def document(application):
-    from groundstation.gui.widgets.brief_printer import BriefDocument
+    from groundstation.gui.mission.brief_printer import BriefDocument
 
     def made(findings=()):
         brief = flight_brief(MODEL, example_plan(), findings, "today")
@@ -40,7 +40,7 @@ def document(application):
 
 @pytest.mark.parametrize(("is_letter", "size_mm"), [(False, (210.0, 297.0)), (True, (215.9, 279.4))])
 def test_pdf_has_pages_of_the_paper_that_was_asked_for(document, tmp_path, is_letter, size_mm):
-    from groundstation.gui.widgets.brief_printer import write_pdf
+    from groundstation.gui.mission.brief_printer import write_pdf
 
     path = tmp_path / "brief.pdf"
     n_pages = write_pdf(document(), path, is_letter)
@@ -55,7 +55,7 @@ def test_pages_hold_text_map_and_profiles(document):
     from PySide6.QtCore import Qt
     from PySide6.QtGui import QImage, QPainter
 
-    from groundstation.gui.widgets.brief_printer import lay_out, paint_page
+    from groundstation.gui.mission.brief_printer import lay_out, paint_page
 
     image = QImage(700, 1000, QImage.Format.Format_RGB32)
     image.setDotsPerMeterX(3780)
@@ -77,21 +77,21 @@ def test_pages_hold_text_map_and_profiles(document):
 
 
 def test_long_lists_of_findings_go_on_over_the_page(document, tmp_path):
-    from groundstation.gui.widgets.brief_printer import write_pdf
+    from groundstation.gui.mission.brief_printer import write_pdf
 
     findings = [Finding(Severity.WARNING, "settle", f"finding {i}", "v0001", 1.0, 2.0, "s") for i in range(120)]
     assert write_pdf(document(findings), tmp_path / "brief.pdf", False) >= 4
 
 
 def test_a_pdf_that_cannot_be_written_is_an_error(document, tmp_path):
-    from groundstation.gui.widgets.brief_printer import write_pdf
+    from groundstation.gui.mission.brief_printer import write_pdf
 
     with pytest.raises(InputError, match="cannot be written"):
         write_pdf(document(), tmp_path / "none" / "brief.pdf", False)
 
 
 def test_every_word_of_the_page_is_there_for_the_translators(application):
-    from groundstation.gui.widgets.brief_printer import WORDS
+    from groundstation.gui.mission.brief_printer import WORDS
 
     said = set()
 
@@ -123,7 +123,7 @@ def test_every_word_of_the_page_is_there_for_the_translators(application):
 
 
 def test_map_with_tiles_shows_them_under_the_site(application, tmp_path):
-    from groundstation.gui.widgets.brief_printer import painted_map
+    from groundstation.gui.mission.brief_printer import painted_map
 
     tiles = write_map(tmp_path / "m.mbtiles", tiles_around(22.3372, 114.2636, range(14, 19), reach=3))
     shapes = site_shapes(MODEL), plan_shapes(example_plan(), HONG_KONG)

@@ -4,7 +4,7 @@ import math
 
 import torch
 
-from reconstruction.training.methods.normals import normal_smoothness
+from reconstruction.training.losses.normals import normal_smoothness
 
 
 def step(size, column, height):

@@ -29,15 +29,15 @@ from reconstruction.base.ray_casting import RayCaster
 from reconstruction.dataset.points import start_points
 from reconstruction.dataset.records import transforms, write_records
 from reconstruction.photos.decode import PICTURE_FILE, decoded
-from reconstruction.scenes.effects.names import DISTORTION
+from reconstruction.scenes.effect_names import DISTORTION
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.photos.camera_model import Moment
-from reconstruction.scenes.photos.exposing import captures_of, common_exposure
-from reconstruction.scenes.photos.photo_job import PhotoJob
 from reconstruction.scenes.photos.photo_layers import ARRAYS, BYTES_PER_PIXEL, PICTURES, layer_file
-from reconstruction.scenes.photos.render_workers import photographed
-from reconstruction.scenes.photos.run_record import captures_record, kept_photos, run_record, write_run
-from reconstruction.scenes.world.record import Layer, Scene
+from reconstruction.scenes.record import Layer, Scene
+from reconstruction.scenes.runs.exposing import captures_of, common_exposure
+from reconstruction.scenes.runs.photo_job import PhotoJob
+from reconstruction.scenes.runs.render_workers import photographed
+from reconstruction.scenes.runs.run_record import captures_record, kept_photos, run_record, write_run
 
 
 @dataclass(frozen=True, slots=True)
