@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 
-from groundstation.cli.main import WindowWish, main
+from groundstation.cli.main import WindowOptions, main
 
 
-def open_window(wish: WindowWish) -> int:
+def open_window(wish: WindowOptions) -> int:
     """Open the window, or take pictures of it; Qt is imported here and not before."""
     if wish.screenshots is not None:
         from groundstation.gui.start import take_pictures

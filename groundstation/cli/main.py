@@ -41,7 +41,7 @@ class _Version(argparse.Action):
 
 
 @dataclass(frozen=True, slots=True)
-class WindowWish:
+class WindowOptions:
     """What the window is wanted for.
 
     Parameters
@@ -59,7 +59,7 @@ class WindowWish:
     site: Path | None = None
 
 
-OpenWindow = Callable[[WindowWish], int]
+OpenWindow = Callable[[WindowOptions], int]
 """Opens the window and returns the exit status once it is closed."""
 
 
@@ -118,12 +118,12 @@ def _run(arguments: Sequence[str], open_window: OpenWindow) -> int:
     try:
         parser = build_parser()
         options = parser.parse_args(arguments)
-        wish = WindowWish(options.open, options.screenshots, options.pictured_site)
+        wish = WindowOptions(options.open, options.screenshots, options.pictured_site)
         if wish.site is not None and wish.screenshots is None:
             parser.error("--site without a command is for --screenshots")
         if not hasattr(options, "run"):
             return open_window(wish)
-        if wish != WindowWish():
+        if wish != WindowOptions():
             parser.error("--open and --screenshots are for the window, which opens without a command")
         return int(options.run(options))
     except SystemExit as stop:

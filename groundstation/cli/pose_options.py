@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.photos.poses import RefinedOutcome, RefineWish
+    from groundstation.services.photos.poses import RefinedOutcome, RefineRequest
 
 
 def add_pose_arguments(parser: Any) -> None:
@@ -32,7 +32,7 @@ def add_pose_arguments(parser: Any) -> None:
     add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
 
 
-def refine_wish(options: argparse.Namespace) -> RefineWish | None:
+def refine_wish(options: argparse.Namespace) -> RefineRequest | None:
     """What was asked for; None without `--refine`.
 
     Raises
@@ -41,11 +41,11 @@ def refine_wish(options: argparse.Namespace) -> RefineWish | None:
         An option that belongs to `--refine` stands without it, or its value is out of range.
     """
     from groundstation.cli.options import in_words_of_options
-    from groundstation.services.photos.poses import RefineWish
+    from groundstation.services.photos.poses import RefineRequest
 
     if options.refine:
         with in_words_of_options():
-            return RefineWish(options.refined, options.refine_size)
+            return RefineRequest(options.refined, options.refine_size)
     for option, value in (("--refined", options.refined), ("--refine-size", options.refine_size)):
         if value is not None:
             raise InputError(f"{option}: belongs to --refine, which was not given")

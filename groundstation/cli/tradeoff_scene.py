@@ -13,7 +13,7 @@ from planning.base.errors import InputError
 
 if TYPE_CHECKING:
     from groundstation.services.scenes.tradeoff import SceneTradeoff
-    from groundstation.services.scenes.views import SceneWish
+    from groundstation.services.scenes.views import SceneRequest
     from reconstruction.tradeoff.scene_downstream import EffectWorth
     from reconstruction.tradeoff.scene_tradeoff import SceneVariants
 
@@ -120,14 +120,14 @@ def run_scene(options: argparse.Namespace) -> int:
     return 0
 
 
-def _wish(options: argparse.Namespace) -> SceneWish:
-    from groundstation.services.scenes.views import SceneWish
+def _wish(options: argparse.Namespace) -> SceneRequest:
+    from groundstation.services.scenes.views import SceneRequest
     from reconstruction.scenes.effect_names import EFFECTS
     from reconstruction.scenes.photos.renderer import RenderSettings
 
     wishes = effect_wishes(options.effects, EFFECTS)
     with in_words_of_options():
-        return SceneWish(
+        return SceneRequest(
             scene=options.scene,
             plan=options.plan,
             n_views=options.views,

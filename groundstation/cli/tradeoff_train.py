@@ -54,11 +54,11 @@ def run_train(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_json, run_job
     from groundstation.cli.options import checked_seed
     from groundstation.services.reconstruct.tradeoff import train_tradeoff
-    from groundstation.services.reconstruct.training import TrainWish
+    from groundstation.services.reconstruct.training import TrainRequest
     from reconstruction.tradeoff.train_tradeoff import trial_rows
 
     seconds = options.seconds or (DEFAULT_SECONDS if options.iterations is None else None)
-    wish = TrainWish(
+    wish = TrainRequest(
         options.preset,
         options.method,
         None,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QButtonGroup, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.widgets.scrolling import WrappingRow
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from groundstation.gui.view3d.scene_view import SceneView
 
 
-class StagePage(StrEnum):
+class SharedViewPage(StrEnum):
     """What the stage shows."""
 
     SCENE = "scene"
@@ -56,7 +56,7 @@ class Stage(QWidget):
     tabRequested = Signal(str)  # noqa: N815
     closing = Signal(object)
 
-    def __init__(self, workspace: Workspace, parent: QWidget | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self._scene: SceneView | None = None
@@ -87,9 +87,9 @@ class Stage(QWidget):
 
     def _add_buttons(self) -> None:
         for page, text, tip in (
-            (StagePage.SCENE, self.tr("3-D"), self.tr("The site in three dimensions")),
-            (StagePage.MAP, self.tr("Map"), self.tr("The site from above, on the map")),
-            (StagePage.CAMERA, self.tr("Camera"), self.tr("What a viewpoint will see")),
+            (SharedViewPage.SCENE, self.tr("3-D"), self.tr("The site in three dimensions")),
+            (SharedViewPage.MAP, self.tr("Map"), self.tr("The site from above, on the map")),
+            (SharedViewPage.CAMERA, self.tr("Camera"), self.tr("What a viewpoint will see")),
         ):
             button = QPushButton(text)
             button.setCheckable(True)
@@ -100,20 +100,20 @@ class Stage(QWidget):
             self._bar.addWidget(button)
         self._buttons.buttons()[0].setChecked(True)
 
-    def page(self) -> StagePage:
+    def page(self) -> SharedViewPage:
         """What is shown."""
-        return StagePage(self._buttons.checkedButton().property("page"))
+        return SharedViewPage(self._buttons.checkedButton().property("page"))
 
-    def show_page(self, page: StagePage) -> None:
+    def show_page(self, page: SharedViewPage) -> None:
         """Show the site in another way."""
         for button in self._buttons.buttons():
             button.setChecked(button.property("page") == page.value)
         match page:
-            case StagePage.SCENE:
+            case SharedViewPage.SCENE:
                 self._pages.setCurrentWidget(self._loading if self._scene is None else self._scene)
-            case StagePage.MAP:
+            case SharedViewPage.MAP:
                 self._pages.setCurrentWidget(self.map_page())
-            case StagePage.CAMERA:
+            case SharedViewPage.CAMERA:
                 self._pages.setCurrentWidget(self.camera_page())
         self._update_pages()
 
@@ -153,17 +153,17 @@ class Stage(QWidget):
 
     def open_tiles(self, path: Path) -> None:
         """Show the map, with other tiles."""
-        self.show_page(StagePage.MAP)
+        self.show_page(SharedViewPage.MAP)
         self.map_page().open_map(path)
 
     def camera_page(self) -> CameraPreview:
         """The camera preview; made when it is first wanted."""
         if self._camera is None:
-            from groundstation.gui.camera_preview.photo_controller import PhotoDesk
+            from groundstation.gui.camera_preview.photo_controller import PhotoController
             from groundstation.gui.camera_preview.preview import CameraPreview
 
             self._camera = CameraPreview(self)
-            self.photo_desk = PhotoDesk(self._workspace, self._camera, self)
+            self.photo_controller = PhotoController(self._workspace, self._camera, self)
             self._camera.set_units(self._workspace.units)
             self._camera.viewpointShown.connect(self._follow_camera)
             self._pages.addWidget(self._camera)
@@ -183,7 +183,7 @@ class Stage(QWidget):
         scene.set_site(document.site)
         scene.set_plan(_plan_of(document), _locked_in(document))
         self._show_selection(self._workspace.selection)
-        if self.page() is StagePage.SCENE:
+        if self.page() is SharedViewPage.SCENE:
             self._pages.setCurrentWidget(scene)
         self._bring_in_first_plan(scene, document)
         waiting, self._waiting = self._waiting, []
@@ -221,10 +221,10 @@ class Stage(QWidget):
     def _update_pages(self) -> None:
         """Bring the page that is shown up to date; the others wait until they are."""
         document, selection = self._workspace.document, self._workspace.selection
-        if self._map is not None and self.page() is StagePage.MAP:
+        if self._map is not None and self.page() is SharedViewPage.MAP:
             self._map.set_document(document)
             self._map.set_selection(selection)
-        if self._camera is not None and self.page() is StagePage.CAMERA and not self._follows_camera:
+        if self._camera is not None and self.page() is SharedViewPage.CAMERA and not self._follows_camera:
             if selection is not None and selection.kind is ItemKind.VIEWPOINT:
                 self._camera_viewpoint = selection.id
             shown = document.site, _plan_of(document), self._camera_viewpoint
@@ -245,11 +245,11 @@ class Stage(QWidget):
         self._update_pages()
 
     def _look_at(self, item: Item) -> None:
-        if self.page() is StagePage.CAMERA and item.kind is not ItemKind.VIEWPOINT:
-            self.show_page(StagePage.SCENE)
+        if self.page() is SharedViewPage.CAMERA and item.kind is not ItemKind.VIEWPOINT:
+            self.show_page(SharedViewPage.SCENE)
         if self._scene is not None:
             self._scene.look_at(item)
-        if self._map is not None and self.page() is StagePage.MAP:
+        if self._map is not None and self.page() is SharedViewPage.MAP:
             self._map.look_at(item)
 
     def _units_changed(self, units: UnitSystem) -> None:

@@ -32,17 +32,17 @@ def run_window(path: Path | None = None) -> int:
     from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QApplication
 
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
     application = QApplication.instance() or QApplication(sys.argv[:1])
     assert isinstance(application, QApplication)
     application.setApplicationName("Reflight")
-    desk = Desk(application)
-    desk.show()
+    controller = ProjectController(application)
+    controller.show()
     if path is not None:
-        QTimer.singleShot(0, lambda: desk.open_path(path))
+        QTimer.singleShot(0, lambda: controller.open_path(path))
     status = int(application.exec())
-    desk.close()
+    controller.close()
     return status
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from groundstation.services.fly.flying import FlightWish, Flown, fly_files
+from groundstation.services.fly.flying import FlightRequest, Flown, fly_files
 from groundstation.services.mission.export import SUFFIXES, export_plan
 from groundstation.services.mission.preflight import preflight
 from groundstation.services.plan.planning import plan_site
@@ -64,6 +64,6 @@ def demonstrate(
     flight_path = flown = None
     if is_flyable(findings):
         flight_path = folder / f"{scene}.flight.json"
-        flown = fly_files(plan_path, site_path, flight_path, FlightWish(), monitor=monitor)
+        flown = fly_files(plan_path, site_path, flight_path, FlightRequest(), monitor=monitor)
     checked = findings, tuple(missions), tuple(export_findings)
     return Demonstration(site_path, plan_path, planned, *checked, flight_path, flown)

@@ -20,13 +20,16 @@ from numba.core.types.misc import unliteral
 F = TypeVar("F", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
+LAYOUT = 2
+"""Raised when a module moves from which kernels take types: what was compiled names it, and could not be read."""
+
 
 def kernel(function: F) -> F:
     """Compile a numeric function; NaN and signed zeros behave as IEEE 754 says.
 
     A kernel that others call with constants is compiled once; Numba by itself would compile it once for each constant.
     """
-    compiled = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    compiled = _kept_for_this_layout(numba.njit(cache=True, nogil=True, error_model="numpy")(function))
     template_of = compiled.get_call_template
 
     def get_call_template(arguments: Sequence[Type], named: Mapping[str, Type]) -> Any:
@@ -38,7 +41,16 @@ def kernel(function: F) -> F:
 
 def inline(function: F) -> F:
     """Compile a small helper into whatever kernel calls it."""
-    return cast("F", numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function))
+    return cast(
+        "F", _kept_for_this_layout(numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function))
+    )
+
+
+def _kept_for_this_layout(compiled: Any) -> Any:
+    """Have compiled code on disk told apart by `LAYOUT`, beside Numba's own version."""
+    file = compiled._cache._cache_file
+    file._version += f"-{LAYOUT}"
+    return compiled
 
 
 def is_compiled(compiled: Callable[..., Any]) -> bool:

@@ -13,11 +13,11 @@ from planning.base.progress import QUIET, Clock, Monitor, QualityPoint
 from planning.tradeoff.curves import Curve, falling
 from planning.tradeoff.picture import Line, Panel
 from reconstruction.light.photo_set import read_photo_set
-from reconstruction.training.callbacks import Watching
+from reconstruction.training.callbacks import Callbacks
 from reconstruction.training.config import TrainConfig, config_of
 from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import mean_of, score_views
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 from reconstruction.training.train import train_model
 
 BASE = "as the preset has it"
@@ -106,7 +106,7 @@ def run_settings(
     trials = []
     for number, setting in enumerate(settings):
         named = _Named(monitor, number, len(settings))
-        trained = train_model(folder, setting.config, Watching(named), watch=Stopwatch(clock))
+        trained = train_model(folder, setting.config, Callbacks(named), watch=Timer(clock))
         trials.append(_trial(setting, trained, folder, named))
     return tuple(trials)
 

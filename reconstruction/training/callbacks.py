@@ -75,7 +75,7 @@ class Visit:
 
 
 @dataclass(slots=True, eq=False)
-class Watching:
+class Callbacks:
     """Who looks on while a training runs.
 
     Parameters

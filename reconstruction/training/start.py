@@ -40,7 +40,7 @@ from reconstruction.training.model.record import site_record
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.photos.pose_corrections import Move, learned_moves, moved
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 
 Array = NDArray[np.float64]
 
@@ -208,7 +208,7 @@ def start_model(
     source: PhotoSet,
     config: TrainConfig,
     monitor: Monitor = QUIET,
-    watch: Stopwatch | None = None,
+    watch: Timer | None = None,
     checkpoint: Path | None = None,
     begun: BegunLight | None = None,
     given: Path | None = None,
@@ -235,7 +235,7 @@ def start_model(
     OperationCancelled
         From `monitor`.
     """
-    watch = watch or Stopwatch()
+    watch = watch or Timer()
     held_out = held_out_names([photo.name for photo in source.photos], config.held_out, config.seed)
     learned = tuple(photo for photo in source.photos if photo.name not in held_out)
     scene = known_scene(source)
@@ -285,7 +285,7 @@ def _learned_light(
     config: TrainConfig,
     splats: Splats,
     monitor: Monitor,
-    watch: Stopwatch,
+    watch: Timer,
     checkpoint: Path | None,
     begun: BegunLight | None,
 ) -> tuple[TrainedReflections, tuple[Decision, ...]]:
@@ -340,7 +340,7 @@ def _learned_light(
     return trained, stage.decisions
 
 
-def _light_limit_s(config: TrainConfig, watch: Stopwatch) -> float | None:
+def _light_limit_s(config: TrainConfig, watch: Timer) -> float | None:
     """For learning light: its share of the time that is left."""
     wished = config.reflections.time_limit_s
     if config.time_limit_s is None:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from planning.base.progress import Clock
 
 
-class Stopwatch:
+class Timer:
     """Seconds since something began, without its pauses.
 
     Parameters

@@ -16,7 +16,7 @@ from planning.base.json_file import to_record
 from planning.base.progress import QualityPoint
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.training.allocator import freed_memory_kept
-from reconstruction.training.callbacks import HeldOut, Watching
+from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.checkpoints import read_checkpoint
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.light_stage import begun_light
@@ -27,7 +27,7 @@ from reconstruction.training.photos.pose_corrections import moved
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.start import Start, start_model
 from reconstruction.training.strategies import strategy_of
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import SHOWN_VIEWS, Trainer
 
 SHOWN_PX = 512 * 384
@@ -41,12 +41,12 @@ SHOWN_SHARE = 0.25
 def train_model(
     folder: Path,
     config: TrainConfig,
-    watching: Watching | None = None,
+    watching: Callbacks | None = None,
     checkpoint: Path | None = None,
     *,
     given: Path | None = None,
     ranks: Ranks = ALONE,
-    watch: Stopwatch | None = None,
+    watch: Timer | None = None,
 ) -> TrainedModel:
     """Train a model of a data set folder.
 
@@ -70,7 +70,7 @@ def train_model(
     OperationCancelled
         From the monitor.
     """
-    watching, watch = watching or Watching(), watch or Stopwatch()
+    watching, watch = watching or Callbacks(), watch or Timer()
     _check_device(config)
     if not ranks.is_first:
         if checkpoint is None:
@@ -85,10 +85,10 @@ def _started(
     source: PhotoSet,
     start: Start,
     config: TrainConfig,
-    watching: Watching,
+    watching: Callbacks,
     checkpoint: Path | None,
     ranks: Ranks,
-    watch: Stopwatch,
+    watch: Timer,
 ) -> TrainedModel:
     """The joint training after its start."""
     record = ModelRecord(
@@ -130,11 +130,11 @@ def _started(
 def resume_model(
     folder: Path,
     checkpoint: Path,
-    watching: Watching | None = None,
+    watching: Callbacks | None = None,
     *,
     method: str | None = None,
     ranks: Ranks = ALONE,
-    watch: Stopwatch | None = None,
+    watch: Timer | None = None,
 ) -> TrainedModel:
     """Go on with a training, with the settings that it was begun with.
 
@@ -148,7 +148,7 @@ def resume_model(
     InputError
         The checkpoint is missing or damaged, or of another method or other photos.
     """
-    watching, watch = watching or Watching(), watch or Stopwatch()
+    watching, watch = watching or Callbacks(), watch or Timer()
     content = read_checkpoint(checkpoint)
     # Nobody writes another one before all have read this one.
     ranks.wait()
@@ -167,7 +167,7 @@ def resume_model(
     return _started(source, start, config, watching, checkpoint, ranks, watch)
 
 
-def _joined_later(folder: Path, checkpoint: Path, watching: Watching, ranks: Ranks, watch: Stopwatch) -> TrainedModel:
+def _joined_later(folder: Path, checkpoint: Path, watching: Callbacks, ranks: Ranks, watch: Timer) -> TrainedModel:
     """The part of a process that waits until the first one has learned light."""
     ranks.wait()
     return _resumed(folder, checkpoint, read_checkpoint(checkpoint), watching, None, ranks, watch)
@@ -177,10 +177,10 @@ def _resumed(
     folder: Path,
     checkpoint: Path,
     content: dict[str, Any],
-    watching: Watching,
+    watching: Callbacks,
     method: str | None,
     ranks: Ranks,
-    watch: Stopwatch,
+    watch: Timer,
 ) -> TrainedModel:
     """A joint training that is gone on with."""
     record = to_record(content.get("record"), ModelRecord, checkpoint)
@@ -255,7 +255,7 @@ def _corrected(source: PhotoSet, record: ModelRecord) -> PhotoSet:
     return replace(source, photos=tuple(learned.get(photo.name, photo) for photo in source.photos))
 
 
-def _finished(trainer: Trainer, record: ModelRecord, watching: Watching) -> TrainedModel:
+def _finished(trainer: Trainer, record: ModelRecord, watching: Callbacks) -> TrainedModel:
     trainer.run(watching)
     trainer.model.cpu()
     trainer.exposures.cpu()

@@ -21,7 +21,7 @@ from torch import Tensor
 from planning.base.errors import OperationCancelled
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
 from reconstruction.splats.densification.strategy import Densification, FixedNumber
-from reconstruction.training.callbacks import HeldOut, Preview, Progress, Visit, VisitState, Watching, quality_db
+from reconstruction.training.callbacks import Callbacks, HeldOut, Preview, Progress, Visit, VisitState, quality_db
 from reconstruction.training.checkpoints import write_checkpoint
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.joint_model import Picture, SceneModel
@@ -31,7 +31,7 @@ from reconstruction.training.photos.photo_stream import PhotoStream, Sample
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.rates import set_rates, take_step
 from reconstruction.training.strategies import show
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 from reconstruction.training.training_state import TrainingState
 
 # The end of a training that was stopped: its rates fall to their last in a short time.
@@ -129,11 +129,11 @@ class Trainer(TrainingState):
         record: dict[str, Any] | None = None,
         notes: Sequence[str] = (),
         ranks: Ranks = ALONE,
-        watch: Stopwatch | None = None,
+        watch: Timer | None = None,
     ) -> None:
         at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
         super().__init__(model, exposures, photos, strategy, config, extent_m, checkpoint, at)
-        self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Stopwatch()
+        self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Timer()
         self.at.spent_s = self.at.saved_at_s = self.at.began_s = self._watch()
         self._settings = replace(config.raster, threads=config.threads)
         self._no_more, self._ranks = FixedNumber(), ranks
@@ -156,7 +156,7 @@ class Trainer(TrainingState):
         by_time = 1.0 if left_s <= 0.0 else (at.spent_s + self._reserve_s - at.began_s) / left_s
         return min(1.0, max(by_steps, by_time))
 
-    def run(self, watching: Watching) -> None:
+    def run(self, watching: Callbacks) -> None:
         """Train to the end, until stopped and settled, or until time is up.
 
         Raises
@@ -176,7 +176,7 @@ class Trainer(TrainingState):
         finally:
             torch.set_num_threads(before)
 
-    def _run(self, watching: Watching) -> None:
+    def _run(self, watching: Callbacks) -> None:
         self.model.train()
         self._score(watching)
         self._visit(watching)
@@ -194,21 +194,21 @@ class Trainer(TrainingState):
         self.at.spent_s = self._watch()
         self._visit(watching)
 
-    def _report(self, watching: Watching) -> None:
+    def _report(self, watching: Callbacks) -> None:
         settling = self._settling
         if settling is None:
             watching.monitor.report("training", self.progress, 1.0)
         else:
             watching.monitor.report("settling", settling.share(self.at.spent_s), 1.0)
 
-    def _wait(self, watching: Watching) -> None:
+    def _wait(self, watching: Callbacks) -> None:
         with self._watch.paused():
             while watching.pause():
                 watching.monitor.report("paused", self.progress, 1.0)
                 self._visit(watching, "paused")
                 time.sleep(PAUSE_S)
 
-    def _visit(self, watching: Watching, state: VisitState = "training") -> None:
+    def _visit(self, watching: Callbacks, state: VisitState = "training") -> None:
         """Let somebody look at the model as it is."""
         if watching.visit is None or not self._ranks.is_first:
             return
@@ -231,7 +231,7 @@ class Trainer(TrainingState):
         )
         self.model.train(was_training)
 
-    def _is_settled(self, watching: Watching) -> bool:
+    def _is_settled(self, watching: Callbacks) -> bool:
         """Whether it was stopped, and its rates have fallen; all processes know what the first one has spent."""
         numbers = [self._watch(), self._needed_s(), float(watching.stop())]
         self.at.spent_s, self._reserve_s, is_stopped = self._ranks.agreed(numbers)
@@ -313,7 +313,7 @@ class Trainer(TrainingState):
         number = self.at.step * self._ranks.n + self._ranks.rank
         return torch.Generator().manual_seed(self.config.seed + SEEDS * (number + 1))
 
-    def _score(self, watching: Watching) -> None:
+    def _score(self, watching: Callbacks) -> None:
         """Measure the quality where it was not measured at this step, and show it."""
         at = self.at
         at.scored_at_s = at.spent_s

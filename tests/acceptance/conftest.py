@@ -7,7 +7,7 @@ import pytest
 from groundstation.services.settings import Language
 from tests.acceptance.pilot import Pilot
 from tests.gui.conftest import _garbage_stays_in_this_thread, _no_dialog_waits, application, worker
-from tests.gui.driving import close_desk, turn_until
+from tests.gui.driving import close_controller, turn_until
 
 __all__ = ["_garbage_stays_in_this_thread", "_no_dialog_waits", "application", "worker"]
 
@@ -17,16 +17,16 @@ def pilot(application, worker, tmp_path, monkeypatch, request):
     """Somebody who has just started the program for the first time, on a laptop of 1280 x 720."""
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     monkeypatch.setenv("HOME", str(tmp_path))
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
     language = getattr(request, "param", Language.ENGLISH)
-    desk = Desk(application, worker=worker)
-    desk.show()
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    desk.window.setGeometry(0, 0, 1280, 720)
-    pilot = Pilot(application, desk, tmp_path)
+    controller = ProjectController(application, worker=worker)
+    controller.show()
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    controller.window.setGeometry(0, 0, 1280, 720)
+    pilot = Pilot(application, controller, tmp_path)
     pilot.speak(language)
     yield pilot
     pilot.speak(Language.ENGLISH)
-    close_desk(desk)
+    close_controller(controller)
     gc.collect()

@@ -67,8 +67,8 @@ def stay(_dialog: QDialog) -> None:
 class Pilot:
     """Looks at the window, clicks and types."""
 
-    def __init__(self, application: QApplication, desk, folder: Path) -> None:
-        self.application, self.desk, self.folder = application, desk, folder
+    def __init__(self, application: QApplication, controller, folder: Path) -> None:
+        self.application, self.controller, self.folder = application, controller, folder
         self.language = Language.ENGLISH
         self._n_pictures, self._own_window = 0, None
 
@@ -78,7 +78,7 @@ class Pilot:
     def window(self) -> QWidget:
         """What can be clicked: the dialog in front, or the window that is worked in."""
         front = QApplication.activeModalWidget()
-        return self._own_window or self.desk.window if front is None else front
+        return self._own_window or self.controller.window if front is None else front
 
     def words(self, text: str) -> tuple[str, ...]:
         """What a text may be called in the language of the window."""
@@ -189,7 +189,7 @@ class Pilot:
     def entry(self, button: str, text: str) -> None:
         """Choose an entry of a button's menu."""
         texts = self.words(text)
-        again = QTimer(self.desk, interval=LOOK_MS)
+        again = QTimer(self.controller, interval=LOOK_MS)
         problems: list[str] = []
 
         def click() -> None:
@@ -240,10 +240,10 @@ class Pilot:
     def speak(self, language: Language) -> None:
         """Choose the language, View > Language."""
         if language is not self.language:
-            self.desk.choose(language=language)
+            self.controller.choose(language=language)
             self.language = language
-            self.until(lambda: self.desk.window.stage.scene() is not None, "the window is back")
-            self.desk.window.setGeometry(0, 0, 1280, 720)
+            self.until(lambda: self.controller.window.stage.scene() is not None, "the window is back")
+            self.controller.window.setGeometry(0, 0, 1280, 720)
             self.come_to_front()
 
     # Waiting
@@ -262,7 +262,7 @@ class Pilot:
 
     def idle(self) -> None:
         """Wait until nothing runs."""
-        turn_until_idle(self.application, self.desk, PATIENCE_S)
+        turn_until_idle(self.application, self.controller, PATIENCE_S)
 
     def see(self, name: str) -> None:
         """Take a picture of the screen, where pictures are wanted."""

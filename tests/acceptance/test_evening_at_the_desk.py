@@ -1,4 +1,4 @@
-"""The evening at the desk: from the photos of a flight to a report of the panes, by clicks alone."""
+"""The evening at the controller: from the photos of a flight to a report of the panes, by clicks alone."""
 
 import shutil
 import subprocess
@@ -53,7 +53,7 @@ def _save(pilot, project):
     with clicked(choose(project)):
         pilot.press("Save")
     pilot.idle()
-    assert pilot.desk.workspace.session.is_saved
+    assert pilot.controller.workspace.session.is_saved
 
 
 def _make_the_data_set(pilot, folder):
@@ -78,8 +78,8 @@ def _train(pilot, model):
     pilot.fill("At most", "1")
     pilot.see("ready to train")
     pilot.press("Train")
-    page = pilot.desk.window.tab("reconstruct")
-    pilot.until(lambda: page.desk.training.stepped is not None, "it trains")
+    page = pilot.controller.window.tab("reconstruct")
+    pilot.until(lambda: page.controller.training.stepped is not None, "it trains")
     pilot.see("training")
     pilot.press("Good enough, stop")
     pilot.until_reads("The model is finished.")

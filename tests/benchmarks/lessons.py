@@ -14,7 +14,7 @@ import numpy as np
 import torch
 
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SceneWish
+from groundstation.services.scenes.views import SceneRequest
 from planning.base.jit import n_threads
 from reconstruction.light.config import GridSettings, ReflectionConfig
 from reconstruction.light.directions.reflection_mlp import MlpShape
@@ -47,7 +47,7 @@ Course = dict[str, Lesson]
 
 def rendered(scene: str, folder: Path, n_views: int, width_px: int) -> Path:
     """Photos of a bundled scene."""
-    wish = SceneWish(scene, n_views=n_views, width_px=width_px, n_points=0, settings=RenderSettings())
+    wish = SceneRequest(scene, n_views=n_views, width_px=width_px, n_points=0, settings=RenderSettings())
     photograph_files(wish, folder, 1)
     return folder
 

@@ -17,7 +17,7 @@ import torch
 from numpy.typing import NDArray
 
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SceneWish
+from groundstation.services.scenes.views import SceneRequest
 from reconstruction.exports.baked import ALMOST_NO_LOGIT, baked
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
@@ -84,7 +84,7 @@ def measure(context: Context) -> Iterator[Row]:
     n_views, width = (QUICK_N_VIEWS, QUICK_WIDTH_PX) if is_quick else (N_VIEWS, WIDTH_PX)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "planar"
-        photograph_files(SceneWish("planar", n_views=n_views, width_px=width), folder, 1)
+        photograph_files(SceneRequest("planar", n_views=n_views, width_px=width), folder, 1)
         trained = train_model(folder, _config(is_quick))
         scene = baked(organised(trained), trained.model)
         photos = read_photo_set(folder).photos

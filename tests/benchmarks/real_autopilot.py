@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from groundstation.services.fly.flying import FlightWish, Flown, fly_plan
+from groundstation.services.fly.flying import FlightRequest, Flown, fly_plan
 from groundstation.services.fly.sitl import SITL_LINK, sitl
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
@@ -31,7 +31,7 @@ def measure(context: Context) -> Iterator[Row]:
         model = SCENES[scene]()
         plan = plan_flight(model, PlanRequest(n_views=n_views, time_budget_s=10.0, profile_id="ardupilot")).plan
         yield from _rows(f"{scene}, {n_views} views, real", _really_flown(program, plan, model))
-        yield from _rows(f"{scene}, {n_views} views, simulated vehicle", fly_plan(plan, model, FlightWish()))
+        yield from _rows(f"{scene}, {n_views} views, simulated vehicle", fly_plan(plan, model, FlightRequest()))
 
 
 def _really_flown(program: Path, plan: Plan, model: SiteModel) -> Flown:
@@ -40,7 +40,7 @@ def _really_flown(program: Path, plan: Plan, model: SiteModel) -> Flown:
         tempfile.TemporaryDirectory() as folder,
         sitl(program, home, SPEEDUP, plan.aircraft.endurance_s, None) as restart,
     ):
-        wish = FlightWish(link=SITL_LINK, sets_parameters=True, log_folder=Path(folder))
+        wish = FlightRequest(link=SITL_LINK, sets_parameters=True, log_folder=Path(folder))
         return fly_plan(plan, model, wish, between=restart)
 
 

@@ -14,7 +14,7 @@ import torch
 from numpy.typing import NDArray
 
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SceneWish
+from groundstation.services.scenes.views import SceneRequest
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.glass_learned import GlassLearned
 from reconstruction.light.glass_rays import GlassRays, glass_rays
@@ -164,7 +164,7 @@ def measure(context: Context) -> Iterator[Row]:
     width, n_views = (WIDTH_PX // 2, N_VIEWS // 4) if context.is_quick else (WIDTH_PX, N_VIEWS)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "planar"
-        wish = SceneWish("planar", n_views=n_views, width_px=width, n_points=0, settings=RenderSettings())
+        wish = SceneRequest("planar", n_views=n_views, width_px=width, n_points=0, settings=RenderSettings())
         photograph_files(wish, folder, 1)
         rays = rays_of(folder)
     right: dict[str, float] = {}

@@ -8,11 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from reconstruction.light.photo_set import read_photo_set
-from reconstruction.training.callbacks import Visit, Watching
+from reconstruction.training.callbacks import Callbacks, Visit
 from reconstruction.training.config import TrainConfig, config_of
 from reconstruction.training.model.score import mean_of, score_views
 from reconstruction.training.presets import preset
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 from reconstruction.training.train import train_model
 from reconstruction.training.trainer import SHARE
 from tests.benchmarks.harness import Benchmark, Context, Row
@@ -54,8 +54,8 @@ def stopped(folder: Path, config: TrainConfig, n: int, step_s: float) -> float:
     def visit(at: Visit) -> None:
         steps[0] = at.step
 
-    watch = Stopwatch(lambda: step_s * steps[0], 0.0)
-    trained = train_model(folder, config, Watching(stop=lambda: steps[0] >= n, visit=visit), watch=watch)
+    watch = Timer(lambda: step_s * steps[0], 0.0)
+    trained = train_model(folder, config, Callbacks(stop=lambda: steps[0] >= n, visit=visit), watch=watch)
     scores = score_views(trained, read_photo_set(folder), trained.record.held_out)
     return mean_of(score.facade.psnr_db for score in scores) or 0.0
 

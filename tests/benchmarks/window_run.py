@@ -39,11 +39,11 @@ def _turn_until(application: Any, condition: Callable[[], bool], timeout_s: floa
         time.sleep(0.0005)
 
 
-def _turn_until_idle(application: Any, desk: Any) -> None:
+def _turn_until_idle(application: Any, controller: Any) -> None:
     for _ in range(2):
-        _turn_until(application, lambda: not desk.workspace.jobs())
+        _turn_until(application, lambda: not controller.workspace.jobs())
         _turn_for(application, 0.5)
-    _turn_until(application, lambda: not desk.workspace.jobs())
+    _turn_until(application, lambda: not controller.workspace.jobs())
 
 
 def _turn_for(application: Any, duration_s: float) -> None:
@@ -59,17 +59,17 @@ def startup(*, eager: bool) -> dict[str, float]:
     application = QApplication(["reflight"])
     if eager:
         importlib.import_module("groundstation.gui.view3d.scene_view")
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
-    desk = Desk(application)
-    desk.show()
+    controller = ProjectController(application)
+    controller.show()
     application.processEvents()
     painted_s = time.time() - started_s
-    _turn_until(application, lambda: desk.window.stage.scene() is not None)
+    _turn_until(application, lambda: controller.window.stage.scene() is not None)
     application.processEvents()
     ready_s = time.time() - started_s
-    desk.window.close()
-    desk.close()
+    controller.window.close()
+    controller.close()
     return {"painted_s": painted_s, "ready_s": ready_s}
 
 
@@ -100,46 +100,46 @@ def planning() -> dict[str, Any]:
     """Gaps of the window's thread while it idles and while a plan of the office runs; then times of edits by hand."""
     from PySide6.QtWidgets import QApplication
 
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
     from groundstation.services.project.document import Item, ItemKind
     from planning import revision as edits
     from planning.request import PlanRequest
 
     application = QApplication(["reflight"])
-    desk = Desk(application)
-    desk.show()
-    desk.window.setGeometry(0, 0, 1280, 720)
-    _turn_until(application, lambda: desk.window.stage.scene() is not None)
-    desk.window.tab("site").left.opener.open_bundled("office")
-    desk.window.show_tab("plan")
-    page = desk.window.tab("plan")
-    page.desk.set_request(PlanRequest(n_views=N_VIEWS, time_budget_s=BUDGET_S))
-    _turn_until_idle(application, desk)
+    controller = ProjectController(application)
+    controller.show()
+    controller.window.setGeometry(0, 0, 1280, 720)
+    _turn_until(application, lambda: controller.window.stage.scene() is not None)
+    controller.window.tab("site").left.opener.open_bundled("office")
+    controller.window.show_tab("plan")
+    page = controller.window.tab("plan")
+    page.controller.set_request(PlanRequest(n_views=N_VIEWS, time_budget_s=BUDGET_S))
+    _turn_until_idle(application, controller)
     gaps = _Gaps()
     _turn_for(application, IDLE_S)
     idle_ms = gaps.gaps_ms
     planning_ms = []
     for seed in range(N_PLANS):
-        page.desk.set_request(PlanRequest(n_views=N_VIEWS, time_budget_s=BUDGET_S, seed=seed))
+        page.controller.set_request(PlanRequest(n_views=N_VIEWS, time_budget_s=BUDGET_S, seed=seed))
         gaps.restart()
-        page.desk.plan()
-        _turn_until(application, lambda: not page.desk.is_planning)
+        page.controller.plan()
+        _turn_until(application, lambda: not page.controller.is_planning)
         planning_ms.append(gaps.gaps_ms[:-1])  # the last one shows the result
-        _turn_until_idle(application, desk)
-    plan = desk.workspace.document.current.plan
+        _turn_until_idle(application, controller)
+    plan = controller.workspace.document.current.plan
     shown_ms, pure_ms = [], []
     for number in range(N_EDITS):
         viewpoint = plan.viewpoints[(37 * number) % len(plan.viewpoints)]
         x, y, z = viewpoint.position_enu_m
-        desk.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+        controller.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
         application.processEvents()
-        before = page.desk.in_hand.revision
+        before = page.controller.in_hand.revision
         moved = replace(viewpoint, position_enu_m=(x + 0.3, y - 0.3, z + 0.2))
         began_s = time.perf_counter()
         edits.move(before, moved.id, moved.position_enu_m, moved.heading_deg, moved.gimbal_pitch_deg)
         pure_ms.append(1e3 * (time.perf_counter() - began_s))
         began_s = time.perf_counter()
-        page.desk.set_viewpoint(moved)
+        page.controller.set_viewpoint(moved)
         application.processEvents()
         shown_ms.append(1e3 * (time.perf_counter() - began_s))
     return {"idle_ms": idle_ms, "planning_ms": planning_ms, "shown_ms": shown_ms, "pure_ms": pure_ms}
@@ -151,25 +151,25 @@ def training(dataset: Path, out: Path) -> dict[str, Any]:
     from PySide6.QtWidgets import QApplication
 
     from groundstation.gui.reconstruct.reconstruct_controller import Phase
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
     application = QApplication(["reflight"])
-    desk = Desk(application)
-    desk.show()
-    desk.window.setGeometry(0, 0, 1280, 720)
-    _turn_until(application, lambda: desk.window.stage.scene() is not None)
-    desk.window.show_tab("reconstruct")
-    page = desk.window.tab("reconstruct")
-    page.desk.read(dataset)
-    _turn_until(application, lambda: page.desk.card is not None)
-    page.desk.choose(replace(page.desk.choice, minutes=5.0))
-    page.desk.choose_out(out)
-    _turn_until_idle(application, desk)
+    controller = ProjectController(application)
+    controller.show()
+    controller.window.setGeometry(0, 0, 1280, 720)
+    _turn_until(application, lambda: controller.window.stage.scene() is not None)
+    controller.window.show_tab("reconstruct")
+    page = controller.window.tab("reconstruct")
+    page.controller.read(dataset)
+    _turn_until(application, lambda: page.controller.card is not None)
+    page.controller.choose(replace(page.controller.choice, minutes=5.0))
+    page.controller.choose_out(out)
+    _turn_until_idle(application, controller)
     gaps = _Gaps()
     _turn_for(application, IDLE_S)
     idle_ms = gaps.gaps_ms
     page.side.train.click()
-    _turn_until(application, lambda: page.desk.phase is Phase.TRAINING)
+    _turn_until(application, lambda: page.controller.phase is Phase.TRAINING)
     gaps.restart()
     _turn_for(application, 0.5 * TRAINING_S)
     watched_ms = gaps.gaps_ms
@@ -186,8 +186,8 @@ def training(dataset: Path, out: Path) -> dict[str, Any]:
         came.clear()
         _turn_for(application, TURN_EVERY_S)
     turned_ms = gaps.gaps_ms
-    page.desk.break_off()
-    _turn_until(application, lambda: not page.desk.is_busy)
+    page.controller.break_off()
+    _turn_until(application, lambda: not page.controller.is_busy)
     return {"idle_ms": idle_ms, "watched_ms": watched_ms, "turned_ms": turned_ms, "waits_ms": waits_ms}
 
 

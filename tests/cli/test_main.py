@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.cli.main import WindowWish, build_parser, main
+from groundstation.cli.main import WindowOptions, build_parser, main
 from groundstation.cli.options import new_folder
 from missions.flight.flight_file import flight_of, write_flight
 from planning.base.errors import InputError, OperationCancelled
@@ -31,7 +31,7 @@ def test_without_a_command_the_window_opens():
     wishes = []
     assert main([], lambda wish: wishes.append(wish) or 7) == 7
     assert main(["--screenshots", "shots", "--site", "a.json"], lambda wish: wishes.append(wish) or 0) == 0
-    assert wishes == [WindowWish(), WindowWish(None, Path("shots"), Path("a.json"))]
+    assert wishes == [WindowOptions(), WindowOptions(None, Path("shots"), Path("a.json"))]
     assert main(["--site", "a.json"], lambda _wish: 0) == 2
     assert main(["--open", "project", "demo"], lambda _wish: 0) == 2
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from groundstation.services.fly.flying import FlightWish, fly_files
+from groundstation.services.fly.flying import FlightRequest, fly_files
 from groundstation.services.plan.planning import plan_site
 from planning.plan import read_plan, write_plan
 from planning.request import PlanRequest
@@ -28,7 +28,7 @@ def bare(tmp_path_factory):
     plan = replace(read_plan(plan_path), site_sha256="")
     write_plan(plan_path, plan)
     write_plan(folder / "other.plan.json", plan)
-    fly_files(plan_path, site, folder / "office.flight.json", FlightWish())
+    fly_files(plan_path, site, folder / "office.flight.json", FlightRequest())
     model = read_site(site)
     write_photos(folder / "photos", model.site, plan.viewpoints)
     site.unlink()

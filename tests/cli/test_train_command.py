@@ -10,7 +10,7 @@ import pytest
 from groundstation.services.model.objects import scene_of
 from groundstation.services.reconstruct import training as model_training
 from planning.base.errors import InputError, OperationCancelled
-from reconstruction.training.names import LAYERS
+from reconstruction.training.layers import LAYERS
 from tests.reconstruction.training.made_data_set import write_data_set
 
 SETTINGS = "n_splats = 150\nmax_splats = 200\n"
@@ -22,7 +22,7 @@ def glass(tmp_path_factory):
     folder = tmp_path_factory.mktemp("train")
     write_data_set(folder / "data", n=8)
     (folder / "quick.toml").write_text(SETTINGS)
-    wish = model_training.TrainWish("smoke", "2dgs", iterations=8, settings=folder / "quick.toml")
+    wish = model_training.TrainRequest("smoke", "2dgs", iterations=8, settings=folder / "quick.toml")
     model_training.train_files(folder / "data", folder / "model", wish)
     return folder
 

@@ -255,7 +255,7 @@ def clicked(*steps: Step | str, timeout_s: float = PATIENCE_S) -> Iterator[list[
     assert not hand._steps, f"{len(hand._steps)} of {len(steps)} dialogs did not come up"
 
 
-def close_desk(desk) -> None:
+def close_controller(controller) -> None:
     """Close the window as somebody does who wants to leave, whatever is asked, and let go of everything."""
     buttons = QMessageBox.StandardButton
 
@@ -267,10 +267,10 @@ def close_desk(desk) -> None:
     hand = Hand([leave], is_endless=True)
     hand.start()
     try:
-        desk.window.close()
+        controller.window.close()
     finally:
         hand.end()
-    desk.close()
+    controller.close()
 
 
 def accept_button(dialog: QFileDialog) -> QAbstractButton:
@@ -351,28 +351,28 @@ def turn_until(application, condition: Callable[[], bool], timeout_s: float = PA
     return longest
 
 
-def turn_until_idle(application, desk, timeout_s: float = PATIENCE_S) -> float:
+def turn_until_idle(application, controller, timeout_s: float = PATIENCE_S) -> float:
     """Process events until no job runs and none follows; returns the longest turn, s."""
     longest, quiet_since = 0.0, time.perf_counter()
     end = quiet_since + timeout_s
-    while (quiet_s := time.perf_counter() - quiet_since) < CALM_S or (quiet_s < SETTLE_S and _waits(desk)):
-        longest = max(longest, turn_until(application, lambda: not desk.workspace.jobs(), timeout_s))
+    while (quiet_s := time.perf_counter() - quiet_since) < CALM_S or (quiet_s < SETTLE_S and _waits(controller)):
+        longest = max(longest, turn_until(application, lambda: not controller.workspace.jobs(), timeout_s))
         started = time.perf_counter()
         application.processEvents()
         longest = max(longest, time.perf_counter() - started)
-        if desk.workspace.jobs() or (_is_due(desk) and started < end):
+        if controller.workspace.jobs() or (_is_due(controller) and started < end):
             quiet_since = time.perf_counter()
         time.sleep(0.005)
     return longest
 
 
-def _is_due(desk) -> bool:
+def _is_due(controller) -> bool:
     """Whether a timer that fires once fires soon, however long that takes on a busy machine."""
-    timers = desk.window.findChildren(QTimer)
+    timers = controller.window.findChildren(QTimer)
     return any(timer.isActive() and timer.isSingleShot() and timer.interval() <= 1000.0 * SETTLE_S for timer in timers)
 
 
-def _waits(desk) -> bool:
+def _waits(controller) -> bool:
     """Whether a timer runs that may start something soon."""
-    timers = desk.window.findChildren(QTimer)
+    timers = controller.window.findChildren(QTimer)
     return any(timer.isActive() and timer.interval() <= 1000.0 * SETTLE_S for timer in timers)

@@ -14,7 +14,7 @@ TOPS = {"planning", "missions", "reconstruction", "groundstation"}
 WRONG_CALLS = {"ValueError", "TypeError", "KeyError", "RuntimeError", "NotImplementedError"}
 """Their messages are for programmers, except in the records that files are read into."""
 
-RECORDS = {"planning/site/records.py", "planning/plan.py", "planning/request.py"}
+RECORDS = {"planning/geo/frames.py", "planning/site/records.py", "planning/plan.py", "planning/request.py"}
 
 STAGES = {"report", "_Report"}
 """Calls that name the stage of a job first; also a stage of one word is shown."""

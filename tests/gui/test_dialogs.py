@@ -17,7 +17,7 @@ from tests.gui.driving import (
     choose,
     click_on,
     clicked,
-    close_desk,
+    close_controller,
     escape,
     press,
     press_in,
@@ -44,19 +44,19 @@ def shown(application, worker, tmp_path_factory):
     """One window for all of these tests."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
-        from groundstation.gui.window.project_controller import Desk
+        from groundstation.gui.window.project_controller import ProjectController
 
-        desk = Desk(application, worker=worker)
-        desk.show()
-        desk.window.setGeometry(0, 0, 1400, 900)
-        turn_until(application, lambda: desk.window.stage.scene() is not None)
-        yield desk
-        close_desk(desk)
+        controller = ProjectController(application, worker=worker)
+        controller.show()
+        controller.window.setGeometry(0, 0, 1400, 900)
+        turn_until(application, lambda: controller.window.stage.scene() is not None)
+        yield controller
+        close_controller(controller)
         gc.collect()
 
 
 @pytest.fixture
-def desk(application, shown, planned):
+def controller(application, shown, planned):
     """The window with a site and a plan that are saved nowhere and not changed."""
     model, plan = planned
     shown.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
@@ -65,61 +65,62 @@ def desk(application, shown, planned):
 
 
 def in_tab(name, text):
-    def open_it(application, desk):
-        desk.window.show_tab(name)
-        turn_until_idle(application, desk)
-        press_in(desk.window, text)
+    def open_it(application, controller):
+        controller.window.show_tab(name)
+        turn_until_idle(application, controller)
+        press_in(controller.window, text)
 
     return open_it
 
 
 def from_menu(text, tab="site"):
-    def open_it(application, desk):
-        desk.window.show_tab(tab)
-        turn_until_idle(application, desk)
-        trigger(desk.window, text)
+    def open_it(application, controller):
+        controller.window.show_tab(tab)
+        turn_until_idle(application, controller)
+        trigger(controller.window, text)
 
     return open_it
 
 
-def aircraft_file(application, desk):
+def aircraft_file(application, controller):
     from PySide6.QtCore import Qt
     from PySide6.QtTest import QTest
 
-    desk.window.show_tab("plan")
-    turn_until_idle(application, desk)
-    box = desk.window.tab("plan").form.aircraft
+    controller.window.show_tab("plan")
+    turn_until_idle(application, controller)
+    box = controller.window.tab("plan").form.aircraft
     box.setFocus()
     QTest.keyClick(box, Qt.Key.Key_End)
 
 
-def obstacle_mesh(application, desk):
-    in_tab("site", "Obstacle mesh...")(application, desk)
+def obstacle_mesh(application, controller):
+    in_tab("site", "Obstacle mesh...")(application, controller)
 
 
-def rename(application, desk):
-    desk.window.show_tab("plan")
-    turn_until_idle(application, desk)
-    lists = desk.window.tab("plan").lists
+def rename(application, controller):
+    controller.window.show_tab("plan")
+    turn_until_idle(application, controller)
+    lists = controller.window.tab("plan").lists
     lists.setCurrentWidget(lists.plans)
     lists.plans.select(("plan-1",))
-    press_in(desk.window, "Rename ...")
+    press_in(controller.window, "Rename ...")
 
 
-def open_plan(application, desk):
-    desk.window.show_tab("plan")
-    turn_until_idle(application, desk)
-    lists = desk.window.tab("plan").lists
+def open_plan(application, controller):
+    controller.window.show_tab("plan")
+    turn_until_idle(application, controller)
+    lists = controller.window.tab("plan").lists
     lists.setCurrentWidget(lists.plans)
-    press_in(desk.window, "Open plan ...")
+    press_in(controller.window, "Open plan ...")
 
 
-def open_map(application, desk):
-    from groundstation.gui.shared_view import StagePage
+def open_map(application, controller):
+    from groundstation.gui.shared_view import SharedViewPage
 
-    desk.window.stage.show_page(StagePage.MAP)
-    turn_until_idle(application, desk)
-    press_in(desk.window.stage, "Map file")
+    controller.window.show_tab("site")
+    controller.window.stage.show_page(SharedViewPage.MAP)
+    turn_until_idle(application, controller)
+    press_in(controller.window.stage, "Map file")
 
 
 ASKING = {
@@ -141,17 +142,17 @@ ASKING = {
 
 
 @pytest.mark.parametrize("name", ASKING)
-def test_nothing_happens_when_the_user_thinks_better_of_it(application, desk, name):
-    before, told = desk.workspace.document, desk.window.messages.texts()
+def test_nothing_happens_when_the_user_thinks_better_of_it(application, controller, name):
+    before, told = controller.workspace.document, controller.window.messages.texts()
     for no in NO:
         with clicked(no):
-            ASKING[name](application, desk)
-        turn_until_idle(application, desk)
-    assert desk.workspace.document is before
-    assert desk.window.messages.texts() == told
+            ASKING[name](application, controller)
+        turn_until_idle(application, controller)
+    assert controller.workspace.document is before
+    assert controller.window.messages.texts() == told
 
 
-def test_a_plan_gets_the_name_that_is_typed(application, desk):
+def test_a_plan_gets_the_name_that_is_typed(application, controller):
     def name_it(text, button):
         def step(dialog):
             from PySide6.QtWidgets import QLineEdit
@@ -162,41 +163,41 @@ def test_a_plan_gets_the_name_that_is_typed(application, desk):
         return step
 
     with clicked(name_it("Second", "Cancel")):
-        rename(application, desk)
-    assert desk.workspace.document.current.title == "First"
+        rename(application, controller)
+    assert controller.workspace.document.current.title == "First"
     with clicked(name_it("South side", "OK")):
-        rename(application, desk)
-    assert desk.workspace.document.current.title == "South side"
+        rename(application, controller)
+    assert controller.workspace.document.current.title == "South side"
 
 
-def test_a_plan_an_aircraft_and_a_mesh_are_opened_from_files(application, desk, planned, tmp_path):
+def test_a_plan_an_aircraft_and_a_mesh_are_opened_from_files(application, controller, planned, tmp_path):
     write_plan(tmp_path / "other.json", planned[1])
     with clicked(choose(tmp_path / "other.json")):
-        open_plan(application, desk)
-    turn_until_idle(application, desk)
-    assert len(desk.workspace.document.plans) == 2
+        open_plan(application, controller)
+    turn_until_idle(application, controller)
+    assert len(controller.workspace.document.plans) == 2
     path = tmp_path / "pole.ply"
     trimesh.creation.box((1.0, 1.0, 3.0)).export(path)
-    n_before = len(desk.workspace.document.site.site.obstacles)
+    n_before = len(controller.workspace.document.site.site.obstacles)
     with clicked(choose(path)):
-        obstacle_mesh(application, desk)
-    turn_until_idle(application, desk)
-    assert len(desk.workspace.document.site.site.obstacles) == n_before + 1
+        obstacle_mesh(application, controller)
+    turn_until_idle(application, controller)
+    assert len(controller.workspace.document.site.site.obstacles) == n_before + 1
     (tmp_path / "bad.toml").write_text("= no aircraft")
-    before = desk.window.tab("plan").form.aircraft.value()
+    before = controller.window.tab("plan").form.aircraft.value()
     with clicked(choose(tmp_path / "bad.toml")):
-        aircraft_file(application, desk)
-    assert "bad.toml" in desk.window.tab("plan").form._wrong.text()
-    assert desk.window.tab("plan").form.aircraft.value() == before
+        aircraft_file(application, controller)
+    assert "bad.toml" in controller.window.tab("plan").form._wrong.text()
+    assert controller.window.tab("plan").form.aircraft.value() == before
 
 
-def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(application, desk, tmp_path):
+def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(application, controller, tmp_path):
     from groundstation.gui.mission.export_dialog import ExportDialog
 
-    desk.window.show_tab("mission")
-    turn_until_idle(application, desk)
-    trigger(desk.window, "Export mission files ...")
-    dialog = next(each for each in desk.window.findChildren(ExportDialog) if each.isVisible())
+    controller.window.show_tab("mission")
+    turn_until_idle(application, controller)
+    trigger(controller.window, "Export mission files ...")
+    dialog = next(each for each in controller.window.findChildren(ExportDialog) if each.isVisible())
     turn_until(application, lambda: dialog.prepared() is not None)
     with clicked(escape):
         press_in(dialog, "Write ...")
@@ -211,46 +212,46 @@ def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(applica
     with clicked(choose(tmp_path / "kiosk"), "Yes"):
         press_in(dialog, "Write ...")
     turn_until(application, lambda: (tmp_path / "kiosk.kmz").read_bytes() != b"before")
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
     assert read_missions(tmp_path / "kiosk.kmz")[0].n_photos == 10
     assert not dialog.isVisible()
 
 
-def test_files_of_further_sorties_are_replaced_after_a_yes_only(application, desk, tmp_path):
+def test_files_of_further_sorties_are_replaced_after_a_yes_only(application, controller, tmp_path):
     from groundstation.gui.mission.export_dialog import ExportDialog
 
     model = kiosk()
     request = PlanRequest(n_views=10, greedy=QUICK, rules=FlightRules(settle_s=250.0))
     plan = plan_flight(model, request).plan
     assert len(plan.sorties) == 2
-    desk.workspace.session.open(Document(model, (PlanEntry("plan-1", "Slow", plan),), "plan-1"), None)
-    desk.window.show_tab("mission")
-    turn_until_idle(application, desk)
-    trigger(desk.window, "Export mission files ...")
-    dialog = desk.window.findChildren(ExportDialog)[-1]
+    controller.workspace.session.open(Document(model, (PlanEntry("plan-1", "Slow", plan),), "plan-1"), None)
+    controller.window.show_tab("mission")
+    turn_until_idle(application, controller)
+    trigger(controller.window, "Export mission files ...")
+    dialog = controller.window.findChildren(ExportDialog)[-1]
     turn_until(application, lambda: dialog.prepared() is not None)
     second = tmp_path / "kiosk-2.kmz"
     second.write_bytes(b"before")
     for no in NO:
         with clicked(choose(tmp_path / "kiosk.kmz"), no) as asked:
             press_in(dialog, "Write ...")
-        turn_until_idle(application, desk)
+        turn_until_idle(application, controller)
         assert "These files are replaced: kiosk-2.kmz" in asked[1]
         assert [path.name for path in tmp_path.iterdir()] == ["kiosk-2.kmz"]
     with clicked(choose(tmp_path / "kiosk.kmz"), "Yes"):
         press_in(dialog, "Write ...")
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
     assert second.read_bytes() != b"before"
     assert (tmp_path / "kiosk.kmz").is_file()
 
 
-def test_the_brief_is_saved_where_it_is_told_and_printed_after_a_yes(application, desk, tmp_path):
+def test_the_brief_is_saved_where_it_is_told_and_printed_after_a_yes(application, controller, tmp_path):
     from groundstation.gui.mission.brief_dialog import BriefDialog
 
-    desk.window.show_tab("mission")
-    turn_until_idle(application, desk)
-    trigger(desk.window, "Flight brief ...")
-    dialog = desk.window.findChild(BriefDialog)
+    controller.window.show_tab("mission")
+    turn_until_idle(application, controller)
+    trigger(controller.window, "Flight brief ...")
+    dialog = controller.window.findChild(BriefDialog)
     turn_until(application, dialog.is_ready)
     for no in NO:
         with clicked(no):
@@ -268,20 +269,20 @@ def test_the_brief_is_saved_where_it_is_told_and_printed_after_a_yes(application
     assert not dialog.isVisible()
 
 
-def test_the_boxes_of_the_help_menu_go_by_every_way(application, desk):
+def test_the_boxes_of_the_help_menu_go_by_every_way(application, controller):
     for text in ("Shortcuts", "About Reflight"):
         for step in ("OK", escape, shut):
             with clicked(step) as shown:
-                trigger(desk.window, text)
+                trigger(controller.window, text)
             assert text in shown[0]
 
 
 @pytest.mark.parametrize("begins_in", ["/", "there"])
-def test_a_path_that_is_typed_is_taken_wherever_the_dialog_begins(application, desk, tmp_path, begins_in):
+def test_a_path_that_is_typed_is_taken_wherever_the_dialog_begins(application, controller, tmp_path, begins_in):
     """Qt's own dialog takes the folder on the way to it."""
     from groundstation.gui.widgets.questions import Questions, choose_file, choose_files
 
-    window, folder = desk.window, tmp_path / "on the way"
+    window, folder = controller.window, tmp_path / "on the way"
     folder.mkdir()
     for name in ("a b.json", "c.json"):
         (folder / name).touch()
@@ -296,7 +297,7 @@ def test_a_path_that_is_typed_is_taken_wherever_the_dialog_begins(application, d
         assert choose_files(window, "Files", "All (*)", start) == (folder / "a b.json", folder / "c.json")
 
 
-def test_a_file_that_is_not_there_is_told_and_another_can_be_named(application, desk, tmp_path):
+def test_a_file_that_is_not_there_is_told_and_another_can_be_named(application, controller, tmp_path):
     from groundstation.gui.widgets.questions import choose_file
 
     (tmp_path / "right.json").touch()
@@ -308,5 +309,5 @@ def test_a_file_that_is_not_there_is_told_and_another_can_be_named(application, 
         choose(tmp_path / "right.json")(dialog)
 
     with clicked(wrong_then_right, "OK") as asked:
-        assert choose_file(desk.window, "Open", "All (*)") == tmp_path / "right.json"
+        assert choose_file(controller.window, "Open", "All (*)") == tmp_path / "right.json"
     assert "wrong.json: there is nothing of that name." in asked[1]

@@ -9,10 +9,10 @@ import pytest
 from PySide6.QtCore import QDateTime, Qt
 from PySide6.QtTest import QTest
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.camera_preview.photo_box import LightBox
 from groundstation.gui.camera_preview.preview import panel_lines
-from groundstation.gui.shared_view import Stage, StagePage
+from groundstation.gui.shared_view import SharedViewPage, Stage
 from groundstation.gui.view3d.pinhole import pinhole_at
 from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
@@ -29,9 +29,9 @@ from reconstruction.scenes.world.look import Look
 from tests.gui.application.test_context import Gate
 from tests.gui.driving import turn_until
 from tests.gui.test_camera_preview import POSES, made_plan
-from tests.gui.window.test_main_window import QUICK, desk, opened, planned
+from tests.gui.window.test_main_window import QUICK, controller, opened, planned
 
-__all__ = ["desk"]
+__all__ = ["controller"]
 
 ALONE = Look(near=False)
 
@@ -41,13 +41,15 @@ class Hands:
 
     def __init__(self, application, runner):
         self.application = application
-        self.workspace = Workspace(Session(Document(site=office()).with_plan(PlanEntry("p", "P", plan()))), runner)
+        self.workspace = ApplicationContext(
+            Session(Document(site=office()).with_plan(PlanEntry("p", "P", plan()))), runner
+        )
         self.stage = Stage(self.workspace)
         self.stage.resize(420, 240)
         self.stage.show()
         QTest.qWaitForWindowExposed(self.stage)
-        self.stage.show_page(StagePage.CAMERA)
-        self.preview, self.desk = self.stage.camera_page(), self.stage.photo_desk
+        self.stage.show_page(SharedViewPage.CAMERA)
+        self.preview, self.controller = self.stage.camera_page(), self.stage.photo_controller
         self.preview.box.light.setValue(ALONE)
         self.asked, self.names = [], []
         self.workspace.jobsChanged.connect(lambda: self.names.extend(job.name for job in self.workspace.jobs()))
@@ -61,17 +63,17 @@ class Hands:
 
     def until_photo(self, is_fine=True):
         turn_until(self.application, lambda: self.is_shown(is_fine))
-        return self.desk.shown()
+        return self.controller.shown()
 
     def until_rest(self):
-        turn_until(self.application, lambda: self.desk.is_at_rest() and not self.workspace.jobs())
+        turn_until(self.application, lambda: self.controller.is_at_rest() and not self.workspace.jobs())
 
     def is_shown(self, is_fine):
-        shown = self.desk.shown()
+        shown = self.controller.shown()
         assert "could not" not in self.preview.note()
         if shown is None or not is_fine:
             return shown is not None
-        return not shown.wish.is_quick and self.desk.is_at_rest()
+        return not shown.wish.is_quick and self.controller.is_at_rest()
 
     def close(self):
         self.workspace.close()
@@ -102,22 +104,22 @@ def east_of(photo):
 
 
 def test_a_coarse_picture_comes_first_then_a_fine_one_with_its_effects(hands):
-    assert hands.desk.shown() is None
+    assert hands.controller.shown() is None
     hands.preview.box.photo.click()
     assert hands.until_photo(is_fine=False).wish.is_quick
     fine = hands.until_photo()
     assert fine.wish.width_px > 100
     assert hands.preview.note() == ""
-    effects = hands.desk.effects_window()
+    effects = hands.controller.effects_window()
     assert "near-field reflection" in effects.text()
     assert f"{fine.wish.width_px} x" in effects._words.text()
     hands.preview.box.lines.click()
-    assert hands.desk.shown() is None
+    assert hands.controller.shown() is None
     assert effects.text() == ""
     # Seen again, it is not rendered again.
     n_jobs = len(hands.names)
     hands.preview.box.photo.click()
-    assert hands.desk.shown() is fine
+    assert hands.controller.shown() is fine
     hands.until_rest()
     assert len(hands.names) == n_jobs
 
@@ -126,7 +128,7 @@ def test_a_newer_viewpoint_takes_the_place_of_an_older_one(hands):
     hands.preview.box.photo.click()
     turn_until(hands.application, lambda: bool(hands.workspace.jobs()))
     hands.select("v0001")
-    assert hands.desk.shown() is None
+    assert hands.controller.shown() is None
     hands.select("v0002")
     assert east_of(hands.until_photo(is_fine=False)) == POSES[2][0][0]
 
@@ -138,10 +140,10 @@ def test_edits_undo_and_the_light_are_followed(hands):
     found = plan()
     moved = replace(found.viewpoints[1], position_enu_m=(11.0, -18.0, 30.0))
     hands.change(replace(found, viewpoints=(found.viewpoints[0], moved, found.viewpoints[2])))
-    assert hands.desk.shown() is None
+    assert hands.controller.shown() is None
     assert east_of(hands.until_photo(is_fine=False)) == 11.0
     hands.workspace.session.undo()
-    assert hands.desk.shown() is before
+    assert hands.controller.shown() is before
     hands.preview.box.light._heading.setValue(100.0)
     turned = hands.until_photo()
     assert turned.wish.look == replace(ALONE, sun_heading_deg=100.0)
@@ -151,20 +153,20 @@ def test_edits_undo_and_the_light_are_followed(hands):
     hands.change(replace(plan(), seed=7))
     hands.workspace.set_units(UnitSystem.IMPERIAL)
     hands.until_rest()
-    assert hands.desk.shown() is turned
+    assert hands.controller.shown() is turned
     assert len(hands.names) == n_jobs
 
 
 def test_nothing_is_rendered_while_nobody_looks_or_a_flight_plays(hands):
     hands.preview.box.photo.click()
-    hands.stage.show_page(StagePage.MAP)
+    hands.stage.show_page(SharedViewPage.MAP)
     hands.select("v0001")
     hands.until_rest()
     assert hands.names == []
-    hands.stage.show_page(StagePage.CAMERA)
+    hands.stage.show_page(SharedViewPage.CAMERA)
     hands.until_photo(is_fine=False)
     hands.preview.play(20)
-    assert hands.desk.shown() is None
+    assert hands.controller.shown() is None
     hands.until_rest()
     n_jobs = len(hands.names)
     turn_until(hands.application, lambda: hands.preview.time_s() > 1.0)
@@ -174,7 +176,7 @@ def test_nothing_is_rendered_while_nobody_looks_or_a_flight_plays(hands):
     assert at == pytest.approx(tuple(hands.preview.pinhole().eye_enu_m))
     hands.stage.hide()
     hands.until_rest()
-    assert hands.desk.shown() is None
+    assert hands.controller.shown() is None
 
 
 def test_other_work_comes_first(hands):
@@ -218,7 +220,7 @@ def test_a_photo_that_was_cancelled_stays_away_until_it_is_asked_for(hands, monk
         hands.workspace.cancel(hands.workspace.jobs()[0])
         turn_until(hands.application, lambda: "cancelled" in hands.preview.note())
         hands.until_rest()
-    assert hands.desk.shown() is None
+    assert hands.controller.shown() is None
     hands.preview.box.photo.click()
     hands.until_photo(is_fine=False)
 
@@ -230,7 +232,7 @@ def test_a_site_that_has_lost_its_panels_says_so_and_renders_nothing(hands):
     hands.workspace.change("edit", replace(hands.workspace.document, site=bare))
     turn_until(hands.application, lambda: "no panels yet" in hands.preview.note())
     hands.until_rest()
-    assert hands.desk.shown() is None
+    assert hands.controller.shown() is None
     assert hands.names == []
 
 
@@ -305,15 +307,15 @@ def test_lines_join_the_projected_corners_and_end_before_the_camera():
 
 
 @pytest.mark.alone
-def test_the_window_answers_within_50_ms_while_photos_are_rendered(application, desk):
+def test_the_window_answers_within_50_ms_while_photos_are_rendered(application, controller):
     """Other processes only ever make gaps longer, so the best of a few photos is what the window itself needs."""
     from PySide6.QtCore import QTimer
 
-    opened(application, desk, "office")
-    planned(application, desk, QUICK)
-    views = desk.workspace.document.current.plan.viewpoints
-    stage = desk.window.stage
-    stage.show_page(StagePage.CAMERA)
+    opened(application, controller, "office")
+    planned(application, controller, QUICK)
+    views = controller.workspace.document.current.plan.viewpoints
+    stage = controller.window.stage
+    stage.show_page(SharedViewPage.CAMERA)
     ticks = []
     timer = QTimer()
     timer.setTimerType(Qt.TimerType.PreciseTimer)
@@ -322,10 +324,12 @@ def test_the_window_answers_within_50_ms_while_photos_are_rendered(application, 
     longest_ms = []
     stage.camera_page().box.photo.click()
     for view in views[:6]:
-        desk.workspace.select(Item(ItemKind.VIEWPOINT, view.id))
+        controller.workspace.select(Item(ItemKind.VIEWPOINT, view.id))
         application.processEvents()
         ticks.clear()
-        turn_until(application, lambda: stage.photo_desk.shown() is not None and stage.photo_desk.is_at_rest())
+        turn_until(
+            application, lambda: stage.photo_controller.shown() is not None and stage.photo_controller.is_at_rest()
+        )
         longest_ms.append(1e3 * float(np.diff(ticks[:-1]).max()))
         assert len(ticks) > 50
         if longest_ms[-1] < 50.0:

@@ -177,12 +177,12 @@ def test_heights_of_the_origin_follow_each_other_and_impossible_ones_are_told(ap
 
 
 def test_grid_form_gives_back_its_wish_and_reckons_the_panels_size(application):
-    from groundstation.gui.site.grid_form import GridForm, GridWish
+    from groundstation.gui.site.grid_form import GridForm, GridRequest
     from planning.site.importing.panel_grid import GridField
 
     form = GridForm(METRIC)
-    assert form.value() == GridWish()
-    wish = GridWish(((0.0, 0.0, 0.0), (36.0, 0.0, 0.0), (0.0, 0.0, 42.0)), 14, 20, 0.1, 1.5)
+    assert form.value() == GridRequest()
+    wish = GridRequest(((0.0, 0.0, 0.0), (36.0, 0.0, 0.0), (0.0, 0.0, 42.0)), 14, 20, 0.1, 1.5)
     form.setValue(wish)
     assert form.value() == wish
     assert "Panels: 280, each 1.7 m × 2.9 m" in form._size.text()

@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from groundstation.gui.shared_view import StagePage
+from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.view3d.layers import Layer
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.folder import open_project
@@ -15,7 +15,7 @@ from planning.base.findings import Severity
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import roof
-from tests.gui.driving import choose, clicked, close_desk, turn_until, turn_until_idle
+from tests.gui.driving import choose, clicked, close_controller, turn_until, turn_until_idle
 from tests.planning.revision.cases import QUICK
 from tests.reconstruction.made_photos import ORIGIN, made_photos, write_flight, write_model
 
@@ -36,12 +36,12 @@ class Window:
     """The whole program, and hands to work it."""
 
     def __init__(self, application, worker):
-        from groundstation.gui.window.project_controller import Desk
+        from groundstation.gui.window.project_controller import ProjectController
 
         self.application = application
-        self.desk = Desk(application, worker=worker)
-        self.desk.show()
-        self.window, self.workspace = self.desk.window, self.desk.workspace
+        self.controller = ProjectController(application, worker=worker)
+        self.controller.show()
+        self.window, self.workspace = self.controller.window, self.controller.workspace
         self.window.setGeometry(0, 0, 1280, 720)
         self.messages = []
         self.workspace.messageShown.connect(self.messages.append)
@@ -52,7 +52,7 @@ class Window:
         return self.workspace.document.site.site
 
     def idle(self):
-        turn_until_idle(self.application, self.desk)
+        turn_until_idle(self.application, self.controller)
 
     def show(self, tab):
         self.window.show_tab(tab)
@@ -61,7 +61,7 @@ class Window:
 
     def look_everywhere(self):
         """Every tab, and every way to look at the site."""
-        for page in StagePage:
+        for page in SharedViewPage:
             self.window.stage.show_page(page)
             for name in TABS:
                 self.show(name)
@@ -71,7 +71,7 @@ class Window:
         return [message.text for message in self.messages if message.severity is Severity.ERROR]
 
     def close(self):
-        close_desk(self.desk)
+        close_controller(self.controller)
         gc.collect()
 
 
@@ -106,7 +106,7 @@ def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, 
     plan = opened.show("plan")
     assert "No panels yet: find them in photos (Photos tab), or draw them" in plan.verdict()
     assert not plan._plan_button.isEnabled()
-    opened.desk.save_in(tmp_path / "project")
+    opened.controller.save_in(tmp_path / "project")
     opened.idle()
     assert open_project(tmp_path / "project").document.site.site == opened.site
     photos = opened.show("photos")

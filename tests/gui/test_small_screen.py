@@ -26,14 +26,14 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.shared_view import StagePage
+from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.services.fly.events import Request, ViewState
 from groundstation.services.fly.link_choice import ConnectionChoice
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.settings import Language
 from planning.base.findings import Severity
-from tests.gui.driving import clicked, close_desk, escape, turn_until, turn_until_idle
+from tests.gui.driving import clicked, close_controller, escape, turn_until, turn_until_idle
 from tests.services.live_cases import planned
 
 SCREEN = QRect(0, 0, 1280, 720)
@@ -174,12 +174,12 @@ def least_px(widget):
 class Looks:
     """Looks at the window in each state."""
 
-    def __init__(self, application, desk):
-        self.application, self.desk, self.found = application, desk, {}
+    def __init__(self, application, controller):
+        self.application, self.controller, self.found = application, controller, {}
 
     def at(self, state, window=None):
-        turn_until_idle(self.application, self.desk)
-        window = self.desk.window if window is None else window
+        turn_until_idle(self.application, self.controller)
+        window = self.controller.window if window is None else window
         checks = (out_of_reach, cut_short, cut_choices, squeezed, sideways)
         problems = [problem for check in checks for problem in check(window)]
         if window.width() > SCREEN.width() or window.height() > SCREEN.height():
@@ -214,41 +214,41 @@ class Looks:
 )
 def looks(application, worker, tmp_path, monkeypatch, request):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
     language, scale = request.param
-    desk = Desk(application, worker=worker)
-    desk.show()
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    desk.choose(language=language, text_scale=scale)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    desk.window.setGeometry(SCREEN)
-    yield Looks(application, desk)
+    controller = ProjectController(application, worker=worker)
+    controller.show()
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    controller.choose(language=language, text_scale=scale)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    controller.window.setGeometry(SCREEN)
+    yield Looks(application, controller)
     # What follows is in English and of usual size, in a window that is there no longer.
-    desk.choose(language=Language.ENGLISH, text_scale=1.0)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    close_desk(desk)
+    controller.choose(language=Language.ENGLISH, text_scale=1.0)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    close_controller(controller)
     gc.collect()
 
 
 def test_everything_can_be_reached_in_every_tab_phase_and_dialog(looks):
-    desk, window = looks.desk, looks.desk.window
-    desk.workspace.say(Severity.WARNING, "a warning of many words " * 15, about="plan.long")
+    controller, window = looks.controller, looks.controller.window
+    controller.workspace.say(Severity.WARNING, "a warning of many words " * 15, about="plan.long")
     looks.at("nothing open")
-    window.stage.show_page(StagePage.MAP)
+    window.stage.show_page(SharedViewPage.MAP)
     looks.at("nothing open, map")
     model, plan = planned()
-    desk.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
-    for page in StagePage:
+    controller.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    for page in SharedViewPage:
         window.stage.show_page(page)
         for item in (None, *(Item(kind, name) for kind, name in THINGS)):
-            desk.workspace.select(item)
+            controller.workspace.select(item)
             looks.at(f"site, {page.name}, {item}")
-        desk.workspace.select(Item(ItemKind.VIEWPOINT, plan.viewpoints[0].id))
+        controller.workspace.select(Item(ItemKind.VIEWPOINT, plan.viewpoints[0].id))
         window.show_tab("plan")
         looks.at(f"plan, {page.name}")
         window.show_tab("site")
-    window.stage.show_page(StagePage.SCENE)
+    window.stage.show_page(SharedViewPage.SCENE)
     _in_the_plan_tab(looks, window.tab("plan"), window)
     _in_the_mission_tab(looks, window)
     _in_the_fly_tab(looks, window)
@@ -258,9 +258,9 @@ def test_everything_can_be_reached_in_every_tab_phase_and_dialog(looks):
     window.messages._all.click()
     looks.at("messages")
     window.messages._all.click()
-    looks.dialog("shortcuts", desk.menus.show_shortcuts)
-    looks.dialog("about", desk.menus._show_about)
-    looks.dialog("save as", desk.save_as)
+    looks.dialog("shortcuts", controller.menus.show_shortcuts)
+    looks.dialog("about", controller.menus._show_about)
+    looks.dialog("save as", controller.save_as)
     assert not looks.found, looks.told()
 
 
@@ -309,8 +309,8 @@ def _in_the_fly_tab(looks, window):
         page.right.setCurrentIndex(number)
         looks.at(f"fly, right {number}")
     page.right.setCurrentIndex(0)
-    page.desk.set_choice(ConnectionChoice(speed_up=20.0))
-    page.connection.setValue(page.desk.choice)
+    page.controller.set_choice(ConnectionChoice(speed_up=20.0))
+    page.connection.setValue(page.controller.choice)
     page.connection.button.click()
     turn_until(looks.application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
     looks.at("fly, connected")
@@ -326,7 +326,7 @@ def _in_the_fly_tab(looks, window):
         page._lists.setCurrentIndex(number)
         looks.at(f"fly, list {number}")
     page.connection.button.click()
-    turn_until(looks.application, lambda: not page.desk.is_connected)
+    turn_until(looks.application, lambda: not page.controller.is_connected)
 
 
 def test_the_import_dialog_can_be_reached(looks, tmp_path):
@@ -334,7 +334,7 @@ def test_the_import_dialog_can_be_reached(looks, tmp_path):
 
     path = tmp_path / "tower.obj"
     trimesh.creation.box((20.0, 10.0, 30.0)).export(path)
-    dialog = looks.desk.window.tab("site").left.opener.import_site(path)
+    dialog = looks.controller.window.tab("site").left.opener.import_site(path)
     turn_until(looks.application, lambda: not dialog.is_busy())
     looks.at("import", dialog)
     QApplication.processEvents()

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from groundstation.gui.application.languages import FOLDER
 from groundstation.services.settings import Language
-from tests.gui.driving import close_desk, turn_until
+from tests.gui.driving import close_controller, turn_until
 
 GUI = FOLDER.parent
 ROOT = GUI.parent.parent
@@ -131,50 +131,50 @@ def test_no_widget_gets_a_text_that_is_not_translated(path):
 
 
 @pytest.fixture
-def desk(application, worker, tmp_path, monkeypatch):
+def controller(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
-    desk = Desk(application, worker=worker)
-    desk.show()
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    controller = ProjectController(application, worker=worker)
+    controller.show()
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
 
     def speak(language):
-        desk.choose(language=language)
-        turn_until(application, lambda: desk.window.stage.scene() is not None)
+        controller.choose(language=language)
+        turn_until(application, lambda: controller.window.stage.scene() is not None)
 
     speak(Language.GERMAN)
-    yield desk
+    yield controller
     speak(Language.ENGLISH)
-    close_desk(desk)
+    close_controller(controller)
 
 
-def test_the_window_speaks_german_once_it_is_chosen(desk):
-    titles = [action.text().replace("&", "") for action in desk.window.menuBar().actions()]
+def test_the_window_speaks_german_once_it_is_chosen(controller):
+    titles = [action.text().replace("&", "") for action in controller.window.menuBar().actions()]
     assert {"Projekt", "Bearbeiten", "Ansicht", "Hilfe"} <= set(titles)
-    assert [spec.shown_title() for spec in desk.window.specs()] == [
+    assert [spec.shown_title() for spec in controller.window.specs()] == [
         *("Standort", "Planung", "Mission", "Fliegen", "Fotos", "Rekonstruktion", "Modell")
     ]
 
 
-def test_no_two_german_entries_of_a_menu_share_a_letter(desk):
-    bar = desk.window.menuBar()
-    for name in desk.window.tab_names():
-        desk.window.show_tab(name)
+def test_no_two_german_entries_of_a_menu_share_a_letter(controller):
+    bar = controller.window.menuBar()
+    for name in controller.window.tab_names():
+        controller.window.show_tab(name)
         menus = [bar, *(action.menu() for action in bar.actions() if isinstance(action.menu(), QMenu))]
         for menu in menus:
             letters = [found for action in menu.actions() for found in re.findall(r"&(\w)", action.text().lower())]
             assert len(letters) == len(set(letters)), [action.text() for action in menu.actions()]
 
 
-def test_keys_have_german_names_wherever_they_are_shown(desk):
+def test_keys_have_german_names_wherever_they_are_shown(controller):
     from groundstation.gui.window.shortcuts import sections
 
-    desk.choose(language=Language.GERMAN)
-    told = " ".join(keys for _, rows in sections(desk.window) for keys, _ in rows)
+    controller.choose(language=Language.GERMAN)
+    told = " ".join(keys for _, rows in sections(controller.window) for keys, _ in rows)
     for english in ("Ctrl", "Shift", "Return", "Enter", "Home", "Space", "PgUp", "Page", "Backspace", "Startplatz"):
         assert english not in told
     for key in ("Strg+Umschalt+Eingabe", "Pos1", "Leertaste", "Entf"):
         assert key in told
-    tips = [button.toolTip() for button in desk.window.findChildren(QWidget) if "Ctrl+" in button.toolTip()]
+    tips = [button.toolTip() for button in controller.window.findChildren(QWidget) if "Ctrl+" in button.toolTip()]
     assert tips == []

@@ -388,7 +388,7 @@ def _checkpoint() -> None:
             if self.left < 0:
                 raise OperationCancelled("enough")
 
-    wish = model_training.TrainWish("smoke", "2dgs", iterations=4, settings=Path("quick.toml"))
+    wish = model_training.TrainRequest("smoke", "2dgs", iterations=4, settings=Path("quick.toml"))
     with contextlib.suppress(OperationCancelled):
         model_training.train_files(Path("data"), Path("state"), wish, monitor=Stopping())
     assert Path("state/checkpoint.safetensors").is_file(), list(Path("state").iterdir())

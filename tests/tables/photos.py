@@ -9,10 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from groundstation.services.fly.flying import FlightWish, fly_files
+from groundstation.services.fly.flying import FlightRequest, fly_files
 from groundstation.services.plan.planning import plan_site
 from groundstation.services.scenes.photos import photograph_files
-from groundstation.services.scenes.views import SITE_FILE, SceneWish
+from groundstation.services.scenes.views import SITE_FILE, SceneRequest
 from groundstation.services.scenes.views import as_written as site_as_written
 from planning.plan import Constraints, Plan, write_plan
 from planning.planner import Planned
@@ -85,7 +85,9 @@ def photos_in(work: Path, photos: Photos) -> Path:
         scene = str(_bare_site_file(work, photos.scene))
         look.write_text(f"street_m = {photos.street_m}\n" if math.isfinite(photos.street_m) else "near = false\n")
     n_points = 0 if flight_path is None else DEFAULT_POINTS
-    wish = SceneWish(scene, plan=plan_path, flight=flight_path, look=look, width_px=photos.width_px, n_points=n_points)
+    wish = SceneRequest(
+        scene, plan=plan_path, flight=flight_path, look=look, width_px=photos.width_px, n_points=n_points
+    )
     photograph_files(wish, folder, 1)
     return folder
 
@@ -106,7 +108,7 @@ def _flown(work: Path, photos: Photos) -> tuple[Path, Path | None]:
         write_plan(plan_path, _drawn(plan_site(site, few, None), photos))
     elif not is_unseen and not flight_path.is_file():
         plan_site(site, request, plan_path)
-        fly_files(plan_path, site, flight_path, FlightWish(seed=photos.seed))
+        fly_files(plan_path, site, flight_path, FlightRequest(seed=photos.seed))
     return plan_path, None if is_unseen else flight_path
 
 
@@ -114,7 +116,7 @@ def site_file(work: Path, scene: str) -> Path:
     """Of a scene, which all its photos have in common; made if it is not there yet, and not by several at once."""
     folder = work / f"{scene}-site"
     if not (folder / SITE_FILE).is_file():
-        photograph_files(SceneWish(scene, n_square=1, width_px=SITE_WIDTH_PX, n_points=0), folder, 1)
+        photograph_files(SceneRequest(scene, n_square=1, width_px=SITE_WIDTH_PX, n_points=0), folder, 1)
     return folder / SITE_FILE
 
 

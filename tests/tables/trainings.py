@@ -24,7 +24,7 @@ from reconstruction.training.config import TrainConfig, config_of
 from reconstruction.training.model.render import png_of, render_view
 from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import score_views
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 from reconstruction.training.train import train_model
 from tests.benchmarks.harness import machine
 from tests.tables.photos import Photos, Planner, photos_in
@@ -122,7 +122,7 @@ def trained_and_scored(
     scale = SCALES[scale_name]
     learned, unseen = (photos_in(work, each) for each in case.photos(scene, scale))
     config = case.config(scale, seed)
-    trained = train_model(learned, config, watch=Stopwatch(time.process_time))
+    trained = train_model(learned, config, watch=Timer(time.process_time))
     source = read_photo_set(unseen)
     lpips = read_lpips_weights(weights) if weights else None
     scores = score_views(trained, source, [photo.name for photo in source.photos], lpips, threads=1)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from groundstation.services.fly.flying import FlightWish, fly_plan
+from groundstation.services.fly.flying import FlightRequest, fly_plan
 from groundstation.vehicle.duration import timed_by_items
 from groundstation.vehicle.setup import leg_late_s
 from missions.mavlink.autopilots import Autopilot
@@ -49,7 +49,7 @@ def test_the_simulated_vehicle_takes_what_its_items_are_reckoned_to(profile_id):
     """The M3E states no jerk: both fly with the autopilot's own."""
     model = single_panel()
     plan = plan_flight(model, PlanRequest(n_views=8, greedy=QUICK, profile_id=profile_id)).plan
-    flown = fly_plan(plan, model, FlightWish(autopilot=Autopilot.ARDUPILOT))
+    flown = fly_plan(plan, model, FlightRequest(autopilot=Autopilot.ARDUPILOT))
     (sortie,) = flown.sorties
     seconds = flown.flight.report.sorties[0].duration_flown_s
     assert math.isclose(seconds, sortie.expected_s, rel_tol=0.04)

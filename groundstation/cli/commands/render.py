@@ -9,7 +9,7 @@ from typing import Any
 from groundstation.cli.lists import count, words
 from groundstation.cli.options import new_folder
 from planning.base.errors import InputError
-from reconstruction.training.names import LAYERS
+from reconstruction.training.layers import LAYERS
 
 LAYER_LINES = "\n".join(f"  {name:<13} {text}" for name, text in LAYERS.items())
 
@@ -48,14 +48,14 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Render and print; returns the exit status."""
     from groundstation.cli.console import counted, print_json, run_job
-    from groundstation.services.model.rendering import RenderWish, render_files
+    from groundstation.services.model.rendering import RenderRequest, render_files
 
     unknown = next((name for name in options.layers if name not in LAYERS), None)
     if unknown is not None:
         raise InputError(f"--layers: there is no layer '{unknown}'; known are {', '.join(LAYERS)}")
     if options.frames == 1:
         raise InputError("--frames: expected 2 or more, got 1")
-    wish = RenderWish(options.views, options.layers, options.width, options.frames, options.held_out)
+    wish = RenderRequest(options.views, options.layers, options.width, options.frames, options.held_out)
     pictures = run_job("render", lambda context: render_files(options.model, wish, options.out, context))
     if options.json:
         print_json({"folder": str(options.out), "pictures": [str(path) for path in pictures]})

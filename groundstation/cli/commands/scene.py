@@ -18,7 +18,7 @@ from planning.base.errors import InputError
 
 if TYPE_CHECKING:
     from groundstation.services.scenes.photos import RenderedScene
-    from groundstation.services.scenes.views import SceneWish
+    from groundstation.services.scenes.views import SceneRequest
 
 DEFAULT_RAYS = 64
 
@@ -122,8 +122,8 @@ def run_render(options: argparse.Namespace) -> int:
     return 0
 
 
-def _wish(options: argparse.Namespace) -> SceneWish:
-    from groundstation.services.scenes.views import SceneWish
+def _wish(options: argparse.Namespace) -> SceneRequest:
+    from groundstation.services.scenes.views import SceneRequest
     from reconstruction.scenes.effect_names import EFFECTS
     from reconstruction.scenes.photos.renderer import RenderSettings
 
@@ -132,7 +132,7 @@ def _wish(options: argparse.Namespace) -> SceneWish:
         raise InputError("--rays is for Mitsuba; add --renderer mitsuba, or leave it out")
     rays = DEFAULT_RAYS if options.rays is None else options.rays
     with in_words_of_options():
-        return SceneWish(
+        return SceneRequest(
             scene=options.scene,
             plan=options.plan,
             flight=options.flight,

@@ -12,7 +12,7 @@ from groundstation.cli.options import effect_wishes as wishes_of_effects
 from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.fly.flying import FlightWish, Flown
+    from groundstation.services.fly.flying import FlightRequest, Flown
     from missions.simulator.scene import FixKind
     from planning.base.effects import Wish
     from planning.base.progress import Monitor
@@ -117,8 +117,8 @@ def _battery_change(number: int) -> None:
     sys.stdin.readline()
 
 
-def _wish(options: argparse.Namespace) -> FlightWish:
-    from groundstation.services.fly.flying import SIMULATED, FlightWish
+def _wish(options: argparse.Namespace) -> FlightRequest:
+    from groundstation.services.fly.flying import SIMULATED, FlightRequest
     from groundstation.services.fly.signing import link_signer
     from missions.mavlink.autopilots import Autopilot
     from missions.simulator.scene import Conditions
@@ -141,7 +141,7 @@ def _wish(options: argparse.Namespace) -> FlightWish:
         from groundstation.services.project.input_files import read_given_plan
 
         wind_m_s = read_given_plan(options.plan).rules.wind_m_s
-    return FlightWish(
+    return FlightRequest(
         link=options.link,
         autopilot=None if options.autopilot is None else Autopilot(options.autopilot),
         conditions=Conditions(wind_m_s=wind_m_s, wind_from_deg=options.wind_from, fix=FIXES[options.gnss]),

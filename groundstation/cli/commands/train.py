@@ -15,7 +15,7 @@ from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 from reconstruction.training.names import LIGHTS, PRESETS
 
 if TYPE_CHECKING:
-    from groundstation.services.reconstruct.training import TrainedFiles, TrainWish
+    from groundstation.services.reconstruct.training import TrainedFiles, TrainRequest
 
 METHOD_LINES = "\n".join(f"  {name:<30} {method.title}" for name, method in METHODS.items())
 PRESET_LINES = "\n".join(f"  {name:<11} {text}" for name, text in PRESETS.items())
@@ -117,12 +117,12 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def wish_of(options: argparse.Namespace) -> TrainWish:
+def wish_of(options: argparse.Namespace) -> TrainRequest:
     """What the options ask for."""
     from groundstation.cli.options import checked_seed
-    from groundstation.services.reconstruct.training import DEFAULT_PRESET, TrainWish
+    from groundstation.services.reconstruct.training import DEFAULT_PRESET, TrainRequest
 
-    return TrainWish(
+    return TrainRequest(
         options.preset or DEFAULT_PRESET,
         options.method,
         options.light,

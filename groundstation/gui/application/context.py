@@ -52,7 +52,7 @@ class _Waiting:
     failed: Failed | None
 
 
-class Workspace(QObject):
+class ApplicationContext(QObject):
     """The session for widgets.
 
     Signals

@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtGui import QImage
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.camera_preview.effects_window import EffectsWindow
 from groundstation.gui.camera_preview.preview import CameraPreview
 from groundstation.services.jobs.runner import Job, JobContext, JobProgress, JobState
 from groundstation.services.scenes.preview import (
     LEAST_WIDTH_PX,
     MAX_WIDTH_PX,
-    PhotoWish,
+    PhotoRequest,
     SeenPhoto,
     kept_photo,
     quick_width_px,
@@ -52,7 +52,7 @@ class _Wanted:
     """A fine photo of a site."""
 
     model: SiteModel
-    wish: PhotoWish
+    wish: PhotoRequest
 
     @property
     def view(self) -> _Wanted:
@@ -60,10 +60,10 @@ class _Wanted:
         return replace(self, wish=replace(self.wish, width_px=1))
 
 
-class PhotoDesk(QObject):
+class PhotoController(QObject):
     """Keeps the photo of a camera preview in step with everything that it depends on."""
 
-    def __init__(self, workspace: Workspace, preview: CameraPreview, parent: QObject) -> None:
+    def __init__(self, workspace: ApplicationContext, preview: CameraPreview, parent: QObject) -> None:
         super().__init__(parent)
         self._workspace, self._preview = workspace, preview
         self._wanted: _Wanted | None = None
@@ -137,7 +137,7 @@ class PhotoDesk(QObject):
         heading_deg = wrap_heading_deg(math.degrees(pose.heading_rad))
         view = Viewpoint("photo", (east, north, up), heading_deg, math.degrees(pose.pitch_rad))
         width = min(MAX_WIDTH_PX, max(LEAST_WIDTH_PX, self._preview.width_px()))
-        return _Wanted(model, PhotoWish("", self._preview.box.light.value(), SEED, view, camera, width))
+        return _Wanted(model, PhotoRequest("", self._preview.box.light.value(), SEED, view, camera, width))
 
     def _go_on(self) -> None:
         """Do what comes next for the photo that is wanted."""

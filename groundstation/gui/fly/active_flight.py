@@ -13,7 +13,7 @@ from planning.geo.frames import Vec3
 
 
 @dataclass(slots=True)
-class FlightInHand:
+class ActiveFlight:
     """Grows as the flight tells.
 
     Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.fly.sortie import is_same_place
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
@@ -32,7 +32,7 @@ class AfterFlight(QObject):
 
     restFound = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: Workspace, parent: QObject) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self._flown: dict[int, tuple[Plan, tuple[FlightRecord, ...]]] = {}

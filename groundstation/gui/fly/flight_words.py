@@ -4,39 +4,39 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject
 
-from groundstation.gui.application.context import Workspace
-from groundstation.gui.fly.fly_controller import FlyDesk
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.fly.fly_controller import FlyController
 from groundstation.services.fly.events import LinkState, LiveView
 from groundstation.vehicle.sortie.run_records import Phase
 
 
 class FlightWords(QObject):
-    """Says what a desk is doing."""
+    """Says what a controller is doing."""
 
-    def __init__(self, workspace: Workspace, desk: FlyDesk, parent: QObject) -> None:
+    def __init__(self, workspace: ApplicationContext, controller: FlyController, parent: QObject) -> None:
         super().__init__(parent)
-        self._workspace, self._desk = workspace, desk
+        self._workspace, self._controller = workspace, controller
 
     def connected_to(self) -> str:
         """The other end of the link; empty where there is none."""
-        desk = self._desk
-        if not desk.is_connected:
+        controller = self._controller
+        if not controller.is_connected:
             return ""
-        if desk.choice.url:
-            is_signed = desk.choice.is_signed
-            return self.tr("{0}, signed").format(desk.choice.url) if is_signed else desk.choice.url
-        return self.tr("Simulation, {0:g} times as fast").format(desk.choice.speed_up)
+        if controller.choice.url:
+            is_signed = controller.choice.is_signed
+            return self.tr("{0}, signed").format(controller.choice.url) if is_signed else controller.choice.url
+        return self.tr("Simulation, {0:g} times as fast").format(controller.choice.speed_up)
 
     def where_it_stands(self) -> str:
         """What is going on, or what to do first."""
-        desk, in_hand = self._desk, self._desk.in_hand
-        if self._workspace.document.site is None and not desk.is_connected:
+        controller, in_hand = self._controller, self._controller.in_hand
+        if self._workspace.document.site is None and not controller.is_connected:
             return self.tr("Open or import a site first, on the Site tab.")
-        if (desk.plan is None or not desk.plan.sorties) and not desk.is_connected:
+        if (controller.plan is None or not controller.plan.sorties) and not controller.is_connected:
             return self.tr("Plan a flight first, on the Plan tab.")
-        if desk.is_preparing:
+        if controller.is_preparing:
             return self.tr("The flight is being prepared ...")
-        if not desk.is_connected or in_hand is None:
+        if not controller.is_connected or in_hand is None:
             return self.tr("Not connected.")
         if in_hand.link is LinkState.OPENING or in_hand.view is None:
             return self.tr("The link is being opened ...")
@@ -59,7 +59,7 @@ class FlightWords(QObject):
             Phase.ENDED: self.tr("Landed."),
         }
         text = texts[view.phase]
-        if not self._desk.is_for_shown_plan and not view.state.is_armed:
+        if not self._controller.is_for_shown_plan and not view.state.is_armed:
             return self.tr("This connection is for another plan. Disconnect, and connect for the plan that is shown.")
         what, done, total = view.doing
         if view.phase is Phase.UPLOADING and total > 0.0:

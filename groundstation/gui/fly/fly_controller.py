@@ -13,11 +13,11 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from groundstation.gui.application.context import Workspace
-from groundstation.gui.fly.active_flight import FlightInHand
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.fly.active_flight import ActiveFlight
 from groundstation.gui.fly.after_flight import AfterFlight
-from groundstation.gui.fly.signing_controller import SigningDesk
-from groundstation.gui.fly.simulation_controller import SimulationDesk
+from groundstation.gui.fly.signing_controller import SigningController
+from groundstation.gui.fly.simulation_controller import SimulationController
 from groundstation.services.fly.connection import Connection, VehicleAt
 from groundstation.services.fly.events import (
     Answered,
@@ -60,7 +60,7 @@ from planning.plan import Plan
 class ItemLimit(QObject):
     """Works on the current plan of the document."""
 
-    def __init__(self, workspace: Workspace, parent: QObject) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
         super().__init__(parent)
         self._workspace = workspace
 
@@ -108,7 +108,7 @@ CLOSE_S = 5.0
 """Longest wait for a flight's thread when the window closes; it notices within a twentieth of a second."""
 
 
-class FlyDesk(QObject):
+class FlyController(QObject):
     """One vehicle at a time.
 
     Signals
@@ -129,7 +129,7 @@ class FlyDesk(QObject):
     noted = Signal(object, object, str)
     _published = Signal(int, object)
 
-    def __init__(self, workspace: Workspace) -> None:
+    def __init__(self, workspace: ApplicationContext) -> None:
         super().__init__(workspace)
         self._workspace = workspace
         self._flight: LiveFlight | None = None
@@ -139,16 +139,16 @@ class FlyDesk(QObject):
         self._preparing_id = 0
         self.choice = read_choice(choice_path(), self._say_soon)
         self.settings = read_flight_settings(flight_settings_path(), self._say_soon)
-        self.simulation, self.limit = SimulationDesk(workspace, self), ItemLimit(workspace, self)
+        self.simulation, self.limit = SimulationController(workspace, self), ItemLimit(workspace, self)
         self.number = 1
-        self.in_hand: FlightInHand | None = None
-        self.after, self.signing = AfterFlight(workspace, self), SigningDesk(workspace, self)
+        self.in_hand: ActiveFlight | None = None
+        self.after, self.signing = AfterFlight(workspace, self), SigningController(workspace, self)
         self._published.connect(self._take)
         workspace.count_as_busy(lambda: self.is_in_flight)
 
     @classmethod
-    def of(cls, workspace: Workspace) -> FlyDesk:
-        """The desk of a workspace: windows come and go, the flight goes on."""
+    def of(cls, workspace: ApplicationContext) -> FlyController:
+        """The controller of a workspace: windows come and go, the flight goes on."""
         known = workspace.findChild(cls)
         return cls(workspace) if known is None else known
 
@@ -299,7 +299,7 @@ class FlyDesk(QObject):
         is_free = in_hand is not None and in_hand.view is not None and in_hand.view.phase in BEFORE_TAKE_OFF
         if self._flight is not None and is_free and not self.is_in_flight and self.is_for_shown_plan:
             self._flight.take_on(sortie)
-            self.in_hand = FlightInHand(sortie)
+            self.in_hand = ActiveFlight(sortie)
 
     def _connect(self, sortie: LiveSortie) -> None:
         if self._flight is not None:
@@ -309,7 +309,7 @@ class FlyDesk(QObject):
         self._flight_id = flight_id = next(self._ids)
         for topic in ("link", "flight."):
             self._workspace.settle(topic)
-        self.in_hand = FlightInHand(sortie)
+        self.in_hand = ActiveFlight(sortie)
         self._flight = LiveFlight(
             sortie,
             self._connection(sortie, charge),
@@ -366,7 +366,7 @@ class FlyDesk(QObject):
             case FlightEnded():
                 self._take_end(in_hand, event)
 
-    def _take_view(self, in_hand: FlightInHand, view: LiveView) -> None:
+    def _take_view(self, in_hand: ActiveFlight, view: LiveView) -> None:
         for text in in_hand.take_view(view):
             severity = (
                 Severity.ERROR if text.severity <= 3 else Severity.WARNING if text.severity == 4 else Severity.NOTE
@@ -374,7 +374,7 @@ class FlyDesk(QObject):
             self._note(severity, self.tr("autopilot: {0}").format(text.text))
         self.viewChanged.emit(view)
 
-    def _take_link(self, in_hand: FlightInHand, event: LinkChanged) -> None:
+    def _take_link(self, in_hand: ActiveFlight, event: LinkChanged) -> None:
         before, in_hand.link = in_hand.link, event.link
         text = self._words(event.text)
         if event.link is LinkState.LOST:
@@ -394,7 +394,7 @@ class FlyDesk(QObject):
             self.stateChanged.emit()
         self.linkChanged.emit(event.link)
 
-    def _take_end(self, in_hand: FlightInHand, event: FlightEnded) -> None:
+    def _take_end(self, in_hand: ActiveFlight, event: FlightEnded) -> None:
         in_hand.ended = event
         if event.record is not None:
             case = in_hand.sortie.case

@@ -1,4 +1,4 @@
-"""The Fly tab's widgets put together: signals go to the desk, what the flight tells comes back here."""
+"""The Fly tab's widgets put together: signals go to the controller, what the flight tells comes back here."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import own_words
-from groundstation.gui.fly.active_flight import FlightInHand
+from groundstation.gui.fly.active_flight import ActiveFlight
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons
 from groundstation.gui.fly.flight_words import FlightWords
-from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, FlyDesk
+from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, FlyController
 from groundstation.gui.fly.live_pictures import LivePictures
 from groundstation.gui.fly.photo_strip import PhotoStrip, ScrolledStrip
 from groundstation.gui.fly.preflight_list import PreflightList
@@ -219,11 +219,11 @@ class SettingsPage(QWidget):
 class FlyPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
         super().__init__(stage)
         self._workspace, self._stage = workspace, stage
-        self.desk, self.questions = FlyDesk.of(workspace), FlightQuestions()
-        self._words = FlightWords(workspace, self.desk, self)
+        self.controller, self.questions = FlyController.of(workspace), FlightQuestions()
+        self._words = FlightWords(workspace, self.controller, self)
         self.connection, self.sortie = ConnectionBox(), ChoiceBox()
         self.buttons, self.checks = FlightButtons(), PreflightList()
         self.readouts, self.warnings = ReadoutsView(), WarningsView()
@@ -239,9 +239,9 @@ class FlyPage(QObject):
         self.bottom: QWidget | None = self._make_bottom()
         self.band.put_into(stage.window())
         self._connect()
-        self.connection.setValue(self.desk.choice)
-        self.simulation.setValue(self.desk.simulation.conditions, self.desk.simulation.wishes)
-        self.settings.setValue(self.desk.settings)
+        self.connection.setValue(self.controller.choice)
+        self.simulation.setValue(self.controller.simulation.conditions, self.controller.simulation.wishes)
+        self.settings.setValue(self.controller.settings)
         self._show_units(workspace.units)
         self._show_document()
         self._show_all()
@@ -251,8 +251,8 @@ class FlyPage(QObject):
     def shown(self) -> None:
         """Draw the flight into the shared view."""
         self.pictures.show(self._pictured())
-        self.desk.simulation.look(self.desk.plan, self.desk.number)
-        self.desk.signing.look(self.desk.choice)
+        self.controller.simulation.look(self.controller.plan, self.controller.number)
+        self.controller.signing.look(self.controller.choice)
 
     def hidden(self) -> None:
         """Give the shared view back; the flight goes on."""
@@ -264,7 +264,7 @@ class FlyPage(QObject):
 
     def n_photos(self) -> int:
         """Views of the sortie that have a photo."""
-        return 0 if self.desk.in_hand is None else len(self.desk.in_hand.photos)
+        return 0 if self.controller.in_hand is None else len(self.controller.in_hand.photos)
 
     # How it is put together
 
@@ -313,30 +313,30 @@ class FlyPage(QObject):
         return self._lists
 
     def _connect(self) -> None:
-        desk, workspace = self.desk, self._workspace
-        self.connection.valueChanged.connect(desk.set_choice)
-        self.connection.valueChanged.connect(desk.signing.look)
-        desk.signing.serve(self.connection, self._stage.window())
+        controller, workspace = self.controller, self._workspace
+        self.connection.valueChanged.connect(controller.set_choice)
+        self.connection.valueChanged.connect(controller.signing.look)
+        controller.signing.serve(self.connection, self._stage.window())
         self.connection.connectRequested.connect(self._connect_vehicle)
         self.connection.disconnectRequested.connect(self._disconnect)
-        self.sortie.activated.connect(lambda index: desk.set_sortie(index + 1))
+        self.sortie.activated.connect(lambda index: controller.set_sortie(index + 1))
         self.buttons.requested.connect(self._request)
         self.checks.mendRequested.connect(self._mend)
         self.simulation.valueChanged.connect(self._simulation_chosen)
-        self.settings.valueChanged.connect(desk.set_settings)
+        self.settings.valueChanged.connect(controller.set_settings)
         self.findings.placePicked.connect(self._go_to_place)
         self.strip.picked.connect(self._go_to)
         self.report.picked.connect(self._go_to)
-        self.report.topUpRequested.connect(desk.after.top_up)
-        desk.after.restFound.connect(self._rest_found)
-        self.report.resumeRequested.connect(desk.after.resume_sortie)
-        desk.stateChanged.connect(self._show_all)
-        desk.viewChanged.connect(self._show_view)
-        desk.photoCounted.connect(self._show_photo)
-        desk.linkChanged.connect(self._show_link)
-        desk.flightEnded.connect(self._show_end)
-        desk.simulation.effectsChanged.connect(self.simulation.set_effects)
-        desk.noted.connect(self.notes.add)
+        self.report.topUpRequested.connect(controller.after.top_up)
+        controller.after.restFound.connect(self._rest_found)
+        self.report.resumeRequested.connect(controller.after.resume_sortie)
+        controller.stateChanged.connect(self._show_all)
+        controller.viewChanged.connect(self._show_view)
+        controller.photoCounted.connect(self._show_photo)
+        controller.linkChanged.connect(self._show_link)
+        controller.flightEnded.connect(self._show_end)
+        controller.simulation.effectsChanged.connect(self.simulation.set_effects)
+        controller.noted.connect(self.notes.add)
         workspace.documentChanged.connect(self._document_changed)
         workspace.unitsChanged.connect(self._show_units)
         workspace.jobsChanged.connect(self._show_state)
@@ -346,43 +346,43 @@ class FlyPage(QObject):
 
     def _rest_found(self, found: TopUp) -> None:
         if self.questions.close_rest(self._stage.window(), found):
-            self.desk.after.take(found)
+            self.controller.after.take(found)
 
     def _request(self, request: Request) -> None:
         if request is not Request.START or self._may_start():
-            self.desk.request(request)
+            self.controller.request(request)
 
     def _mend(self, mend: Mend, check: PreflightCheck) -> None:
         """Do something about a check before take-off, once the pilot agrees."""
-        desk, ask, window = self.desk, self.questions, self._stage.window()
+        controller, ask, window = self.controller, self.questions, self._stage.window()
         match mend:
             case Mend.SET_PARAMETERS:
-                changes = desk.parameter_changes()
+                changes = controller.parameter_changes()
                 if changes and ask.set_parameters(window, changes):
-                    desk.set_parameters(changes)
+                    controller.set_parameters(changes)
             case Mend.RAISE:
                 by_m = -round(check.value or 0.0, 1)
                 if ask.raise_flight(window, by_m, self._workspace.units):
-                    desk.raise_flight(by_m)
+                    controller.raise_flight(by_m)
             case Mend.PLAN_FROM_HERE:
                 if ask.plan_from_here(window):
-                    desk.plan_from_here()
+                    controller.plan_from_here()
             case Mend.OVERRULE:
                 if ask.overrule(window, self._workspace.words(check.text), check.code.upper()):
-                    desk.overrule(check.code)
+                    controller.overrule(check.code)
 
     def _connect_vehicle(self) -> None:
-        found = self.desk.limit.exceeded(self.desk.choice)
+        found = self.controller.limit.exceeded(self.controller.choice)
         if found is None:
-            self.desk.connect_vehicle()
+            self.controller.connect_vehicle()
         elif self.questions.share_out(self._stage.window(), found):
-            self.desk.share_out(found)
+            self.controller.share_out(found)
 
     def _simulation_chosen(self) -> None:
-        self.desk.simulation.choose(*self.simulation.value(), self.desk.plan, self.desk.number)
+        self.controller.simulation.choose(*self.simulation.value(), self.controller.plan, self.controller.number)
 
     def _may_start(self) -> bool:
-        in_hand = self.desk.in_hand
+        in_hand = self.controller.in_hand
         if in_hand is None:
             return False
         autopilot = None if in_hand.view is None else in_hand.view.state.autopilot
@@ -390,16 +390,16 @@ class FlyPage(QObject):
         return self.questions.start(self._stage.window(), take_off, self._workspace.units)
 
     def _disconnect(self) -> None:
-        if not self.desk.is_in_flight or self.questions.leave_in_flight(self._stage.window()):
-            self.desk.disconnect_vehicle()
+        if not self.controller.is_in_flight or self.questions.leave_in_flight(self._stage.window()):
+            self.controller.disconnect_vehicle()
 
     def _window_closing(self, event: QCloseEvent) -> None:
-        if not event.isAccepted() or not self.desk.is_connected:
+        if not event.isAccepted() or not self.controller.is_connected:
             return
-        if self.desk.is_in_flight and not self.questions.leave_in_flight(self._stage.window()):
+        if self.controller.is_in_flight and not self.questions.leave_in_flight(self._stage.window()):
             event.ignore()
             return
-        self.desk.close()
+        self.controller.close()
 
     def _go_to(self, view_id: str) -> None:
         self._workspace.jump_to(Item(ItemKind.VIEWPOINT, view_id))
@@ -415,16 +415,16 @@ class FlyPage(QObject):
         self._show_document()
         self.pictures.set_flight(self._pictured())
 
-    def _pictured(self) -> FlightInHand | None:
+    def _pictured(self) -> ActiveFlight | None:
         """The flight, where it is over the site that is shown."""
-        in_hand, shown = self.desk.in_hand, self._workspace.document.site
+        in_hand, shown = self.controller.in_hand, self._workspace.document.site
         if in_hand is None or shown is None:
             return None
         return in_hand if is_same_place(in_hand.sortie.case.site_model.site, shown.site) else None
 
     def _show_document(self) -> None:
         """Offer the sorties of the current plan."""
-        plan = self.desk.plan
+        plan = self.controller.plan
         texts = [
             self.tr("Sortie {0}: photos: {1}, {2}").format(
                 n, len(sortie.viewpoint_ids), minutes_text(sortie.duration_s)
@@ -434,17 +434,17 @@ class FlyPage(QObject):
         if [self.sortie.itemText(i) for i in range(self.sortie.count())] != texts:
             self.sortie.clear()
             self.sortie.addItems(texts)
-            if self.desk.number > len(texts):
-                self.desk.number = 1
-        self.sortie.setCurrentIndex(min(self.desk.number, len(texts)) - 1)
-        in_hand = self.desk.in_hand
+            if self.controller.number > len(texts):
+                self.controller.number = 1
+        self.sortie.setCurrentIndex(min(self.controller.number, len(texts)) - 1)
+        in_hand = self.controller.in_hand
         if in_hand is not None and in_hand.view is not None:
             self._show_view(in_hand.view)
         self._show_state()
 
     def _show_all(self) -> None:
         """Show the flight in hand from its beginning: a new one, or this page is new."""
-        in_hand = self.desk.in_hand
+        in_hand = self.controller.in_hand
         self.notes.clear()
         for note in () if in_hand is None else in_hand.notes:
             self.notes.add(*note)
@@ -468,14 +468,16 @@ class FlyPage(QObject):
 
     def _show_state(self) -> None:
         """What can be done, and where things stand, in words."""
-        desk = self.desk
-        self.readouts.set_live(is_live=desk.is_connected)
-        self.connection.set_connected(is_connected=desk.is_connected, says=self._words.connected_to())
-        is_busy = desk.is_preparing or desk.signing.is_busy
-        can_connect = desk.plan is not None and bool(desk.plan.sorties) and not is_busy
+        controller = self.controller
+        self.readouts.set_live(is_live=controller.is_connected)
+        self.connection.set_connected(is_connected=controller.is_connected, says=self._words.connected_to())
+        is_busy = controller.is_preparing or controller.signing.is_busy
+        can_connect = controller.plan is not None and bool(controller.plan.sorties) and not is_busy
         self.connection.set_possible(is_possible=can_connect)
-        set_enabled(self.sortie, desk.plan is not None and not desk.is_in_flight and not desk.is_preparing)
-        if not desk.is_connected:
+        set_enabled(
+            self.sortie, controller.plan is not None and not controller.is_in_flight and not controller.is_preparing
+        )
+        if not controller.is_connected:
             self.buttons.set_allowed(frozenset())
             self.checks.set_checks(())
             self.band.hide()
@@ -486,8 +488,8 @@ class FlyPage(QObject):
         self.warnings.set_warnings(view.warnings)
         self.strip.set_states(view.view_states)
         note = self.tr("In flight; the list comes back after the landing.") if view.state.is_armed else ""
-        is_connected = self.desk.is_connected
-        may = view.may if self.desk.is_for_shown_plan else view.may - frozenset(BEFORE_FLIGHT)
+        is_connected = self.controller.is_connected
+        may = view.may if self.controller.is_for_shown_plan else view.may - frozenset(BEFORE_FLIGHT)
         if is_connected:
             self.checks.set_checks(view.checks, view.on_board, note)
         else:
@@ -497,14 +499,14 @@ class FlyPage(QObject):
         if self._phase.text() != text:
             self._phase.setText(text)
         set_enabled(self.sortie, not view.state.is_armed)
-        if view.link is LinkState.LOST and self.desk.is_connected:
+        if view.link is LinkState.LOST and self.controller.is_connected:
             self.band.show_lost(view.silent_s)
         elif not self.band.isHidden():
             self.band.hide()
         self.pictures.take_view(view)
 
     def _show_photo(self, counted: PhotoCounted) -> None:
-        in_hand = self.desk.in_hand
+        in_hand = self.controller.in_hand
         self.readouts.set_counted(counted)
         if in_hand is not None:
             self.strip.set_photos(in_hand.photos)

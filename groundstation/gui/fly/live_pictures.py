@@ -10,10 +10,10 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.fly.active_flight import FlightInHand
+from groundstation.gui.fly.active_flight import ActiveFlight
 from groundstation.gui.fly.photo_strip import state_colour
 from groundstation.gui.map.map_view import MapView
-from groundstation.gui.shared_view import Stage, StagePage
+from groundstation.gui.shared_view import SharedViewPage, Stage
 from groundstation.gui.view3d.layers import ON_TOP, Drawable
 from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.view3d.scene_view import SceneView
@@ -222,7 +222,7 @@ class LivePictures(QObject):
     def __init__(self, stage: Stage, parent: QObject) -> None:
         super().__init__(parent)
         self._stage = stage
-        self._flight: FlightInHand | None = None
+        self._flight: ActiveFlight | None = None
         self._scene: LiveScene | None = None
         self._map: LiveMap | None = None
         self._is_shown = False
@@ -230,13 +230,13 @@ class LivePictures(QObject):
         self._timer = QTimer(self, interval=DRAW_EVERY_MS)
         self._timer.timeout.connect(self.draw)
 
-    def set_flight(self, flight: FlightInHand | None) -> None:
+    def set_flight(self, flight: ActiveFlight | None) -> None:
         """Show another flight, or none."""
         if self._is_shown and flight is not self._flight:
             self._clear()
         self._flight, self._is_stale, self._has_photo = flight, True, flight is not None and flight.counted is not None
 
-    def show(self, flight: FlightInHand | None) -> None:
+    def show(self, flight: ActiveFlight | None) -> None:
         """Draw, and go on drawing."""
         self._is_shown = True
         self.set_flight(flight)
@@ -264,9 +264,9 @@ class LivePictures(QObject):
         if not self._is_shown or not self._is_stale or flight is None or flight.view is None:
             return
         self._is_stale = False
-        if self._stage.page() is StagePage.MAP:
+        if self._stage.page() is SharedViewPage.MAP:
             self._draw_map(flight, flight.view)
-        elif self._stage.page() is StagePage.SCENE and self._scene is not None:
+        elif self._stage.page() is SharedViewPage.SCENE and self._scene is not None:
             self._draw_scene(self._scene, flight, flight.view)
 
     def _scene_is_there(self, scene: SceneView) -> None:
@@ -274,7 +274,7 @@ class LivePictures(QObject):
             self._scene = LiveScene(scene)
         self._is_stale = True
 
-    def _draw_scene(self, scene: LiveScene, flight: FlightInHand, view: LiveView) -> None:
+    def _draw_scene(self, scene: LiveScene, flight: ActiveFlight, view: LiveView) -> None:
         plan = flight.sortie.case.plan
         scene.draw_views(view.view_states, {viewpoint.id: viewpoint for viewpoint in plan.viewpoints})
         scene.draw_aircraft(view.state, _thinned(flight), plan.camera, view.readouts.facade_m)
@@ -282,7 +282,7 @@ class LivePictures(QObject):
             self._has_photo = False
             self._paint_coverage(flight, flight.counted)
 
-    def _paint_coverage(self, flight: FlightInHand, counted: PhotoCounted) -> None:
+    def _paint_coverage(self, flight: ActiveFlight, counted: PhotoCounted) -> None:
         view = self._stage.scene()
         site = flight.sortie.case.site_model.site
         if view is None or counted.counts.shape[0] != site.n_panels:
@@ -293,7 +293,7 @@ class LivePictures(QObject):
         np.divide(100.0 * ((counted.counts > 0) & planned).sum(axis=1), n_planned, out=share, where=n_planned > 0)
         view.set_panel_values(ColourScale(self.tr("Flown of what is planned"), "%", 0.0, 100.0), share)
 
-    def _draw_map(self, flight: FlightInHand, view: LiveView) -> None:
+    def _draw_map(self, flight: ActiveFlight, view: LiveView) -> None:
         map_view = self._stage.findChild(MapView)
         if map_view is None:
             return
@@ -316,7 +316,7 @@ class LivePictures(QObject):
             self._map.hide()
 
 
-def _thinned(flight: FlightInHand) -> NDArray[np.float64]:
+def _thinned(flight: ActiveFlight) -> NDArray[np.float64]:
     """The track, shape (n, 3), of so many points as can be drawn quickly; the last one is always in it."""
     track = flight.track_enu_m
     step = max(1, -(-len(track) // MAX_TRACK_POINTS))

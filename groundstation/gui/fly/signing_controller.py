@@ -7,7 +7,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QLineEdit, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.signing_box import KeyAction
 from groundstation.gui.widgets.inputs import Form
@@ -124,7 +124,7 @@ class SigningQuestions(QObject):
         )
 
 
-class SigningDesk(QObject):
+class SigningController(QObject):
     """The key of this computer, and the vehicles that are given it.
 
     Signals
@@ -138,7 +138,7 @@ class SigningDesk(QObject):
     keyChanged = Signal(bool)  # noqa: N815  (Qt's own way of naming)
     vehicleChanged = Signal(str, bool)  # noqa: N815
 
-    def __init__(self, workspace: Workspace, parent: QObject) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self._job_id = 0

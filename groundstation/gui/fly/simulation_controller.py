@@ -7,7 +7,7 @@ from dataclasses import replace
 from PySide6.QtCore import QObject, QSignalBlocker, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, NumberBox, SpeedBox
 from groundstation.services.fly.connection import CALM, Simulation
@@ -99,7 +99,7 @@ class SimulationPage(QWidget):
         self.valueChanged.emit()
 
 
-class SimulationDesk(QObject):
+class SimulationController(QObject):
     """Conditions and wishes of the next simulation.
 
     Signals
@@ -110,7 +110,7 @@ class SimulationDesk(QObject):
 
     effectsChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: Workspace, parent: QObject) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self._looking_id = 0

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.translate import finding_in_own_words
 from groundstation.gui.mission.brief_printer import BriefDocument, page_size, painted_map, print_pages, say, write_pdf
 from groundstation.gui.widgets.inputs import ChoiceBox
@@ -40,7 +40,7 @@ class BriefDialog(QDialog):
 
     def __init__(
         self,
-        workspace: Workspace,
+        workspace: ApplicationContext,
         checked: Preflight,
         tiles: Path | None,
         folder: Path,

@@ -9,7 +9,7 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, QTimer, Signal
 from PySide6.QtWidgets import QCheckBox, QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, LengthBox
 from groundstation.gui.widgets.job_bar import DialogFoot
@@ -161,7 +161,12 @@ class ExportDialog(QDialog):
     written = Signal(object)
 
     def __init__(
-        self, workspace: Workspace, plan: Plan, site_model: SiteModel, folder: Path, parent: QWidget | None = None
+        self,
+        workspace: ApplicationContext,
+        plan: Plan,
+        site_model: SiteModel,
+        folder: Path,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Export mission files"))

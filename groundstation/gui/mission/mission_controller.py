@@ -7,7 +7,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.compare import MissionComparison, compare_with_plan
 from groundstation.services.mission.files import bare_site, missions_as_plan, plan_of_missions, read_mission_files
@@ -24,7 +24,7 @@ MAX_SAID = 5
 """Findings of one import that are said one by one; the check lists all."""
 
 
-class MissionDesk(QObject):
+class MissionController(QObject):
     """Works on the current plan of the document.
 
     Signals
@@ -38,7 +38,7 @@ class MissionDesk(QObject):
     checked = Signal(object)
     compared = Signal(object, str)
 
-    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self._check_id = 0

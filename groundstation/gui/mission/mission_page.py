@@ -1,4 +1,4 @@
-"""The Mission tab's widgets put together: signals go to the desk or the workspace, changes come back here."""
+"""The Mission tab's widgets put together: signals go to the controller or the workspace, changes come back here."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.map.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog
 from groundstation.gui.mission.findings_view import FindingsView
-from groundstation.gui.mission.mission_controller import MissionDesk
+from groundstation.gui.mission.mission_controller import MissionController
 from groundstation.gui.mission.mission_lists import MissionLists, SortieTable
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.widgets.questions import choose_files
@@ -36,14 +36,14 @@ READABLE = "*.kmz *.plan *.waypoints *.txt *.kml *.csv"
 class MissionPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
         super().__init__(stage)
         self._workspace, self._stage = workspace, stage
         self._is_shown = False
         self._drawn: Document | None = None
         self._preflight: Preflight | None = None
         self._folder: Path | None = None
-        self.desk = MissionDesk(workspace, self)
+        self.controller = MissionController(workspace, self)
         self.findings, self.lists, self.sorties = FindingsView(), MissionLists(), SortieTable()
         self._title, self._summary = QLabel(), QLabel()
         self._make_actions()
@@ -51,7 +51,7 @@ class MissionPage(QObject):
         self.right: QWidget | None = self.findings
         self.bottom: QWidget | None = self.lists
         self._check_soon = QTimer(self, interval=REST_MS, singleShot=True)
-        self._check_soon.timeout.connect(self.desk.check)
+        self._check_soon.timeout.connect(self.controller.check)
         self._connect()
         self._show_units(workspace.units)
         self._say_summary()
@@ -77,7 +77,7 @@ class MissionPage(QObject):
 
     def export(self) -> ExportDialog | None:
         """Ask how to export the current plan; None where there is none."""
-        plan, site_model = self.desk.plan, self._workspace.document.site
+        plan, site_model = self.controller.plan, self._workspace.document.site
         if plan is None or site_model is None:
             return None
         dialog = ExportDialog(self._workspace, plan, site_model, self._export_folder(), self._stage.window())
@@ -100,10 +100,10 @@ class MissionPage(QObject):
         return None if map_view is None else map_view.map_file()
 
     def _choose_import(self) -> None:
-        self.desk.import_files(self._ask_for_files(self.tr("Import the mission files of one flight")))
+        self.controller.import_files(self._ask_for_files(self.tr("Import the mission files of one flight")))
 
     def _choose_compare(self) -> None:
-        self.desk.compare_files(self._ask_for_files(self.tr("Compare the plan with mission files")))
+        self.controller.compare_files(self._ask_for_files(self.tr("Compare the plan with mission files")))
 
     def _ask_for_files(self, title: str) -> tuple[Path, ...]:
         kinds = self.tr("Missions ({0});;All files (*)").format(READABLE)
@@ -143,7 +143,7 @@ class MissionPage(QObject):
                 self._choose_compare,
             ),
             (self.tr("Flight brief ..."), "Ctrl+R", self.tr("To print or save as PDF"), self.print_brief),
-            (self.tr("Check"), "Ctrl+K", self.tr("Measure every pre-flight rule again"), self.desk.check),
+            (self.tr("Check"), "Ctrl+K", self.tr("Measure every pre-flight rule again"), self.controller.check),
         ):
             action = QAction(text, self)
             action.setShortcut(QKeySequence(key))
@@ -172,14 +172,14 @@ class MissionPage(QObject):
 
     def _connect(self) -> None:
         workspace = self._workspace
-        self.findings.checkRequested.connect(self.desk.check)
+        self.findings.checkRequested.connect(self.controller.check)
         self.findings.dayChanged.connect(self._day_changed)
         self.findings.placePicked.connect(self._go_to)
         self.lists.picked.connect(workspace.select)
         self.lists.activated.connect(workspace.jump_to)
         self.sorties.picked.connect(workspace.jump_to)
-        self.desk.checked.connect(self._take_preflight)
-        self.desk.compared.connect(self.lists.show_comparison)
+        self.controller.checked.connect(self._take_preflight)
+        self.controller.compared.connect(self.lists.show_comparison)
         workspace.documentChanged.connect(self._document_changed)
         workspace.selectionChanged.connect(self._show_selection)
         workspace.unitsChanged.connect(self._show_units)
@@ -194,7 +194,7 @@ class MissionPage(QObject):
     def _show_document(self) -> None:
         """Draw what changed since it was last drawn; hidden tabs wait."""
         document, drawn = self._workspace.document, self._drawn
-        plan, site_model = self.desk.plan, document.site
+        plan, site_model = self.controller.plan, document.site
         is_new = drawn is None or drawn.site is not site_model or drawn.current is not document.current
         self._drawn = document
         if is_new:
@@ -206,14 +206,14 @@ class MissionPage(QObject):
             self._check_soon.start()
 
     def _is_fresh(self) -> bool:
-        found, plan, site_model = self._preflight, self.desk.plan, self._workspace.document.site
-        return found is not None and found.is_of(plan, site_model) and found.day == self.desk.day
+        found, plan, site_model = self._preflight, self.controller.plan, self._workspace.document.site
+        return found is not None and found.is_of(plan, site_model) and found.day == self.controller.day
 
     def _show_freshness(self) -> None:
         """Say whether the findings are of the plan as it is, and what can be done with it; hidden tabs wait."""
         if not self._is_shown:
             return
-        plan, is_checking = self.desk.plan, self.desk.is_checking
+        plan, is_checking = self.controller.plan, self.controller.is_checking
         if plan is None:
             self._preflight = None
             self.findings.set_findings(None)
@@ -221,10 +221,10 @@ class MissionPage(QObject):
             self.findings.set_stale()
             if is_checking:
                 self.findings.set_checking()
-        self.findings.set_can_check(self.desk.can_check and not is_checking)
+        self.findings.set_can_check(self.controller.can_check and not is_checking)
         for action in (self._export, self._compare):
             action.setEnabled(plan is not None)
-        self._check.setEnabled(self.desk.can_check and not is_checking)
+        self._check.setEnabled(self.controller.can_check and not is_checking)
         self._brief.setEnabled(plan is not None and self._is_fresh())
 
     def _take_preflight(self, found: Preflight) -> None:
@@ -237,7 +237,7 @@ class MissionPage(QObject):
         self._show_freshness()
 
     def _say_summary(self) -> None:
-        document, plan = self._workspace.document, self.desk.plan
+        document, plan = self._workspace.document, self.controller.plan
         if document.site is None:
             self._title.setText(self.tr("No site"))
             self._summary.setText(self.tr("Open or import a site first, on the Site tab."))
@@ -256,7 +256,7 @@ class MissionPage(QObject):
             )
 
     def _day_changed(self, day: FlightDay) -> None:
-        self.desk.day = day
+        self.controller.day = day
         self._show_freshness()
         self._check_soon.start()
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.jobs.worker import Worker
 from groundstation.services.model.export import ModelExport, WrittenModel, export_apart
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from reconstruction.records.queries import Hit
 
 
-class ModelDesk(QObject):
+class ModelController(QObject):
     """Keeps what is known, and passes on what the user wants.
 
     Signals
@@ -61,7 +61,7 @@ class ModelDesk(QObject):
     probed = Signal(object)
     _came = Signal(object)
 
-    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self._process = ModelProcess(self._came.emit)
@@ -77,9 +77,9 @@ class ModelDesk(QObject):
         self.is_reading = False
 
     @classmethod
-    def of(cls, workspace: Workspace) -> ModelDesk:
+    def of(cls, workspace: ApplicationContext) -> ModelController:
         """The one of a workspace: it stays when the window is made anew."""
-        found = workspace.findChild(ModelDesk)
+        found = workspace.findChild(ModelController)
         return cls(workspace, workspace) if found is None else found
 
     # The scene

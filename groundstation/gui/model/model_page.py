@@ -1,4 +1,4 @@
-"""The Model tab's widgets put together: signals go to the desk, what it knows comes back here."""
+"""The Model tab's widgets put together: signals go to the controller, what it knows comes back here."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QSplitter, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.model.export_dialog import ExportDialog
-from groundstation.gui.model.model_controller import ModelDesk
+from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.panel_side import PanelSide
 from groundstation.gui.model.record_side import KIND_TITLES, RecordSide
 from groundstation.gui.model.report_maker import ReportMaker
@@ -36,12 +36,12 @@ SEARCH_MS = 200
 class ModelPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
         super().__init__(stage)
         self._workspace, self._stage = workspace, stage
-        self.desk, self.questions = ModelDesk.of(workspace), Questions()
-        self.side, self.pane = PanelSide(), ScenePane(workspace, self.desk)
-        self.records, self.report = RecordSide(workspace.words), ReportMaker(self.desk, self)
+        self.controller, self.questions = ModelController.of(workspace), Questions()
+        self.side, self.pane = PanelSide(), ScenePane(workspace, self.controller)
+        self.records, self.report = RecordSide(workspace.words), ReportMaker(self.controller, self)
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
@@ -81,33 +81,33 @@ class ModelPage(QObject):
         return page
 
     def _connect(self) -> None:
-        desk, side, records = self.desk, self.side, self.records
+        controller, side, records = self.controller, self.side, self.records
         side.open.clicked.connect(self._open)
         side.export.clicked.connect(self._export)
-        side.chosen.connect(desk.select)
-        side.colourChanged.connect(desk.colour)
+        side.chosen.connect(controller.select)
+        side.colourChanged.connect(controller.colour)
         side.searched.connect(self._search_later)
         self._search.timeout.connect(self._show_panels)
-        records.putAsked.connect(desk.put)
-        records.removeAsked.connect(desk.remove)
-        records.undoAsked.connect(desk.undo)
-        records.levelChanged.connect(desk.look_at)
+        records.putAsked.connect(controller.put)
+        records.removeAsked.connect(controller.remove)
+        records.undoAsked.connect(controller.undo)
+        records.levelChanged.connect(controller.look_at)
         records.reportAsked.connect(self._make_report)
         self.report.done.connect(self._report_done)
         self.report.failed.connect(self._report_failed)
         self.pane.saveAsked.connect(self._save_picture)
-        desk.sceneChanged.connect(self._show_scene)
-        desk.selectionChanged.connect(self._show_selection)
-        desk.subjectChanged.connect(self._show_subject)
-        desk.recordsChanged.connect(self._show_records)
-        desk.coloursChanged.connect(self._show_colours)
+        controller.sceneChanged.connect(self._show_scene)
+        controller.selectionChanged.connect(self._show_selection)
+        controller.subjectChanged.connect(self._show_subject)
+        controller.recordsChanged.connect(self._show_records)
+        controller.coloursChanged.connect(self._show_colours)
         self._workspace.unitsChanged.connect(self._units_changed)
         self._stage.closing.connect(self._window_closing)
 
     # What the user does
 
     def _open(self) -> None:
-        card, project = self.desk.card, self._workspace.session.folder
+        card, project = self.controller.card, self._workspace.session.folder
         places = (
             None if project is None else project / MODELS_FOLDER,
             None if card is None else card.folder.parent,
@@ -115,7 +115,7 @@ class ModelPage(QObject):
         )
         folder = self.questions.folder(self._stage.window(), self.tr("Folder of a model"), *places)
         if folder is not None:
-            self.desk.open(folder)
+            self.controller.open(folder)
 
     def _search_later(self, _words: str) -> None:
         self._search.start()
@@ -135,14 +135,14 @@ class ModelPage(QObject):
             self._workspace.say(Severity.ERROR, self.tr("{0} cannot be written; choose another place").format(path))
 
     def _export(self) -> None:
-        card = self.desk.card
+        card = self.controller.card
         if card is None:
             return
         dialog = ExportDialog(tuple(dict.fromkeys(panel.facade for panel in card.panels)), self._stage.window())
         if dialog.exec() == QDialog.DialogCode.Accepted:
             out = self._place_for(dialog.wanted().format, card.name)
             if out is not None:
-                self.desk.export(out, dialog.wanted())
+                self.controller.export(out, dialog.wanted())
         dialog.deleteLater()
 
     def _place_for(self, kind: ModelFormat, name: str) -> Path | None:
@@ -163,7 +163,7 @@ class ModelPage(QObject):
 
     def _proposed(self, ending: str) -> Path:
         """A name for a file about the model that is open."""
-        name = self.tr("model") if self.desk.card is None else self.desk.card.name
+        name = self.tr("model") if self.controller.card is None else self.controller.card.name
         return Path(f"{file_name(name)}{ending}")
 
     def make_report(self, path: Path) -> None:
@@ -171,15 +171,17 @@ class ModelPage(QObject):
 
         Of a facade or the building, it has all panels that something is known of.
         """
-        card, subject = self.desk.card, self.desk.subject
+        card, subject = self.controller.card, self.controller.subject
         if card is None:
             return
         panels, facades = self.side.marked(), tuple[PanelRow, ...]()
         if len(panels) < 2 and subject is not None:
             facades = tuple(
-                each for each in card.panels if self.desk.level == "building" or each.facade_id == subject.global_id
+                each
+                for each in card.panels
+                if self.controller.level == "building" or each.facade_id == subject.global_id
             )
-            known = self.desk.entries_of_all(each.global_id for each in facades)
+            known = self.controller.entries_of_all(each.global_id for each in facades)
             panels = tuple(each for each in facades if known[each.global_id])
             if subject.panel is not None:
                 panels = (subject.panel,)
@@ -195,15 +197,15 @@ class ModelPage(QObject):
 
     def _window_closing(self, event: QCloseEvent) -> None:
         if event.isAccepted():
-            self.desk.close()
+            self.controller.close()
 
     # What is shown
 
     def _show_scene(self) -> None:
-        card = self.desk.card
-        self.side.open.setEnabled(not self.desk.is_reading)
-        self.side.export.setEnabled(card is not None and not self.desk.is_reading)
-        if self.desk.is_reading:
+        card = self.controller.card
+        self.side.open.setEnabled(not self.controller.is_reading)
+        self.side.export.setEnabled(card is not None and not self.controller.is_reading)
+        if self.controller.is_reading:
             self.side.title.setText(self.tr("The model is being opened ..."))
         elif card is None:
             self.side.title.setText(self.tr("No model is open."))
@@ -221,36 +223,36 @@ class ModelPage(QObject):
 
     def _show_panels(self) -> None:
         """Those whose names or records have what is searched for."""
-        card, words = self.desk.card, self.side.search.text().strip()
+        card, words = self.controller.card, self.side.search.text().strip()
         panels: tuple[PanelRow, ...] = () if card is None else card.panels
         notes: dict[str, str] = {}
         if words and card is not None:
-            notes = {hit.global_id: hit.text for hit in reversed(self.desk.search(words)) if hit.kind != "object"}
+            notes = {hit.global_id: hit.text for hit in reversed(self.controller.search(words)) if hit.kind != "object"}
             folded = words.casefold()
             notes = {panel.global_id: notes[panel.facade_id] for panel in panels if panel.facade_id in notes} | notes
             panels = tuple(
                 panel for panel in panels if folded in panel.name.casefold() or panel.global_id in {*notes, words}
             )
-        self.side.set_panels(panels, notes, self.desk.selected)
-        self.side.show_colours(self.desk.colouring)
+        self.side.set_panels(panels, notes, self.controller.selected)
+        self.side.show_colours(self.controller.colouring)
 
     def _show_selection(self) -> None:
-        self.side.select(self.desk.selected)
+        self.side.select(self.controller.selected)
         self._show_subject()
 
     def _show_subject(self) -> None:
-        self.records.show_subject(self.desk.level, self.desk.subject, self._workspace.units)
+        self.records.show_subject(self.controller.level, self.controller.subject, self._workspace.units)
         self._show_entries()
 
     def _show_records(self) -> None:
-        self.side.set_attributes(self.desk.attribute_names())
+        self.side.set_attributes(self.controller.attribute_names())
         self._show_entries()
 
     def _show_entries(self) -> None:
-        self.records.show_entries({kind: self.desk.entries(kind) for kind in KIND_TITLES})
+        self.records.show_entries({kind: self.controller.entries(kind) for kind in KIND_TITLES})
 
     def _show_colours(self) -> None:
-        self.side.show_colours(self.desk.colouring)
+        self.side.show_colours(self.controller.colouring)
 
     def _units_changed(self, units: UnitSystem) -> None:
         self.pane.set_units(units)

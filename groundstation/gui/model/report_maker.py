@@ -15,7 +15,7 @@ from PySide6.QtCore import QLocale, QObject, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF, QTextDocument
 
 from groundstation.gui.mission.brief_printer import BriefDocument, write_pdf
-from groundstation.gui.model.model_controller import ModelDesk
+from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.picture_places import places_in
 from groundstation.gui.model.record_side import KIND_TITLES, line_of
 from groundstation.gui.reconstruct.looks import NUMBERS, image_of
@@ -62,9 +62,9 @@ class ReportMaker(QObject):
     done = Signal(object)
     failed = Signal(str)
 
-    def __init__(self, desk: ModelDesk, parent: QObject | None = None) -> None:
+    def __init__(self, controller: ModelController, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._desk = desk
+        self._controller = controller
         self._card: SceneCard | None = None
         self._left: list[Pictured] = []
         self._panels: tuple[PanelRow, ...] = ()
@@ -75,7 +75,7 @@ class ReportMaker(QObject):
         self._path, self._is_letter = Path(), False
         self._number = self._reading = 0
         self._units = UnitSystem.METRIC
-        desk.seen.connect(self._take)
+        controller.seen.connect(self._take)
 
     @property
     def is_busy(self) -> bool:
@@ -97,7 +97,7 @@ class ReportMaker(QObject):
         facades
             All panels of facades that are shown as a whole.
         """
-        self._card, self._panels, self._pictures = self._desk.card, tuple(panels), {}
+        self._card, self._panels, self._pictures = self._controller.card, tuple(panels), {}
         whole: dict[str, list[PanelRow]] = {}
         for panel in facades:
             whole.setdefault(panel.facade_id, []).append(panel)
@@ -111,11 +111,11 @@ class ReportMaker(QObject):
                 *self._facades,
                 *(each.global_id for _, group in self._left for each in group),
             )
-            self._entries = self._desk.entries_of_all(dict.fromkeys(subjects))
+            self._entries = self._controller.entries_of_all(dict.fromkeys(subjects))
         self._next()
 
     def _next(self) -> None:
-        card = self._desk.card
+        card = self._controller.card
         if card is None or card is not self._card or not self._left:
             self._number = 0
             if card is not None and card is self._card:
@@ -123,7 +123,7 @@ class ReportMaker(QObject):
             return
         self._number = next(NUMBERS)
         camera = sized(view_of(self._left[0][1]), WIDTH_PX, HEIGHT_PX)
-        self._desk.look(Look(REPORT, self._number, Subject("model", card.folder), camera))
+        self._controller.look(Look(REPORT, self._number, Subject("model", card.folder), camera))
 
     def _read(self) -> None:
         """Read the files that records name."""
@@ -135,7 +135,7 @@ class ReportMaker(QObject):
                 self._reading, self._attached = 0, attached
                 self._write()
 
-        self._desk.read_attached(entries, PHOTO_SCALE * PHOTO_PX, read, self._not_read)
+        self._controller.read_attached(entries, PHOTO_SCALE * PHOTO_PX, read, self._not_read)
 
     def _not_read(self, _error: BaseException | None) -> None:
         self._reading = 0

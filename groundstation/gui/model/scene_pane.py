@@ -11,8 +11,8 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
-from groundstation.gui.model.model_controller import ModelDesk
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.model.model_controller import ModelController
 from groundstation.gui.model.picture_places import places_in
 from groundstation.gui.reconstruct.guided_camera import USUAL_DISTANCE_M, LedCamera
 from groundstation.gui.reconstruct.looks import Looks, View
@@ -27,7 +27,7 @@ from groundstation.services.units import UnitSystem, length_unit
 from planning.geo.frames import Vec3
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.objects.picking import picked
-from reconstruction.training.names import PICTURE
+from reconstruction.training.layers import PICTURE
 
 STEPS = 1000
 """Of the section's slider."""
@@ -41,7 +41,7 @@ PICK, MEASURE = "pick", "measure"
 
 
 class ScenePane(QWidget):
-    """Looks at the desk's scene.
+    """Looks at the controller's scene.
 
     Signals
     -------
@@ -51,16 +51,18 @@ class ScenePane(QWidget):
 
     saveAsked = Signal()  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: Workspace, desk: ModelDesk, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, workspace: ApplicationContext, controller: ModelController, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
-        self._workspace, self._desk = workspace, desk
+        self._workspace, self._controller = workspace, controller
         self.view, self.layer, self.compare = ModelView(), ChoiceBox(), ChoiceBox()
         self.home, self.measure = QPushButton(self.tr("Facade")), QPushButton(self.tr("Measure"))
         self.front, self.save = QPushButton(self.tr("Panel")), QPushButton(self.tr("Save ..."))
         self.axis, self.cut, self.turn_over = ChoiceBox(), QSlider(Qt.Orientation.Horizontal), QCheckBox()
         calm(self.cut)
         self.cut_at = QLabel()
-        self.looks = Looks(desk.look, self._size_px, self)
+        self.looks = Looks(controller.look, self._size_px, self)
         self.led = LedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
         self._problem = ""
@@ -86,12 +88,12 @@ class ScenePane(QWidget):
         return self.view.grab(self.view.room().toAlignedRect()).toImage()
 
     def set_scene(self) -> None:
-        """Show the desk's scene."""
-        card = self._desk.card
+        """Show the controller's scene."""
+        card = self._controller.card
         self._measured, self._pointed = [], -1
         self.compare.clear()
         self.compare.addItem(self.tr("nothing"), "")
-        for folder in self._desk.others:
+        for folder in self._controller.others:
             self.compare.addItem(folder.name, str(folder))
         self.axis.setCurrentIndex(0)
         self.led.camera = None if card is None else card.first_view
@@ -102,7 +104,7 @@ class ScenePane(QWidget):
 
     def show_view(self) -> None:
         """Show what is chosen, from where the camera is."""
-        card = self._desk.card
+        card = self._controller.card
         if self.led.camera is None or card is None:
             self._images = {"left": None, "right": None}
             self.looks.show(None)
@@ -112,14 +114,14 @@ class ScenePane(QWidget):
         if right is None:
             self._images["right"] = None
         layer = str(self.layer.currentData() or PICTURE)
-        tints, right_tints = (self._desk.tints, self._desk.tints_beside) if layer == PICTURE else ((), ())
+        tints, right_tints = (self._controller.tints, self._controller.tints_beside) if layer == PICTURE else ((), ())
         self.looks.show(View(self.led.camera, left, right, layer, "", tints, self.section(), right_tints))
         self._say()
 
     def section(self) -> Section | None:
         """The plane that cuts the model."""
         axis = self.axis.currentData()
-        if axis is None or self._desk.card is None or not self._desk.card.panels:
+        if axis is None or self._controller.card is None or not self._controller.card.panels:
             return None
         return Section(int(axis), self._cut_m(), not self.turn_over.isChecked())
 
@@ -166,7 +168,7 @@ class ScenePane(QWidget):
         layout.addLayout(below)
 
     def _connect(self) -> None:
-        view, desk = self.view, self._desk
+        view, controller = self.view, self._controller
         self.layer.currentIndexChanged.connect(self.show_view)
         self.compare.currentIndexChanged.connect(self._set_beside)
         self.axis.currentIndexChanged.connect(self.show_view)
@@ -182,17 +184,17 @@ class ScenePane(QWidget):
         view.clicked.connect(self._clicked)
         view.pointed.connect(self._point_at)
         self.looks.pictureCame.connect(self._show_picture)
-        desk.seen.connect(self._take)
-        desk.probed.connect(self._take_probe)
-        desk.selectionChanged.connect(self._say)
-        desk.coloursChanged.connect(self.show_view)
+        controller.seen.connect(self._take)
+        controller.probed.connect(self._take_probe)
+        controller.selectionChanged.connect(self._say)
+        controller.coloursChanged.connect(self.show_view)
 
     # What the user does
 
     def go_home(self) -> None:
         """See the largest facade."""
-        if self._desk.card is not None:
-            self._look_from(self._desk.card.first_view)
+        if self._controller.card is not None:
+            self._look_from(self._controller.card.first_view)
 
     def face_panel(self) -> None:
         """See the chosen panel from the front."""
@@ -209,7 +211,7 @@ class ScenePane(QWidget):
 
     def _set_beside(self) -> None:
         other = str(self.compare.currentData() or "")
-        self._desk.stand_beside(Path(other) if other else None)
+        self._controller.stand_beside(Path(other) if other else None)
         self.show_view()
 
     def _clicked(self, x: float, y: float) -> None:
@@ -221,11 +223,11 @@ class ScenePane(QWidget):
         what = MEASURE if self.measure.isChecked() else PICK
         self._asked[what] = next(NUMBERS)
         at = (x * lens.width_px, y * lens.height_px)
-        self._desk.probe(Probe(what, self._asked[what], left, self.led.camera, at, self.section()))
+        self._controller.probe(Probe(what, self._asked[what], left, self.led.camera, at, self.section()))
 
     def _point_at(self, x: float, y: float) -> None:
         """Mark the panel under the mouse, as far as its edges tell."""
-        card, camera = self._desk.card, self.led.camera
+        card, camera = self._controller.card, self.led.camera
         number = -1
         if card is not None and camera is not None and card.panels and 0.0 <= x <= 1.0 and 0.0 <= y <= 1.0:
             lens = camera.intrinsics
@@ -241,11 +243,11 @@ class ScenePane(QWidget):
     # What is shown
 
     def _selected(self) -> PanelRow | None:
-        card = self._desk.card
-        return None if card is None else card.by_global_id.get(self._desk.selected)
+        card = self._controller.card
+        return None if card is None else card.by_global_id.get(self._controller.selected)
 
     def _subjects(self) -> tuple[Subject | None, Subject | None]:
-        card = self._desk.card
+        card = self._controller.card
         if card is None:
             return None, None
         other = str(self.compare.currentData() or "")
@@ -258,14 +260,14 @@ class ScenePane(QWidget):
             self.looks.take(seen)
 
     def _take_probe(self, found: Probed) -> None:
-        card, probe = self._desk.card, found.probe
+        card, probe = self._controller.card, found.probe
         if card is None or probe.number != self._asked.get(probe.place):
             return
         if found.problem:
             self._problem = found.problem
         elif probe.place == PICK:
             panel = None if found.panel is None else card.by_number.get(found.panel)
-            self._desk.select("" if panel is None else panel.global_id)
+            self._controller.select("" if panel is None else panel.global_id)
         elif found.point_enu_m is not None:
             self._measured = [*(self._measured if len(self._measured) < 2 else []), found.point_enu_m]
         self._say()
@@ -281,7 +283,7 @@ class ScenePane(QWidget):
         self._say()
 
     def _say(self) -> None:
-        card, axis = self._desk.card, self.axis.currentData()
+        card, axis = self._controller.card, self.axis.currentData()
         for widget in (self.cut, self.turn_over, self.cut_at):
             widget.setEnabled(axis is not None and card is not None)
         self.cut_at.setText("" if self.section() is None else length_unit(self._units).text(self._cut_m()))
@@ -293,7 +295,7 @@ class ScenePane(QWidget):
         self._mark()
 
     def _note(self) -> str:
-        if self._desk.card is None:
+        if self._controller.card is None:
             return self.tr("Open a model: the folder of a training that is finished.")
         if self._problem:
             return str(self._workspace.words(self._problem))
@@ -314,7 +316,7 @@ class ScenePane(QWidget):
 
     def _mark(self) -> None:
         """Outline the chosen panel and the one under the mouse, and draw what is measured."""
-        card, look = self._desk.card, colours()
+        card, look = self._controller.card, colours()
         marks = []
         if card is not None:
             pointed = card.panels[self._pointed] if 0 <= self._pointed < len(card.panels) else None
@@ -344,7 +346,7 @@ class ScenePane(QWidget):
         return tuple((place.x() / lens.width_px, place.y() / lens.height_px) for place in found)
 
     def _cut_m(self) -> float:
-        card, axis = self._desk.card, self.axis.currentData()
+        card, axis = self._controller.card, self.axis.currentData()
         if card is None or axis is None or not card.panels:
             return 0.0
         along = card.quads.corners_enu_m[..., int(axis)]

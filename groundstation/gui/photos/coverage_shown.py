@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.photos.coverage_scene import CoverageScene
 from groundstation.gui.photos.panel_sightings import PanelSightings
-from groundstation.gui.photos.photos_controller import PhotosDesk
+from groundstation.gui.photos.photos_controller import PhotosController
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, per_cent
 
@@ -16,15 +16,20 @@ class CoverageShown(QObject):
     """Brings coverage to the widgets that show it, and has it counted while the tab is in front."""
 
     def __init__(
-        self, workspace: Workspace, desk: PhotosDesk, scene: CoverageScene, panel: PanelSightings, parent: QObject
+        self,
+        workspace: ApplicationContext,
+        controller: PhotosController,
+        scene: CoverageScene,
+        panel: PanelSightings,
+        parent: QObject,
     ) -> None:
         super().__init__(parent)
-        self._workspace, self._desk, self._scene, self._panel = workspace, desk, scene, panel
+        self._workspace, self._controller, self._scene, self._panel = workspace, controller, scene, panel
         self._is_in_front = False
         scene.picked.connect(workspace.select)
-        desk.stateChanged.connect(self.show_all)
-        desk.photosChanged.connect(self.show_all)
-        desk.coverageChanged.connect(self.show_all)
+        controller.stateChanged.connect(self.show_all)
+        controller.photosChanged.connect(self.show_all)
+        controller.coverageChanged.connect(self.show_all)
         workspace.selectionChanged.connect(self._select)
         workspace.unitsChanged.connect(self._set_units)
         self._set_units(workspace.units)
@@ -39,14 +44,14 @@ class CoverageShown(QObject):
     def show_all(self) -> None:
         """Bring everything up to date."""
         if self._is_in_front:
-            self._desk.count()
-        coverage = self._desk.coverage
+            self._controller.count()
+        coverage = self._controller.coverage
         self._panel.set_coverage(coverage)
         self._scene.set_coverage(self._workspace.document.site, coverage, self._why_nothing())
 
     def words(self) -> str:
         """How much the photos show; empty before photos are read."""
-        intake = self._desk.intake
+        intake = self._controller.intake
         if intake is None:
             return ""
         why_nothing = self._why_nothing()
@@ -69,11 +74,11 @@ class CoverageShown(QObject):
         model = self._workspace.document.site
         if model is None:
             return self.tr("Open or import a site first: photos are placed on it.")
-        if self._desk.intake is None:
+        if self._controller.intake is None:
             return self.tr("Read the photos of the flight.")
         if model.site.n_panels == 0:
             return self.tr("The site has no panels yet: find them in these photos.")
-        if not self._desk.is_coverage_current:
+        if not self._controller.is_coverage_current:
             return self.tr("The panels or the plan are others now; what the photos show is counted again.")
         return ""
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.photos.cards import PhotoCard, photo_cards
 from groundstation.services.photos.coverage import PhotoCoverage, photo_coverage
@@ -38,7 +38,7 @@ _Basis = tuple[tuple[Facade, ...], Plan | None]
 """What coverage is counted over: the panels, and the plan that was flown."""
 
 
-class PhotosDesk(QObject):
+class PhotosController(QObject):
     """Reads photos, searches them and keeps the history of corrections.
 
     Signals
@@ -61,7 +61,7 @@ class PhotosDesk(QObject):
     trialsChanged = Signal()  # noqa: N815
     stateChanged = Signal()  # noqa: N815
 
-    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self.folder: Path | None = None
@@ -77,9 +77,9 @@ class PhotosDesk(QObject):
         workspace.jobsChanged.connect(self._jobs_changed)
 
     @classmethod
-    def of(cls, workspace: Workspace) -> PhotosDesk:
+    def of(cls, workspace: ApplicationContext) -> PhotosController:
         """The one of a workspace: it stays when the window is made anew."""
-        found = workspace.findChild(PhotosDesk)
+        found = workspace.findChild(PhotosController)
         return cls(workspace, workspace) if found is None else found
 
     @property

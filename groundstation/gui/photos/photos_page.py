@@ -1,4 +1,4 @@
-"""The Photos tab's widgets put together: signals go to the desk, what it finds comes back here."""
+"""The Photos tab's widgets put together: signals go to the controller, what it finds comes back here."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.charts.trial_chart import TrialChart
 from groundstation.gui.map.place_map import PlaceMap
 from groundstation.gui.photos.coverage_shown import CoverageShown
@@ -32,7 +32,7 @@ from groundstation.gui.photos.grid_view import Tool
 from groundstation.gui.photos.panel_sightings import PanelSightings
 from groundstation.gui.photos.photo_pane import PhotoPane
 from groundstation.gui.photos.photo_store import PhotoStore
-from groundstation.gui.photos.photos_controller import PhotosDesk
+from groundstation.gui.photos.photos_controller import PhotosController
 from groundstation.gui.photos.thumbnail_strip import ThumbnailStrip
 from groundstation.gui.photos.tool_box import ToolBox
 from groundstation.gui.shared_view import Stage
@@ -44,7 +44,7 @@ from groundstation.services.photos.cards import card_of_place
 from groundstation.services.photos.found_panels import PanelDraft
 from groundstation.services.photos.grid_edits import add_line, move_line, remove_line, set_panel
 from groundstation.services.photos.outlines import known_panels, panel_outlines
-from groundstation.services.photos.poses import BetterPoses, RefinedOutcome, RefineWish, refined_poses
+from groundstation.services.photos.poses import BetterPoses, RefinedOutcome, RefineRequest, refined_poses
 from groundstation.services.photos.tradeoff import corner_sigma_m
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, length_unit, sampling_unit
@@ -117,15 +117,15 @@ class FacadeTable(QTableWidget):
                 self.setItem(row, column, item)
 
 
-# Corrections made by hand over a photo, given to the desk as steps that can be undone.
+# Corrections made by hand over a photo, given to the controller as steps that can be undone.
 
 
 class Corrections(QObject):
     """Turns what a pane's view says into edits of the grid that is in hand."""
 
-    def __init__(self, desk: PhotosDesk, pane: PhotoPane, parent: QObject) -> None:
+    def __init__(self, controller: PhotosController, pane: PhotoPane, parent: QObject) -> None:
         super().__init__(parent)
-        self._desk, self._pane = desk, pane
+        self._controller, self._pane = controller, pane
         view = pane.view
         view.lineMoved.connect(self._move_line)
         view.lineAdded.connect(self._add_line)
@@ -135,34 +135,34 @@ class Corrections(QObject):
     def _move_line(self, axis: Axis, index: int, position_px: float) -> None:
         place = self._pane.place()
         if place is not None:
-            self._desk.edit(self.tr("Move line"), lambda draft: move_line(draft, place, axis, index, position_px))
+            self._controller.edit(self.tr("Move line"), lambda draft: move_line(draft, place, axis, index, position_px))
 
     def _add_line(self, axis: Axis, position_px: float) -> None:
         place = self._pane.place()
         if place is not None:
-            self._desk.edit(self.tr("Add line"), lambda draft: add_line(draft, place, axis, position_px))
+            self._controller.edit(self.tr("Add line"), lambda draft: add_line(draft, place, axis, position_px))
 
     def _remove_line(self, axis: Axis, index: int) -> None:
         place = self._pane.place()
         if place is not None:
-            self._desk.edit(self.tr("Remove line"), lambda draft: remove_line(draft, place, axis, index))
+            self._controller.edit(self.tr("Remove line"), lambda draft: remove_line(draft, place, axis, index))
 
     def _switch_panel(self, row: int, column: int, is_panel: bool) -> None:
         place = self._pane.place()
         if place is not None:
             label = self.tr("Restore panel") if is_panel else self.tr("Remove panel")
-            self._desk.edit(label, lambda draft: set_panel(draft, place, row, column, is_panel=is_panel))
+            self._controller.edit(label, lambda draft: set_panel(draft, place, row, column, is_panel=is_panel))
 
 
 # Refining the poses of the photos: the button, what it has brought, and the way back.
 
 
 class PoseBox(QWidget):
-    """Buttons for the photos of a desk, and a line about their poses."""
+    """Buttons for the photos of a controller, and a line about their poses."""
 
-    def __init__(self, desk: PhotosDesk, parent: QWidget | None = None) -> None:
+    def __init__(self, controller: PhotosController, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._desk, self._units = desk, UnitSystem.METRIC
+        self._controller, self._units = controller, UnitSystem.METRIC
         self.refine, self.back = QPushButton(self.tr("Refine poses")), QPushButton(self.tr("Own poses"))
         self.outcome = QLabel()
         self.refine.setToolTip(
@@ -182,7 +182,7 @@ class PoseBox(QWidget):
         layout.addWidget(self.outcome, 1, 0, 1, 2)
         self.refine.clicked.connect(self._refine)
         self.back.clicked.connect(self._back)
-        for signal in (desk.photosChanged, desk.stateChanged):
+        for signal in (controller.photosChanged, controller.stateChanged):
             signal.connect(self._show)
         self._show()
 
@@ -192,23 +192,23 @@ class PoseBox(QWidget):
         self._show()
 
     def _refine(self) -> None:
-        intake = self._desk.intake
+        intake = self._controller.intake
         if intake is None:
             return
 
         def poses(context: JobContext) -> BetterPoses:
-            return refined_poses(intake.posed.photos, intake.folder, RefineWish(), context)
+            return refined_poses(intake.posed.photos, intake.folder, RefineRequest(), context)
 
-        self._desk.change_poses(self.tr("Refine poses"), poses)
+        self._controller.change_poses(self.tr("Refine poses"), poses)
 
     def _back(self) -> None:
-        intake = self._desk.intake
+        intake = self._controller.intake
         if intake is not None:
             own = BetterPoses(intake.posed.photos)
-            self._desk.change_poses(self.tr("Own poses"), lambda _context: own)
+            self._controller.change_poses(self.tr("Own poses"), lambda _context: own)
 
     def _show(self) -> None:
-        intake, is_free = self._desk.intake, not self._desk.is_busy
+        intake, is_free = self._controller.intake, not self._controller.is_busy
         refined = None if intake is None else intake.better.refined
         self.refine.setEnabled(is_free and intake is not None and bool(intake.photos) and refined is None)
         self.back.setEnabled(is_free and refined is not None)
@@ -235,19 +235,19 @@ SIDE_PX, DETAIL_PX = 250, 320
 class PhotosPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
         super().__init__(stage)
         self._workspace, self._stage = workspace, stage
-        self.desk, self.questions = PhotosDesk.of(workspace), Questions()
+        self.controller, self.questions = PhotosController.of(workspace), Questions()
         self.store = PhotoStore(self)
         self.strip, self.map, self.pane = ThumbnailStrip(self.store), PlaceMap(), PhotoPane(self.store)
         self.findings, self.table, self.tools = FindingsList(), FacadeTable(), ToolBox()
-        self.trials, self.sightings, self.poses = TrialChart(), PanelSightings(), PoseBox(self.desk)
+        self.trials, self.sightings, self.poses = TrialChart(), PanelSightings(), PoseBox(self.controller)
         self.read, self.choose = QPushButton(self.tr("Read photos")), QPushButton(self.tr("Choose folder ..."))
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.data_set = QPushButton(self.tr("Make data set ..."))
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
-        self.coverage_shown = CoverageShown(workspace, self.desk, self.pane.scene, self.sightings, self)
+        self.coverage_shown = CoverageShown(workspace, self.controller, self.pane.scene, self.sightings, self)
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
@@ -333,10 +333,10 @@ class PhotosPage(QObject):
         return self.details
 
     def _connect(self) -> None:
-        desk, workspace, view = self.desk, self._workspace, self.pane.view
+        controller, workspace, view = self.controller, self._workspace, self.pane.view
         self.choose.clicked.connect(self._choose_folder)
         self.read.clicked.connect(self._read)
-        self.find.clicked.connect(desk.find)
+        self.find.clicked.connect(controller.find)
         self.use.clicked.connect(self._use)
         self.data_set.clicked.connect(self._make_data_set)
         self.strip.chosen.connect(self._show_photo)
@@ -348,18 +348,18 @@ class PhotosPage(QObject):
         self.tools.nudged.connect(view.nudge)
         self.sightings.photoPicked.connect(self._go_to_photo)
         self.pane.coverageShown.connect(self._coverage_shown)
-        desk.coverageChanged.connect(self._show_findings)
-        desk.coverageChanged.connect(self._show_state)
+        controller.coverageChanged.connect(self._show_findings)
+        controller.coverageChanged.connect(self._show_state)
         self.trials.measure.clicked.connect(self._measure)
-        desk.trialsChanged.connect(self._show_trials)
-        self.tools.undo.clicked.connect(desk.undo)
-        self.tools.redo.clicked.connect(desk.redo)
+        controller.trialsChanged.connect(self._show_trials)
+        self.tools.undo.clicked.connect(controller.undo)
+        self.tools.redo.clicked.connect(controller.redo)
         self.pane.refused.connect(lambda text: workspace.say(Severity.ERROR, workspace.words(text)))
         self.pane.placeChanged.connect(self._show_state)
-        self.corrections = Corrections(desk, self.pane, self)
-        desk.photosChanged.connect(self._show_photos)
-        desk.draftChanged.connect(self._show_draft)
-        desk.stateChanged.connect(self._show_state)
+        self.corrections = Corrections(controller, self.pane, self)
+        controller.photosChanged.connect(self._show_photos)
+        controller.draftChanged.connect(self._show_draft)
+        controller.stateChanged.connect(self._show_state)
         workspace.unitsChanged.connect(self._units_changed)
         workspace.documentChanged.connect(self._document_changed)
         self._stage.with_scene(lambda _scene: self.pane.scene.let_open())
@@ -368,41 +368,41 @@ class PhotosPage(QObject):
     # What the user does
 
     def _choose_folder(self) -> None:
-        places = (self.desk.usual_folder(), self._workspace.session.folder)
+        places = (self.controller.usual_folder(), self._workspace.session.folder)
         folder = self.questions.folder(self._stage.window(), self.tr("Folder of photos"), *places)
         if folder is not None:
-            self.desk.read(folder)
+            self.controller.read(folder)
 
     def _read(self) -> None:
-        folder = self.desk.usual_folder()
+        folder = self.controller.usual_folder()
         if folder is not None:
-            self.desk.read(folder)
+            self.controller.read(folder)
 
     def _use(self) -> None:
         """Take the panels over, and show them in the shared view."""
-        draft = self.desk.draft
-        if self.desk.use() and draft is not None:
+        draft = self.controller.draft
+        if self.controller.use() and draft is not None:
             self._stage.tabRequested.emit("site")
             first = next(facade.id for facade in draft.found.facades if facade.panels)
             self._workspace.jump_to(Item(ItemKind.FACADE, first))
 
     def _make_data_set(self) -> None:
-        photos, project = self.desk.usual_folder(), self._workspace.session.folder
+        photos, project = self.controller.usual_folder(), self._workspace.session.folder
         if photos is None:
             return
         proposed = photos.with_name(f"{photos.name}-dataset") if project is None else project / "dataset"
         title = self.tr("Folder for the data set")
         folder = self.questions.new_folder(self._stage.window(), title, proposed)
         if folder is not None:
-            self.desk.make_data_set(folder)
+            self.controller.make_data_set(folder)
 
     def _measure(self) -> None:
         place = self.pane.place()
         if place is not None:
-            self.desk.measure(place.facade)
+            self.controller.measure(place.facade)
 
     def _go_to_place(self, place: str) -> None:
-        number = card_of_place(self.desk.cards, place)
+        number = card_of_place(self.controller.cards, place)
         if number is not None:
             self.strip.choose(number)
 
@@ -417,11 +417,11 @@ class PhotosPage(QObject):
 
     def _go_to_facade(self, facade_id: str) -> None:
         """Show the first photo with a grid of a facade."""
-        draft = self.desk.draft
+        draft = self.controller.draft
         place = None if draft is None else next((one for one in draft.places() if one.facade == facade_id), None)
         if draft is None or place is None:
             return
-        number = card_of_place(self.desk.cards, str(draft.photos[place.photo].path))
+        number = card_of_place(self.controller.cards, str(draft.photos[place.photo].path))
         if number is not None:
             self.strip.choose(number)
             self.pane.show_facade(facade_id)
@@ -433,36 +433,36 @@ class PhotosPage(QObject):
     # What is shown
 
     def _show_photos(self) -> None:
-        desk, model = self.desk, self._workspace.document.site
-        self.strip.set_cards(desk.cards)
-        self.map.set_photos(desk.cards)
+        controller, model = self.controller, self._workspace.document.site
+        self.strip.set_cards(controller.cards)
+        self.map.set_photos(controller.cards)
         self.map.set_site(None if model is None else model.site)
         self._show_findings()
         self.pane.set_card(None)
-        if desk.cards:
+        if controller.cards:
             self.strip.choose(0)
         self._show_draft()
 
     def _show_findings(self) -> None:
-        self.findings.set_findings(() if self.desk.intake is None else self.desk.intake.findings)
+        self.findings.set_findings(() if self.controller.intake is None else self.controller.intake.findings)
         self._show_outlines()
 
     def _show_photo(self, number: int) -> None:
         self.map.choose(number)
-        self.pane.set_card(self.desk.cards[number] if 0 <= number < len(self.desk.cards) else None)
+        self.pane.set_card(self.controller.cards[number] if 0 <= number < len(self.controller.cards) else None)
         self._show_outlines()
 
     def _show_outlines(self) -> None:
         """Draw the panels that are known into a photo in which they were not looked for."""
-        card, intake, model = self.pane.card(), self.desk.intake, self._workspace.document.site
+        card, intake, model = self.pane.card(), self.controller.intake, self._workspace.document.site
         outlines: tuple[NDArray[np.float64], ...] = ()
         if card is not None and card.posed is not None and intake is not None and model is not None:
-            known = known_panels(self.desk.draft, model.site, card.posed)
+            known = known_panels(self.controller.draft, model.site, card.posed)
             outlines = panel_outlines(card.posed, known, None if intake.counted is None else intake.counted.sight)
         self.pane.set_outlines(outlines)
 
     def _show_draft(self) -> None:
-        draft = self.desk.draft
+        draft = self.controller.draft
         places = () if draft is None else draft.places()
         self.table.set_draft(draft)
         self.strip.set_searched(frozenset(draft.photos[place.photo].path for place in places) if draft else frozenset())
@@ -473,21 +473,23 @@ class PhotosPage(QObject):
         self._show_state()
 
     def _show_trials(self) -> None:
-        self.trials.set_trials(self.desk.trials)
+        self.trials.set_trials(self.controller.trials)
 
     def _show_state(self) -> None:
-        desk, has_site = self.desk, self._workspace.document.site is not None
-        folder = desk.usual_folder()
+        controller, has_site = self.controller, self._workspace.document.site is not None
+        folder = controller.usual_folder()
         self.folder.setText("" if folder is None else self.tr("Folder: {0}").format(_short(folder)))
         self.folder.setToolTip("" if folder is None else str(folder))
-        self.choose.setEnabled(has_site and not desk.is_busy)
-        self.read.setEnabled(has_site and folder is not None and not desk.is_busy)
-        self.find.setEnabled(desk.intake is not None and bool(desk.intake.photos) and not desk.is_busy)
-        self.tools.set_possible(
-            can_edit=self.pane.place() is not None, undo_label=desk.undo_label, redo_label=desk.redo_label
+        self.choose.setEnabled(has_site and not controller.is_busy)
+        self.read.setEnabled(has_site and folder is not None and not controller.is_busy)
+        self.find.setEnabled(
+            controller.intake is not None and bool(controller.intake.photos) and not controller.is_busy
         )
-        self.trials.measure.setEnabled(self.pane.place() is not None and not desk.is_busy)
-        draft = desk.draft
+        self.tools.set_possible(
+            can_edit=self.pane.place() is not None, undo_label=controller.undo_label, redo_label=controller.redo_label
+        )
+        self.trials.measure.setEnabled(self.pane.place() is not None and not controller.is_busy)
+        draft = controller.draft
         model = self._workspace.document.site
         has_panels = model is not None and model.site.n_panels > 0
         self.data_set.setEnabled(self.find.isEnabled() and has_panels)
@@ -496,14 +498,14 @@ class PhotosPage(QObject):
         self.coverage.setText(self.coverage_shown.words())
 
     def _where_it_stands(self) -> str:
-        desk = self.desk
+        controller = self.controller
         if self._workspace.document.site is None:
             return self.tr("Open or import a site first: photos are placed on it.")
-        if desk.intake is None:
+        if controller.intake is None:
             return self.tr("Read the photos of the flight.")
-        if desk.draft is None:
+        if controller.draft is None:
             return self.tr("Find the panels in these photos.")
-        if desk.draft.unsolved:
+        if controller.draft.unsolved:
             return self.tr("The corrected panels are being solved ...")
         if self.pane.place() is None:
             return self.tr("No grid was looked for in this photo; photos with one have the sign \u25a6.")

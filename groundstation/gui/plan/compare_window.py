@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, ValueKind
 from groundstation.gui.view3d.scene_view import SceneView
@@ -34,7 +34,11 @@ class CompareWindow(QDialog):
     """Two of the plans as pictures, all of them in a table."""
 
     def __init__(
-        self, workspace: Workspace, site: SiteModel, entries: tuple[PlanEntry, ...], parent: QWidget | None = None
+        self,
+        workspace: ApplicationContext,
+        site: SiteModel,
+        entries: tuple[PlanEntry, ...],
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Compare plans"))

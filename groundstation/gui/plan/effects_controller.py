@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import Job, JobContext
 from groundstation.services.plan.effects import EffectChoice, SceneEffects, plan_effects, scene_effects
 from groundstation.services.project.document import Document
@@ -18,7 +18,7 @@ AFTER_MS = 300
 Found = tuple[SceneEffects, Plan | None, tuple[EffectChoice, ...]]
 
 
-class EffectsDesk(QObject):
+class EffectsController(QObject):
     """Keeps the effects up to date; one job at a time, and none while nobody looks or a plan is being made.
 
     Signals
@@ -30,7 +30,11 @@ class EffectsDesk(QObject):
     effectsChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(
-        self, workspace: Workspace, is_wanted: Callable[[], bool], is_planning: Callable[[], bool], parent: QObject
+        self,
+        workspace: ApplicationContext,
+        is_wanted: Callable[[], bool],
+        is_planning: Callable[[], bool],
+        parent: QObject,
     ) -> None:
         super().__init__(parent)
         self._workspace, self._is_wanted, self._is_planning = workspace, is_wanted, is_planning

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.plan.method_names import method_name
 from groundstation.services.jobs.runner import Job, JobContext, JobState
 from groundstation.services.plan.editing import KEEPING_METHODS, edit_effect, has_same_panels, with_edited_plan
 from groundstation.services.plan.places import item_of_place
-from groundstation.services.plan.plan_cache import Bench, Groundwork, PlanInHand, take_in_hand
+from groundstation.services.plan.plan_cache import ActivePlan, PlanCache, PreparedSite, take_in_hand
 from groundstation.services.plan.planning import plan_document_site, reunited
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.input_files import read_given_plan
@@ -27,14 +27,14 @@ from planning.revision import Revision
 from planning.site.records import SiteModel
 
 
-class PlanDesk(QObject):
+class PlanController(QObject):
     """Plans, and keeps the current plan in hand.
 
     Signals
     -------
     planningStarted(Job, float), planningEnded()
         With the time budget in seconds.
-    inHandChanged(PlanInHand or None)
+    inHandChanged(ActivePlan or None)
         The current plan can be looked at and edited; None while it is not in hand, or there is none.
     refused(str)
         Why an edit was not carried out.
@@ -45,19 +45,19 @@ class PlanDesk(QObject):
     inHandChanged = Signal(object)  # noqa: N815
     refused = Signal(str)
 
-    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
-        self._bench = Bench()
-        self._in_hand: PlanInHand | None = None
+        self._bench = PlanCache()
+        self._in_hand: ActivePlan | None = None
         self._planning: Job[Planned] | None = None
-        self._taking: Job[PlanInHand] | None = None
+        self._taking: Job[ActivePlan] | None = None
         self._not_taken = ""
         workspace.documentChanged.connect(self._document_changed)
         self._take_current()
 
     @property
-    def in_hand(self) -> PlanInHand | None:
+    def in_hand(self) -> ActivePlan | None:
         """The current plan, when it can be looked at and edited."""
         return self._in_hand
 
@@ -247,7 +247,7 @@ class PlanDesk(QObject):
             text = self.tr("The plan is not kept: it was made for “{0}”, which is no longer open.")
             self._workspace.say(Severity.WARNING, text.format(site.site.name))
             return
-        self._bench.keep_groundwork(Groundwork(planned.prepared))
+        self._bench.keep_groundwork(PreparedSite(planned.prepared))
         title = self.tr("{0}, {1} views").format(method_name(plan.method), len(plan.viewpoints))
         entry = PlanEntry(document.free_plan_id(), title, plan, request, planned.bound_for_views)
         self._workspace.change(self.tr("Plan"), document.with_plan(entry))
@@ -291,7 +291,7 @@ class PlanDesk(QObject):
             return
         groundwork = self._bench.groundwork_for(plan, site)
 
-        def taken(in_hand: PlanInHand) -> None:
+        def taken(in_hand: ActivePlan) -> None:
             self._taking = None
             self._bench.keep(plan, in_hand)
             if self._is_current(plan):
@@ -312,7 +312,7 @@ class PlanDesk(QObject):
         self._taking, self._not_taken = None, why
         self.inHandChanged.emit(None)
 
-    def _set_in_hand(self, in_hand: PlanInHand | None) -> None:
+    def _set_in_hand(self, in_hand: ActivePlan | None) -> None:
         if in_hand is not self._in_hand:
             self._in_hand = in_hand
             self.inHandChanged.emit(in_hand)

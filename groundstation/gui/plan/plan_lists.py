@@ -18,16 +18,16 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.charts.clearance_chart import ClearanceChart
 from groundstation.gui.plan.method_names import method_name
-from groundstation.gui.plan.plan_controller import PlanDesk
+from groundstation.gui.plan.plan_controller import PlanController
 from groundstation.gui.widgets.questions import ask_text, choose_file
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
 from groundstation.gui.widgets.waypoint_table import WaypointTable
 from groundstation.services.jobs.runner import Job
 from groundstation.services.mission.waypoints import waypoint_rows
-from groundstation.services.plan.plan_cache import PlanInHand
+from groundstation.services.plan.plan_cache import ActivePlan
 from groundstation.services.plan.reach_summary import ReachGroup, reach_groups
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.units import UnitSystem, distance_unit, minutes_text
@@ -232,14 +232,14 @@ class PlanLists(QTabWidget):
 
     sectionPicked = Signal(str, int)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: Workspace, desk: PlanDesk) -> None:
+    def __init__(self, workspace: ApplicationContext, controller: PlanController) -> None:
         super().__init__()
-        self._workspace, self._desk = workspace, desk
+        self._workspace, self._controller = workspace, controller
         self._measuring: Job[object] | None = None
         self._listed: tuple[Plan | None, Origin | None] = (None, None)
-        self._counted: PlanInHand | None = None
-        self._explained: PlanInHand | None = None
-        self._measured: tuple[PlanInHand | None, int] = (None, 0)
+        self._counted: ActivePlan | None = None
+        self._explained: ActivePlan | None = None
+        self._measured: tuple[ActivePlan | None, int] = (None, 0)
         self.compare_window: QWidget | None = None
         self.waypoints = WaypointTable()
         self.reach, self.clearance, self.plans = ReachTable(), ClearanceChart(), PlansList()
@@ -257,7 +257,7 @@ class PlanLists(QTabWidget):
         self.currentChanged.connect(lambda page: self.waypoints.bar.setVisible(page == 0))
 
     def _connect(self) -> None:
-        desk, workspace = self._desk, self._workspace
+        controller, workspace = self._controller, self._workspace
         self.waypoints.picked.connect(workspace.select)
         self.waypoints.activated.connect(workspace.jump_to)
         self.reach.picked.connect(self.sectionPicked)
@@ -265,12 +265,12 @@ class PlanLists(QTabWidget):
         self.clearance.legPicked.connect(lambda sortie, leg: workspace.jump_to(Item(ItemKind.LEG, f"{sortie}/{leg}")))
         self.currentChanged.connect(lambda _page: self._fill_page())
         plans = self.plans
-        plans.chosen.connect(desk.choose)
-        plans.renamed.connect(desk.rename)
-        plans.removed.connect(desk.remove)
+        plans.chosen.connect(controller.choose)
+        plans.renamed.connect(controller.rename)
+        plans.removed.connect(controller.remove)
         plans.openWanted.connect(self._ask_plan)
         plans.compareWanted.connect(self.compare)
-        desk.inHandChanged.connect(lambda _in_hand: self._fill_page())
+        controller.inHandChanged.connect(lambda _in_hand: self._fill_page())
         workspace.documentChanged.connect(self._document_changed)
         workspace.selectionChanged.connect(self._show_selection)
 
@@ -308,7 +308,7 @@ class PlanLists(QTabWidget):
             self._measure_clearance()
 
     def _list_viewpoints(self) -> None:
-        document, in_hand = self._workspace.document, self._desk.in_hand
+        document, in_hand = self._workspace.document, self._controller.in_hand
         plan = None if document.current is None else document.current.plan
         origin = None if document.site is None else document.site.site.origin
         if self._listed[0] is not plan or self._listed[1] is not origin:
@@ -325,7 +325,7 @@ class PlanLists(QTabWidget):
 
     def _explain(self) -> None:
         """What is not covered, and why."""
-        in_hand = self._desk.in_hand
+        in_hand = self._controller.in_hand
         if in_hand is None:
             self._explained = None
             self.reach.set_rows(self.tr("Plan a flight, and what it does not cover stands here."), ())
@@ -373,7 +373,7 @@ class PlanLists(QTabWidget):
 
     def _measure_clearance(self) -> None:
         """Measure the chosen sortie, unless it is measured already."""
-        in_hand, number = self._desk.in_hand, self.clearance.sortie()
+        in_hand, number = self._controller.in_hand, self.clearance.sortie()
         if self._measured == (in_hand, number):
             return
         self._measured = (in_hand, number)
@@ -401,7 +401,7 @@ class PlanLists(QTabWidget):
     def _ask_plan(self) -> None:
         path = choose_file(self, self.tr("Open plan"), self.tr("Plans (*.json)"))
         if path is not None:
-            self._desk.open_plan(path)
+            self._controller.open_plan(path)
 
     def compare(self, plan_ids: tuple[str, ...]) -> None:
         """Show plans side by side."""
@@ -416,7 +416,7 @@ class PlanLists(QTabWidget):
         self.compare_window.show()
 
 
-def _panels_covered(in_hand: PlanInHand | None) -> dict[str, int]:
+def _panels_covered(in_hand: ActivePlan | None) -> dict[str, int]:
     """Number of panels that each view covers, by its identifier; empty where that is not known."""
     if in_hand is None:
         return {}

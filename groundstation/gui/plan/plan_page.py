@@ -1,4 +1,4 @@
-"""The Plan tab's widgets put together: every signal goes to the desk or the workspace, every change comes back here."""
+"""The Plan tab's widgets put together: signals go to the controller or the context, changes come back."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.charts.quality_chart import QualityChart
-from groundstation.gui.plan.effects_controller import EffectsDesk
+from groundstation.gui.plan.effects_controller import EffectsController
 from groundstation.gui.plan.paint_bar import PaintBar, PanelPaint, RoutePaint
 from groundstation.gui.plan.panel_detail import PanelDetail
-from groundstation.gui.plan.plan_controller import PlanDesk
+from groundstation.gui.plan.plan_controller import PlanController
 from groundstation.gui.plan.plan_form import PlanForm
 from groundstation.gui.plan.plan_lists import PlanLists
 from groundstation.gui.plan.viewpoint_page import ViewpointPage
@@ -29,7 +29,7 @@ from groundstation.gui.widgets.effects_panel import EffectsPanel
 from groundstation.gui.widgets.scrolling import scrolled
 from groundstation.services.jobs.runner import Job, JobBounded, JobImproved
 from groundstation.services.mission.readiness import findings_beside
-from groundstation.services.plan.plan_cache import PlanInHand
+from groundstation.services.plan.plan_cache import ActivePlan
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
 from planning.base.findings import Severity, is_flyable
@@ -45,7 +45,7 @@ WIDE_CLEARANCE = 3.0
 
 
 def paint_plan(
-    scene: SceneView, in_hand: PlanInHand | None, panels: PanelPaint, routes: RoutePaint, units: UnitSystem
+    scene: SceneView, in_hand: ActivePlan | None, panels: PanelPaint, routes: RoutePaint, units: UnitSystem
 ) -> None:
     """Paint a plan on a 3-D view, as chosen; without a plan in hand everything is plain."""
     if in_hand is None or panels is not PanelPaint.HEMISPHERES:
@@ -85,7 +85,7 @@ def _sampling(insight: PlanInsight, units: UnitSystem) -> tuple[ColourScale | No
     return ColourScale(title, unit.symbol, low, max(high, 1.01 * low + 1e-9), ValueKind.LOW_IS_GOOD), values
 
 
-def _clearance(in_hand: PlanInHand, units: UnitSystem) -> tuple[ColourScale, list[NDArray[np.float64]]]:
+def _clearance(in_hand: ActivePlan, units: UnitSystem) -> tuple[ColourScale, list[NDArray[np.float64]]]:
     unit = length_unit(units)
     least_m = in_hand.plan.constraints.min_distance_m
     far_m = max(WIDE_CLEARANCE * least_m, least_m + 5.0)
@@ -113,15 +113,20 @@ def vertex_clearances_m(legs_m: NDArray[np.float64]) -> NDArray[np.float64]:
 class PlanPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
         super().__init__(stage)
         self._workspace, self._stage = workspace, stage
         self._planning_id: int | None = None
-        self.desk = PlanDesk(workspace, self)
+        self.controller = PlanController(workspace, self)
         self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
         self.effects, self.panel, self.paint = EffectsPanel(), PanelDetail(), PaintBar()
-        self.effects_desk = EffectsDesk(workspace, self.effects.isVisible, lambda: self.desk.is_planning, self)
-        self.lists, self.viewpoint = PlanLists(workspace, self.desk), ViewpointPage(workspace, self.desk, stage)
+        self.effects_controller = EffectsController(
+            workspace, self.effects.isVisible, lambda: self.controller.is_planning, self
+        )
+        self.lists, self.viewpoint = (
+            PlanLists(workspace, self.controller),
+            ViewpointPage(workspace, self.controller, stage),
+        )
         self._result, self._verdict = QLabel(), QLabel()
         self._plan_button = QPushButton(self.tr("Plan"))
         self._make_actions()
@@ -133,7 +138,7 @@ class PlanPage(QObject):
         self._connect()
         self._show_document(workspace.document)
         self._show_units(workspace.units)
-        self._show_in_hand(self.desk.in_hand)
+        self._show_in_hand(self.controller.in_hand)
 
     def _make_actions(self) -> None:
         self._plan_action = QAction(self.tr("Plan the flight"), self)
@@ -141,7 +146,7 @@ class PlanPage(QObject):
         self._plan_action.triggered.connect(self._plan)
         self._enough_action = QAction(self.tr("Good enough, stop here"), self)
         self._enough_action.setShortcut(QKeySequence("Ctrl+Return"))
-        self._enough_action.triggered.connect(self.desk.stop_here)
+        self._enough_action.triggered.connect(self.controller.stop_here)
         compare = QAction(self.tr("Compare plans"), self)
         compare.setShortcut(QKeySequence("Ctrl+Shift+P"))
         compare.triggered.connect(lambda _checked=False: self.lists.compare(self.lists.plans.selected()))
@@ -170,25 +175,25 @@ class PlanPage(QObject):
         return self._detail
 
     def _connect(self) -> None:
-        desk, workspace = self.desk, self._workspace
-        self.form.valueChanged.connect(desk.set_request)
+        controller, workspace = self.controller, self._workspace
+        self.form.valueChanged.connect(controller.set_request)
         self._plan_button.clicked.connect(self._plan)
-        self.chart.enough.clicked.connect(desk.stop_here)
+        self.chart.enough.clicked.connect(controller.stop_here)
         self.effects.wishChanged.connect(self._wish_changed)
         self.panel.viewpointPicked.connect(
             lambda viewpoint_id: workspace.jump_to(Item(ItemKind.VIEWPOINT, viewpoint_id))
         )
         self.lists.sectionPicked.connect(self._show_section)
         self.paint.valueChanged.connect(lambda *_: self._paint())
-        desk.planningStarted.connect(self._planning_started)
-        desk.planningEnded.connect(self._planning_ended)
-        desk.inHandChanged.connect(self._show_in_hand)
-        self.effects.lookedAt.connect(self.effects_desk.look)
-        self.effects_desk.effectsChanged.connect(self.effects.set_effects)
-        desk.refused.connect(lambda text: workspace.say(Severity.ERROR, text))
+        controller.planningStarted.connect(self._planning_started)
+        controller.planningEnded.connect(self._planning_ended)
+        controller.inHandChanged.connect(self._show_in_hand)
+        self.effects.lookedAt.connect(self.effects_controller.look)
+        self.effects_controller.effectsChanged.connect(self.effects.set_effects)
+        controller.refused.connect(lambda text: workspace.say(Severity.ERROR, text))
         workspace.bridge.improved.connect(self._improved)
         workspace.bridge.bounded.connect(self._bounded)
-        workspace.jobsChanged.connect(desk.job_ended)
+        workspace.jobsChanged.connect(controller.job_ended)
         workspace.documentChanged.connect(self._document_changed)
         workspace.selectionChanged.connect(self._show_selection)
         workspace.unitsChanged.connect(self._show_units)
@@ -218,7 +223,7 @@ class PlanPage(QObject):
         if self.form.value() != document.request:
             self.form.setValue(document.request)
         has_panels = document.site is not None and document.site.site.n_panels > 0
-        can_plan = has_panels and not self.desk.is_planning
+        can_plan = has_panels and not self.controller.is_planning
         self._plan_button.setEnabled(can_plan)
         self._plan_action.setEnabled(can_plan)
         entry = document.current
@@ -232,10 +237,10 @@ class PlanPage(QObject):
             )
             self._result.clear()
         elif entry is None:
-            words = self.tr("Planning ...") if self.desk.is_planning else self.tr("No plan yet.")
+            words = self.tr("Planning ...") if self.controller.is_planning else self.tr("No plan yet.")
             self._say_verdict(words, "muted")
             self._result.clear()
-        if not self.desk.is_planning:
+        if not self.controller.is_planning:
             self._show_history(None if entry is None else entry.plan)
 
     def _show_history(self, plan: Plan | None) -> None:
@@ -245,12 +250,12 @@ class PlanPage(QObject):
         points = tuple(QualityPoint(point.t_s, float(point.covered)) for point in plan.history)
         self.chart.show_history(points, float(plan.coverage.reachable_upper_bound))
 
-    def _show_in_hand(self, in_hand: PlanInHand | None) -> None:
+    def _show_in_hand(self, in_hand: ActivePlan | None) -> None:
         self.panel.set_plan(None if in_hand is None else in_hand.insight, None if in_hand is None else in_hand.plan)
         self._paint()
         if in_hand is None:
             if self._workspace.document.current is not None:
-                why = self.desk.why_not_in_hand
+                why = self.controller.why_not_in_hand
                 if why:
                     self._say_verdict(self.tr("This plan cannot be judged. {0}").format(why), "error")
                 else:
@@ -259,7 +264,7 @@ class PlanPage(QObject):
             return
         self._show_result(in_hand)
 
-    def _show_result(self, in_hand: PlanInHand) -> None:
+    def _show_result(self, in_hand: ActivePlan) -> None:
         # As many as the Mission tab counts, where nothing is said there of the day.
         revision, plan = in_hand.revision, in_hand.plan
         findings = (*revision.findings, *findings_beside(revision.case))
@@ -312,7 +317,7 @@ class PlanPage(QObject):
             self._stage.with_scene(lambda _scene: self._paint())
             return
         if not self.paint.isHidden():
-            paint_plan(scene, self.desk.in_hand, *self.paint.value(), self._workspace.units)
+            paint_plan(scene, self.controller.in_hand, *self.paint.value(), self._workspace.units)
 
     def _show_selection(self, item: Item | None) -> None:
         if item is None:
@@ -320,7 +325,7 @@ class PlanPage(QObject):
         if item.kind is ItemKind.PANEL:
             self.panel.set_panel(item.id)
         # While a plan runs, its progress and "good enough" stay in sight.
-        if self.desk.is_planning:
+        if self.controller.is_planning:
             return
         if item.kind is ItemKind.PANEL:
             self._detail.setCurrentWidget(self.panel)
@@ -336,13 +341,13 @@ class PlanPage(QObject):
     def _wish_changed(self, effect: str, wish: str) -> None:
         request: PlanRequest = self._workspace.document.request
         if effect == "occlusion":
-            self.desk.set_request(replace(request, constraints=replace(request.constraints, occlusion=wish)))
+            self.controller.set_request(replace(request, constraints=replace(request.constraints, occlusion=wish)))
 
     def _show_units(self, units: UnitSystem) -> None:
         for widget in (self.form, self.panel, self.lists, self.effects):
             widget.set_units(units)
-        if self.desk.in_hand is not None:
-            self._show_result(self.desk.in_hand)
+        if self.controller.in_hand is not None:
+            self._show_result(self.controller.in_hand)
         self._paint()
 
     # While a plan runs
@@ -352,7 +357,7 @@ class PlanPage(QObject):
         if self.form.problem():
             self._workspace.say(Severity.ERROR, self.form.problem())
         else:
-            self.desk.plan()
+            self.controller.plan()
 
     def _planning_started(self, job: Job[object], budget_s: float) -> None:
         self._planning_id = job.id

@@ -9,8 +9,8 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QCheckBox, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
-from groundstation.gui.plan.plan_controller import PlanDesk
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.plan.plan_controller import PlanController
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.widgets.inputs import Form, LengthBox, NumberBox
 from groundstation.gui.widgets.scrolling import ButtonGrid
@@ -149,9 +149,9 @@ class ViewpointEditor(QWidget):
 class ViewpointPage(QWidget):
     """The editor, connected."""
 
-    def __init__(self, workspace: Workspace, desk: PlanDesk, stage: Stage) -> None:
+    def __init__(self, workspace: ApplicationContext, controller: PlanController, stage: Stage) -> None:
         super().__init__()
-        self._workspace, self._desk, self._stage = workspace, desk, stage
+        self._workspace, self._controller, self._stage = workspace, controller, stage
         self._aim_panel = ""
         self._is_changing_tool = False
         self.editor = ViewpointEditor()
@@ -166,14 +166,14 @@ class ViewpointPage(QWidget):
         self._show_document(workspace.document)
 
     def _connect(self) -> None:
-        desk, workspace = self._desk, self._workspace
-        self.editor.valueChanged.connect(desk.set_viewpoint)
+        controller, workspace = self._controller, self._workspace
+        self.editor.valueChanged.connect(controller.set_viewpoint)
         self.editor.addWanted.connect(self.add_viewpoint)
         self.editor.deleteWanted.connect(self.delete_viewpoint)
         self.editor.aimWanted.connect(self._aim)
         self._move.toggled.connect(self._move_toggled)
-        desk.inHandChanged.connect(lambda _in_hand: self._say_of_viewpoint())
-        desk.refused.connect(self._refused)
+        controller.inHandChanged.connect(lambda _in_hand: self._say_of_viewpoint())
+        controller.refused.connect(self._refused)
         workspace.documentChanged.connect(self._document_changed)
         workspace.selectionChanged.connect(self._show_selection)
         workspace.unitsChanged.connect(self.set_units)
@@ -229,7 +229,7 @@ class ViewpointPage(QWidget):
 
     def _say_of_viewpoint(self) -> None:
         """What the selected viewpoint covers, or what is wrong with it."""
-        in_hand, viewpoint = self._desk.in_hand, self.editor.value()
+        in_hand, viewpoint = self._controller.in_hand, self.editor.value()
         if in_hand is None or viewpoint is None or viewpoint.id not in in_hand.insight.view_ids:
             return
         wrong = [
@@ -252,30 +252,30 @@ class ViewpointPage(QWidget):
 
     def add_viewpoint(self) -> None:
         """A new viewpoint, beside the selected one or above home."""
-        in_hand, value = self._desk.in_hand, self.editor.value()
+        in_hand, value = self._controller.in_hand, self.editor.value()
         site = self._workspace.document.site
         if in_hand is None or site is None:
             return
-        self._desk.add_viewpoint(above_home(site.site) if value is None else beside(value, site.site.airspace))
+        self._controller.add_viewpoint(above_home(site.site) if value is None else beside(value, site.site.airspace))
 
     def delete_viewpoint(self) -> None:
         """The selected viewpoint away."""
         value = self.editor.value()
         if value is not None:
-            self._desk.delete_viewpoint(value.id)
+            self._controller.delete_viewpoint(value.id)
 
     def toggle_lock(self) -> None:
         """Keep the selected viewpoint when planning again, or no more."""
         value = self.editor.value()
         if value is not None:
-            self._desk.set_viewpoint(replace(value, locked=not value.locked))
+            self._controller.set_viewpoint(replace(value, locked=not value.locked))
 
     def _aim(self) -> None:
         value = self.editor.value()
         if value is None:
             return
         if self._aim_panel:
-            self._desk.aim(value.id, self._aim_panel)
+            self._controller.aim(value.id, self._aim_panel)
         else:
             self.editor.say(self.tr("Click a panel first, then the viewpoint, then Aim."), wrong=True)
 
@@ -317,4 +317,4 @@ class ViewpointPage(QWidget):
 
         value = self.editor.value()
         if isinstance(result, MovedViewpoint) and value is not None and value.id == result.id:
-            self._desk.set_viewpoint(replace(value, position_enu_m=result.position_enu_m))
+            self._controller.set_viewpoint(replace(value, position_enu_m=result.position_enu_m))

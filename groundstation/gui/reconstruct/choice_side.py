@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QSizePolicy, QVBox
 
 from groundstation.gui.application.translate import own_words
 from groundstation.gui.reconstruct.machine_words import MachineWords
-from groundstation.gui.reconstruct.reconstruct_controller import BUSY, Phase, ReconstructDesk
+from groundstation.gui.reconstruct.reconstruct_controller import BUSY, Phase, ReconstructController
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, NumberBox
 from groundstation.gui.widgets.scrolling import ButtonGrid, WrappingRow
 from groundstation.services.reconstruct.choices import LONGEST_MIN, TrainChoice, method_rows, preset_rows
@@ -127,11 +127,11 @@ class ChoiceForm(QWidget):
 
 
 class ChoiceSide(QWidget):
-    """Shows the desk's choices and what can be done."""
+    """Shows the controller's choices and what can be done."""
 
-    def __init__(self, desk: ReconstructDesk, words: MachineWords, parent: QWidget | None = None) -> None:
+    def __init__(self, controller: ReconstructController, words: MachineWords, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._desk, self._words = desk, words
+        self._controller, self._words = controller, words
         self.form = ChoiceForm()
         self.choose, self.choose_out = QPushButton(self.tr("Choose ...")), QPushButton(self.tr("Choose ..."))
         self.train, self.pause = QPushButton(self.tr("Train")), QPushButton(self.tr("Pause"))
@@ -141,43 +141,50 @@ class ChoiceSide(QWidget):
 
     def show_state(self) -> None:
         """Show what is chosen, and enable what can be done."""
-        desk = self._desk
-        is_idle = desk.phase is Phase.IDLE and not desk.is_reading
+        controller = self._controller
+        is_idle = controller.phase is Phase.IDLE and not controller.is_reading
         self._show_data_set()
-        self.out.setText(_short(desk.out))
-        self.out.setToolTip(str(desk.out))
+        self.out.setText(_short(controller.out))
+        self.out.setToolTip(str(controller.out))
         self.there.setText(self._standing())
         for widget in (self.choose, self.choose_out):
             widget.setEnabled(is_idle)
-        self.form.setEnabled(is_idle and not desk.standing.is_interrupted)
-        goes_on = desk.standing.is_interrupted and not desk.is_busy
+        self.form.setEnabled(is_idle and not controller.standing.is_interrupted)
+        goes_on = controller.standing.is_interrupted and not controller.is_busy
         self.train.setText(self.tr("Go on") if goes_on else self.tr("Train"))
-        self.train.setEnabled(is_idle and desk.card is not None and bool(desk.out.name))
-        can_stop = desk.phase in (Phase.PREPARING, Phase.TRAINING)
+        self.train.setEnabled(is_idle and controller.card is not None and bool(controller.out.name))
+        can_stop = controller.phase in (Phase.PREPARING, Phase.TRAINING)
         self.pause.setEnabled(can_stop)
-        self.pause.setText(self.tr("Resume") if desk.is_paused else self.tr("Pause"))
+        self.pause.setText(self.tr("Resume") if controller.is_paused else self.tr("Pause"))
         self.stop.setEnabled(can_stop)
-        self.break_off.setEnabled(desk.phase in (BUSY | {Phase.ASKING}) - {Phase.ENDING})
-        told = self._words.told(desk.machine, desk.cuda, desk.choice, desk.card, desk.forecast(), desk.standing)
+        self.break_off.setEnabled(controller.phase in (BUSY | {Phase.ASKING}) - {Phase.ENDING})
+        told = self._words.told(
+            controller.machine,
+            controller.cuda,
+            controller.choice,
+            controller.card,
+            controller.forecast(),
+            controller.standing,
+        )
         self.wrong.setText("\n".join(text for role, text in told if role == "error"))
         self.wrong.setVisible(bool(self.wrong.text()) and is_idle)
 
     def _show_data_set(self) -> None:
-        desk = self._desk
-        if desk.is_reading:
+        controller = self._controller
+        if controller.is_reading:
             self.data_set.setText(self.tr("The data set is being read ..."))
-        elif desk.card is None:
+        elif controller.card is None:
             self.data_set.setText(self.tr("None is chosen."))
         else:
-            n_photos, n_panels = len(desk.card.source.photos), len(desk.card.source.panels.corners_enu_m)
+            n_photos, n_panels = len(controller.card.source.photos), len(controller.card.source.panels.corners_enu_m)
             self.data_set.setText(
-                self.tr("{0}: {1} photos, {2} panels").format(_short(desk.card.folder), n_photos, n_panels)
+                self.tr("{0}: {1} photos, {2} panels").format(_short(controller.card.folder), n_photos, n_panels)
             )
-            self.data_set.setToolTip(str(desk.card.folder))
+            self.data_set.setToolTip(str(controller.card.folder))
 
     def _standing(self) -> str:
-        found = self._desk.standing
-        if self._desk.is_busy or not self._desk.out.name:
+        found = self._controller.standing
+        if self._controller.is_busy or not self._controller.out.name:
             return ""
         if found.is_interrupted:
             return self.tr("A training was broken off there: it can be gone on with, as it was begun.")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.reconstruct.choices import Forecast, Machine, TrainChoice, forecast, this_machine
 from groundstation.services.reconstruct.folders import (
@@ -29,7 +29,7 @@ HELD_OUT, SEED = 0.15, 0
 """Share and seed that trainings hold views out by unless their settings say otherwise."""
 
 
-class PlaceDesk(QObject):
+class FolderController(QObject):
     """Keeps what is chosen, and looks at what stands there.
 
     Signals
@@ -46,7 +46,7 @@ class PlaceDesk(QObject):
     placeChanged = Signal()  # noqa: N815
     stateChanged = Signal()  # noqa: N815
 
-    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self.choice, self.out = TrainChoice(), Path()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QCoreApplication
 
-from reconstruction.training.names import LAYERS, PICTURE
+from reconstruction.training.layers import LAYERS, PICTURE
 
 
 def layer_names() -> dict[str, str]:

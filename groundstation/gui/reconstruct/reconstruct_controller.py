@@ -9,8 +9,8 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from groundstation.gui.application.context import Workspace
-from groundstation.gui.reconstruct.folder_controller import PlaceDesk
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.reconstruct.folder_controller import FolderController
 from groundstation.services.reconstruct.curves import ThinCurve
 from groundstation.services.reconstruct.messages import (
     AskScene,
@@ -40,7 +40,7 @@ from planning.base.findings import Severity
 
 
 @dataclass(slots=True, eq=False)
-class TrainingInHand:
+class ActiveTraining:
     """A training.
 
     Parameters
@@ -96,7 +96,7 @@ class Phase(Enum):
 BUSY = frozenset({Phase.PREPARING, Phase.TRAINING, Phase.SETTLING, Phase.ENDING})
 
 
-class ReconstructDesk(PlaceDesk):
+class ReconstructController(FolderController):
     """Keeps what is known, and passes on what the user wants.
 
     Signals
@@ -117,23 +117,23 @@ class ReconstructDesk(PlaceDesk):
     seen = Signal(object)
     _came = Signal(object)
 
-    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(workspace, parent)
         self._process = ModelProcess(self._came.emit)
         self._came.connect(self._take)
         self.dataSetChanged.connect(self._forget_scene)
         self.cuda: tuple[str, ...] | None = None
         self.phase, self.is_paused = Phase.IDLE, False
-        self.training = TrainingInHand()
+        self.training = ActiveTraining()
         self.light, self.decisions = "", tuple[Decision, ...]()
         self.errors: dict[str, float] = {}
         self.errors_of: Subject | None = None
         workspace.count_as_busy(lambda: self.is_busy)
 
     @classmethod
-    def of(cls, workspace: Workspace) -> ReconstructDesk:
+    def of(cls, workspace: ApplicationContext) -> ReconstructController:
         """The one of a workspace: it stays when the window is made anew."""
-        found = workspace.findChild(ReconstructDesk)
+        found = workspace.findChild(ReconstructController)
         return cls(workspace, workspace) if found is None else found
 
     # What is known
@@ -162,7 +162,7 @@ class ReconstructDesk(PlaceDesk):
             return
         resume = self.standing.is_interrupted
         wish = self.choice.wish(known.limit_bytes if known.is_reduced else None)
-        self.training, self.is_paused = TrainingInHand(card.folder, self.out), False
+        self.training, self.is_paused = ActiveTraining(card.folder, self.out), False
         if not resume:
             self.light, self.decisions = "", ()
         self._to(Phase.PREPARING)

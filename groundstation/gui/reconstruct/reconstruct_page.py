@@ -1,4 +1,4 @@
-"""The Reconstruct tab's widgets put together: signals go to the desk, what it knows comes back here."""
+"""The Reconstruct tab's widgets put together: signals go to the controller, what it knows comes back here."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.reconstruct.choice_side import ChoiceSide
 from groundstation.gui.reconstruct.light_page import LightPage
 from groundstation.gui.reconstruct.machine_words import MachineWords
 from groundstation.gui.reconstruct.progress_page import ProgressPage
-from groundstation.gui.reconstruct.reconstruct_controller import Phase, ReconstructDesk
+from groundstation.gui.reconstruct.reconstruct_controller import Phase, ReconstructController
 from groundstation.gui.reconstruct.view_pane import ViewPane
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.widgets.questions import Questions, agrees
@@ -47,12 +47,16 @@ SIDE_PX, DETAIL_PX, LEAST_DETAIL_PX = 270, 340, 260
 class ReconstructPage(QObject):
     """The tab."""
 
-    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
         super().__init__(stage)
         self._workspace, self._stage = workspace, stage
-        self.desk, self.questions, self.asks = ReconstructDesk.of(workspace), Questions(), ReconstructQuestions()
+        self.controller, self.questions, self.asks = (
+            ReconstructController.of(workspace),
+            Questions(),
+            ReconstructQuestions(),
+        )
         self._words = MachineWords(self)
-        self.side, self.pane = ChoiceSide(self.desk, self._words), ViewPane(workspace, self.desk)
+        self.side, self.pane = ChoiceSide(self.controller, self._words), ViewPane(workspace, self.controller)
         self.progress, self.light = ProgressPage(), LightPage()
         self.machine = QWidget()
         self._machine_lines: list[QLabel] = []
@@ -61,8 +65,8 @@ class ReconstructPage(QObject):
         self.bottom: QWidget | None = None
         self._was_busy = False
         self._connect()
-        self.side.form.setValue(self.desk.choice)
-        self.light.setValue(self.desk.choice.light)
+        self.side.form.setValue(self.controller.choice)
+        self.light.setValue(self.controller.choice.light)
         self._units_changed(workspace.units)
         self._show_light()
         self._show_state()
@@ -71,11 +75,11 @@ class ReconstructPage(QObject):
 
     def shown(self) -> None:
         """Take the project's data set where none was chosen, and see what has changed on the disk."""
-        self.desk.warm_up()
-        folder = self.desk.usual_data_set()
-        if self.desk.card is None and folder is not None:
-            self.desk.read(folder)
-        self.desk.look_around()
+        self.controller.warm_up()
+        folder = self.controller.usual_data_set()
+        if self.controller.card is None and folder is not None:
+            self.controller.read(folder)
+        self.controller.look_around()
 
     def hidden(self) -> None:
         """A training goes on."""
@@ -115,83 +119,90 @@ class ReconstructPage(QObject):
         return self.details
 
     def _connect(self) -> None:
-        desk, side, workspace = self.desk, self.side, self._workspace
+        controller, side, workspace = self.controller, self.side, self._workspace
         side.choose.clicked.connect(self._choose_data_set)
         side.choose_out.clicked.connect(self._choose_out)
         side.form.valueChanged.connect(self._chosen)
-        side.train.clicked.connect(desk.train)
+        side.train.clicked.connect(controller.train)
         side.pause.clicked.connect(self._pause)
-        side.stop.clicked.connect(desk.stop)
-        side.break_off.clicked.connect(desk.break_off)
+        side.stop.clicked.connect(controller.stop)
+        side.break_off.clicked.connect(controller.break_off)
         self.light.valueChanged.connect(self._light_chosen)
-        self.light.asked.connect(desk.ask_scene)
-        desk.dataSetChanged.connect(self.pane.set_data_set)
-        desk.placeChanged.connect(self.pane.offer_models)
-        desk.stateChanged.connect(self._show_state)
-        desk.progressed.connect(self._show_progress)
-        desk.lightChanged.connect(self._show_light)
+        self.light.asked.connect(controller.ask_scene)
+        controller.dataSetChanged.connect(self.pane.set_data_set)
+        controller.placeChanged.connect(self.pane.offer_models)
+        controller.stateChanged.connect(self._show_state)
+        controller.progressed.connect(self._show_progress)
+        controller.lightChanged.connect(self._show_light)
         workspace.unitsChanged.connect(self._units_changed)
         self._stage.closing.connect(self._window_closing)
 
     # What the user does
 
     def _choose_data_set(self) -> None:
-        card = self.desk.card
+        card = self.controller.card
         places = (None if card is None else card.folder.parent, self._workspace.session.folder)
         folder = self.questions.folder(self._stage.window(), self.tr("Folder of a data set"), *places)
         if folder is not None:
-            self.desk.read(folder)
+            self.controller.read(folder)
 
     def _choose_out(self) -> None:
         folder = self.questions.new_folder(self._stage.window(), self.tr("Folder for the model"), self._proposed())
         if folder is not None:
-            self.desk.choose_out(folder)
+            self.controller.choose_out(folder)
 
     def _proposed(self) -> Path:
         """Where the model goes unless it is said otherwise."""
-        return self.desk.out if self.desk.out.name else Path.home() / self.tr("model")
+        return self.controller.out if self.controller.out.name else Path.home() / self.tr("model")
 
     def _chosen(self, choice: TrainChoice) -> None:
-        self.desk.choose(replace(choice, light=self.light.value()))
+        self.controller.choose(replace(choice, light=self.light.value()))
 
     def _light_chosen(self, light: str) -> None:
         self.side.form.set_light(light)
-        self.desk.choose(replace(self.desk.choice, light=light))
+        self.controller.choose(replace(self.controller.choice, light=light))
         self._show_light()
 
     def _pause(self) -> None:
-        self.desk.pause(not self.desk.is_paused)
+        self.controller.pause(not self.controller.is_paused)
 
     def _window_closing(self, event: QCloseEvent) -> None:
         if not event.isAccepted():
             return
-        if self.desk.is_busy and not self.asks.break_off(self._stage.window()):
+        if self.controller.is_busy and not self.asks.break_off(self._stage.window()):
             event.ignore()
             return
         self.pane.close_pictures()
-        self.desk.close()
+        self.controller.close()
 
     # What is shown
 
     def _show_state(self) -> None:
-        desk = self.desk
-        self.side.form.set_cuda(desk.cuda or ())
+        controller = self.controller
+        self.side.form.set_cuda(controller.cuda or ())
         self.side.show_state()
-        method = next(row for row in method_rows() if row.name == desk.choice.method)
-        is_idle = desk.phase is Phase.IDLE
-        self.light.set_possible(method, can_ask=is_idle and desk.card is not None, can_choose=is_idle)
+        method = next(row for row in method_rows() if row.name == controller.choice.method)
+        is_idle = controller.phase is Phase.IDLE
+        self.light.set_possible(method, can_ask=is_idle and controller.card is not None, can_choose=is_idle)
         self._show_machine()
-        if desk.is_busy and not self._was_busy:
+        if controller.is_busy and not self._was_busy:
             self.details.setCurrentWidget(self.progress)
             self.pane.show_training()
-        self._was_busy = desk.is_busy
+        self._was_busy = controller.is_busy
         self.pane.follow_training()
         self._show_progress()
 
     def _show_machine(self) -> None:
-        desk, layout = self.desk, self.machine.layout()
+        controller, layout = self.controller, self.machine.layout()
         assert isinstance(layout, QVBoxLayout)
-        told = self._words.told(desk.machine, desk.cuda, desk.choice, desk.card, desk.forecast(), desk.standing)
+        told = self._words.told(
+            controller.machine,
+            controller.cuda,
+            controller.choice,
+            controller.card,
+            controller.forecast(),
+            controller.standing,
+        )
         while len(self._machine_lines) < len(told):
             label = QLabel()
             label.setWordWrap(True)
@@ -206,17 +217,17 @@ class ReconstructPage(QObject):
                 label.style().polish(label)
 
     def _show_light(self) -> None:
-        desk = self.desk
-        self.light.show_decisions(desk.light, desk.decisions)
+        controller = self.controller
+        self.light.show_decisions(controller.light, controller.decisions)
 
     def _show_progress(self) -> None:
-        desk = self.desk
-        stage, stepped = desk.training.stage, desk.training.stepped
+        controller = self.controller
+        stage, stepped = controller.training.stage, controller.training.stepped
         words, share = "", None
-        if desk.phase is not Phase.IDLE and stage is not None:
+        if controller.phase is not Phase.IDLE and stage is not None:
             words = self._workspace.words(stage.stage)
             share = -1.0 if stage.total <= 0 else stage.done / stage.total
-        elif desk.phase is not Phase.IDLE:
+        elif controller.phase is not Phase.IDLE:
             words, share = self.tr("starting"), -1.0
         words = self._phase_words(words)
         numbers = ""
@@ -224,28 +235,28 @@ class ReconstructPage(QObject):
             numbers = self.tr("{0}, {1} steps, {2} splats").format(
                 minutes_text(stepped.seconds), stepped.step, stepped.n_splats
             )
-            if desk.training.quality.y:
-                numbers += self.tr("; {0:.2f} dB on facades of unseen views").format(desk.training.quality.y[-1])
+            if controller.training.quality.y:
+                numbers += self.tr("; {0:.2f} dB on facades of unseen views").format(controller.training.quality.y[-1])
         self.progress.set_state(words, share, numbers)
-        self.progress.set_curves(desk.training.quality, desk.training.terms)
+        self.progress.set_curves(controller.training.quality, controller.training.terms)
         self.pane.follow_training()
 
     def _phase_words(self, stage: str) -> str:
-        desk = self.desk
-        if desk.phase is Phase.ENDING:
+        controller = self.controller
+        if controller.phase is Phase.ENDING:
             return self.tr("Breaking off; the state is being kept ...")
-        if desk.phase is Phase.SETTLING and desk.training.stepped is None:
+        if controller.phase is Phase.SETTLING and controller.training.stepped is None:
             return self.tr("Stops as soon as there is a model: {0}").format(stage)
-        if desk.phase is Phase.SETTLING:
+        if controller.phase is Phase.SETTLING:
             return self.tr("Stopped: the rates fall, then the model is written.")
-        if desk.is_paused:
+        if controller.is_paused:
             return self.tr("Paused. The model can be looked at.")
-        if desk.phase is Phase.IDLE and desk.training.ended is not None:
+        if controller.phase is Phase.IDLE and controller.training.ended is not None:
             return {
                 "done": self.tr("The model is finished."),
                 "kept": self.tr("Broken off; the state is kept."),
                 "failed": self.tr("The training has failed; the message says why."),
-            }[desk.training.ended.outcome]
+            }[controller.training.ended.outcome]
         return stage[:1].upper() + stage[1:]
 
     def _units_changed(self, units: UnitSystem) -> None:

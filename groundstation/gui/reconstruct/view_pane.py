@@ -8,13 +8,13 @@ from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QSlider, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.reconstruct.error_strip import ErrorStrip
 from groundstation.gui.reconstruct.guided_camera import LedCamera
 from groundstation.gui.reconstruct.looks import Looks, View
 from groundstation.gui.reconstruct.model_view import ModelView
 from groundstation.gui.reconstruct.names import layer_names
-from groundstation.gui.reconstruct.reconstruct_controller import TRAINING, Phase, ReconstructDesk
+from groundstation.gui.reconstruct.reconstruct_controller import TRAINING, Phase, ReconstructController
 from groundstation.gui.widgets.inputs import ChoiceBox, calm
 from groundstation.gui.widgets.scrolling import WrappingRow, labelled
 from groundstation.gui.widgets.thumbnails import SmallPictures
@@ -23,8 +23,8 @@ from groundstation.services.reconstruct.guided_camera import sized
 from groundstation.services.reconstruct.messages import Seen, Subject
 from groundstation.services.units import UnitSystem, length_unit
 from reconstruction.base.cameras import PosedPhoto
+from reconstruction.training.layers import PICTURE
 from reconstruction.training.method_registry import METHODS
-from reconstruction.training.names import PICTURE
 
 # Above the picture: the layer that is shown, what it is compared with, and the way back to the photo.
 
@@ -123,16 +123,18 @@ ERRORS_MS = 200
 
 
 class ViewPane(QWidget):
-    """Looks at models of the desk's data set."""
+    """Looks at models of the controller's data set."""
 
-    def __init__(self, workspace: Workspace, desk: ReconstructDesk, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, workspace: ApplicationContext, controller: ReconstructController, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
-        self._workspace, self._desk = workspace, desk
+        self._workspace, self._controller = workspace, controller
         self.pictures = SmallPictures(self)
         self.bar, self.view, self.strip = ViewBar(), ModelView(), ErrorStrip(self.pictures)
         self.line, self.worst = QSlider(Qt.Orientation.Horizontal), QPushButton(self.tr("Worst first"))
         calm(self.line)
-        self.looks = Looks(desk.look, self._size_px, self)
+        self.looks = Looks(controller.look, self._size_px, self)
         self._photo: PosedPhoto | None = None
         self.led = LedCamera(self.view, self)
         self._images: dict[str, QImage | None] = {"left": None, "right": None}
@@ -161,10 +163,10 @@ class ViewPane(QWidget):
         self.pictures.close()
 
     def set_data_set(self) -> None:
-        """Show the desk's data set."""
-        card = self._desk.card
+        """Show the controller's data set."""
+        card = self._controller.card
         photos = () if card is None else card.source.photos
-        self.strip.set_photos(photos, self._desk.unseen())
+        self.strip.set_photos(photos, self._controller.unseen())
         self._photo = self.led.camera = None
         self.offer_models()
         self._show_errors()
@@ -175,10 +177,10 @@ class ViewPane(QWidget):
 
     def offer_models(self) -> None:
         """The models that there are now."""
-        desk = self._desk
-        own = self.tr("in training") if desk.is_busy else self.tr("trained last") if desk.has_model else ""
-        self._has_model = desk.has_model
-        self.bar.set_models(desk.others, own)
+        controller = self._controller
+        own = self.tr("in training") if controller.is_busy else self.tr("trained last") if controller.has_model else ""
+        self._has_model = controller.has_model
+        self.bar.set_models(controller.others, own)
         self.show_view()
 
     def show_training(self) -> None:
@@ -205,10 +207,10 @@ class ViewPane(QWidget):
 
     def follow_training(self) -> None:
         """The training has gone on."""
-        if self._has_model != self._desk.has_model:
+        if self._has_model != self._controller.has_model:
             self.show_training()
-        is_learning = self._desk.phase in (Phase.PREPARING, Phase.TRAINING, Phase.SETTLING)
-        self.looks.set_learning(is_learning and not self._desk.is_paused)
+        is_learning = self._controller.phase in (Phase.PREPARING, Phase.TRAINING, Phase.SETTLING)
+        self.looks.set_learning(is_learning and not self._controller.is_paused)
 
     # How it is put together
 
@@ -232,7 +234,7 @@ class ViewPane(QWidget):
         layout.addWidget(self.strip)
 
     def _connect(self) -> None:
-        view, desk = self.view, self._desk
+        view, controller = self.view, self._controller
         self.bar.valueChanged.connect(self._bar_changed)
         self.bar.homeAsked.connect(self._go_home)
         self.worst.toggled.connect(self.strip.set_worst_first)
@@ -243,14 +245,14 @@ class ViewPane(QWidget):
         view.valueChanged.connect(self._line_moved)
         self.line.valueChanged.connect(self._slider_moved)
         self.looks.pictureCame.connect(self._show_picture)
-        desk.seen.connect(self._take)
-        desk.errorsChanged.connect(self._errors_changed)
+        controller.seen.connect(self._take)
+        controller.errorsChanged.connect(self._errors_changed)
         self._judged.timeout.connect(self._show_errors)
 
     # What the user does
 
     def _choose_photo(self, name: str) -> None:
-        card = self._desk.card
+        card = self._controller.card
         photo = None if card is None else next((one for one in card.source.photos if one.name == name), None)
         if photo is not None and photo is not self._photo:
             self._photo = photo
@@ -268,8 +270,8 @@ class ViewPane(QWidget):
 
     def _bar_changed(self) -> None:
         subject = self._model()
-        if subject is not None and subject != self._desk.errors_of:
-            self._desk.watch_errors(subject)
+        if subject is not None and subject != self._controller.errors_of:
+            self._controller.watch_errors(subject)
         self.show_view()
 
     def _line_moved(self, value: float) -> None:
@@ -287,10 +289,10 @@ class ViewPane(QWidget):
         folder = self.bar.value()[0]
         if folder:
             return Subject("model", Path(folder))
-        return TRAINING if self._desk.has_model else None
+        return TRAINING if self._controller.has_model else None
 
     def _subjects(self) -> tuple[Subject | None, Subject | None]:
-        left, compare, card = self._model(), self.bar.value()[2], self._desk.card
+        left, compare, card = self._model(), self.bar.value()[2], self._controller.card
         photo = None
         if card is not None and self._photo is not None and self._is_at_home:
             photo = Subject("photo", card.folder, self._photo.name)
@@ -331,7 +333,7 @@ class ViewPane(QWidget):
         if subject.kind == "photo":
             return self.tr("photo")
         words = self.bar.title("" if subject.kind == "training" else str(subject.folder))
-        stepped = self._desk.training.stepped
+        stepped = self._controller.training.stepped
         if subject.kind == "training" and stepped is not None:
             words = self.tr("step {0}").format(stepped.step)
         if self._scale is None or self.bar.value()[1] == PICTURE:
@@ -343,7 +345,7 @@ class ViewPane(QWidget):
         return self.tr("{0}: violet {1}, yellow {2}").format(words, f"{low:g}", f"{high:g}")
 
     def _note(self, left: Subject | None) -> str:
-        if self._desk.card is None:
+        if self._controller.card is None:
             return self.tr("Choose a data set, or make one of the flight's photos on the Photos tab.")
         if left is None:
             return self.tr("A photo of the data set. The model is shown here once it learns.")
@@ -358,7 +360,7 @@ class ViewPane(QWidget):
             self._judged.start()
 
     def _show_errors(self) -> None:
-        self.strip.set_errors(self._desk.errors)
+        self.strip.set_errors(self._controller.errors)
 
     def _size_px(self) -> tuple[int, int]:
         return max(16, self.view.width()), max(12, self.view.height())

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from PySide6.QtCore import QDate, QDateTime, QTime
 from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.shared_view import StagePage
-from groundstation.gui.window.project_controller import Desk
+from groundstation.gui.shared_view import SharedViewPage
+from groundstation.gui.window.project_controller import ProjectController
 
 Take = Callable[[str, QWidget | None], None]
 Wait = Callable[[], None]
@@ -16,7 +16,7 @@ Wait = Callable[[], None]
 MORNING = QDateTime(QDate(2026, 6, 21), QTime(9, 0))
 
 
-def rendered_photo(desk: Desk, name: str, take: Take, wait_until_idle: Wait) -> None:
+def rendered_photo(controller: ProjectController, name: str, take: Take, wait_until_idle: Wait) -> None:
     """A picture of the selected viewpoint's photo with the panels' outlines; the stage shows the scene again after it.
 
     Parameters
@@ -26,25 +26,25 @@ def rendered_photo(desk: Desk, name: str, take: Take, wait_until_idle: Wait) -> 
     wait_until_idle
         Returns once no job runs.
     """
-    stage = desk.window.stage
-    stage.show_page(StagePage.CAMERA)
+    stage = controller.window.stage
+    stage.show_page(SharedViewPage.CAMERA)
     box = stage.camera_page().box
     box.photo.click()
     box.outlines.setChecked(True)
-    while not stage.photo_desk.is_at_rest():
+    while not stage.photo_controller.is_at_rest():
         wait_until_idle()
     take(name, None)
     box.outlines.setChecked(False)
     box.lines.click()
-    stage.show_page(StagePage.SCENE)
+    stage.show_page(SharedViewPage.SCENE)
 
 
-def camera_states(desk: Desk, take: Take, wait_until_idle: Wait) -> None:
+def camera_states(controller: ProjectController, take: Take, wait_until_idle: Wait) -> None:
     """Drive the camera preview through its states; a viewpoint is selected."""
-    stage = desk.window.stage
-    rendered_photo(desk, "plan-photo-outlines", take, wait_until_idle)
-    stage.show_page(StagePage.CAMERA)
-    box, photos = stage.camera_page().box, stage.photo_desk
+    stage = controller.window.stage
+    rendered_photo(controller, "plan-photo-outlines", take, wait_until_idle)
+    stage.show_page(SharedViewPage.CAMERA)
+    box, photos = stage.camera_page().box, stage.photo_controller
 
     def rest() -> None:
         while not photos.is_at_rest():
@@ -64,4 +64,4 @@ def camera_states(desk: Desk, take: Take, wait_until_idle: Wait) -> None:
     take("plan-photo-by-time", None)
     box.light.setValue(usual)
     box.lines.click()
-    stage.show_page(StagePage.SCENE)
+    stage.show_page(SharedViewPage.SCENE)

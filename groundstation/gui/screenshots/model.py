@@ -7,7 +7,7 @@ from datetime import date, timedelta
 from pathlib import Path
 
 from groundstation.gui.model.model_page import ModelPage
-from groundstation.gui.window.project_controller import Desk
+from groundstation.gui.window.project_controller import ProjectController
 from groundstation.services.model.panel_colours import Computed
 from groundstation.services.settings import Language, Theme
 from reconstruction.records.entries import Attribute, Defect, Inspection
@@ -23,7 +23,7 @@ Take = Callable[[str], None]
 WaitFor = Callable[[Callable[[], bool]], None]
 
 
-def model_states(desk: Desk, model: Path, take: Take, wait_for: WaitFor) -> None:
+def model_states(controller: ProjectController, model: Path, take: Take, wait_for: WaitFor) -> None:
     """Drive the Model tab through its states.
 
     Parameters
@@ -37,23 +37,23 @@ def model_states(desk: Desk, model: Path, take: Take, wait_for: WaitFor) -> None
     """
 
     def page() -> ModelPage:
-        tab = desk.window.tab("model")
+        tab = controller.window.tab("model")
         assert isinstance(tab, ModelPage)
         return tab
 
     def rest() -> None:
-        wait_for(lambda: page().pane.looks.is_at_rest() and not desk.workspace.jobs())
+        wait_for(lambda: page().pane.looks.is_at_rest() and not controller.workspace.jobs())
 
-    desk.window.show_tab("model")
+    controller.window.show_tab("model")
     take("model-empty")
-    page().desk.open(model)
-    wait_for(lambda: page().desk.card is not None)
+    page().controller.open(model)
+    wait_for(lambda: page().controller.card is not None)
     rest()
     take("model-open")
     _write_records(page())
-    card = page().desk.card
+    card = page().controller.card
     assert card is not None
-    page().desk.select(card.panels[int(CHOSEN * len(card.panels))].global_id)
+    page().controller.select(card.panels[int(CHOSEN * len(card.panels))].global_id)
     page().side.colour.setCurrentIndex(page().side.colour.findData(str(Computed.INSPECTED)))
     rest()
     take("model-inspections")
@@ -72,17 +72,17 @@ def model_states(desk: Desk, model: Path, take: Take, wait_for: WaitFor) -> None
         ("sunlight", {"theme": Theme.SUNLIGHT}),
         ("german", {"theme": Theme.LIGHT, "language": Language.GERMAN}),
     ):
-        desk.choose(**changes)
-        desk.window.show_tab("model")
+        controller.choose(**changes)
+        controller.window.show_tab("model")
         page().side.colour.setCurrentIndex(page().side.colour.findData(str(Computed.INSPECTED)))
         rest()
         take(f"{name}-model")
-    desk.choose(language=Language.ENGLISH)
+    controller.choose(language=Language.ENGLISH)
 
 
 def _write_records(page: ModelPage) -> None:
     """Inspections of most panels, and some of all else for the one that is chosen."""
-    card = page.desk.card
+    card = page.controller.card
     assert card is not None
     chosen = int(CHOSEN * len(card.panels))
     entries: list[Inspection | Defect | Attribute] = []
@@ -97,4 +97,4 @@ def _write_records(page: ModelPage) -> None:
         Attribute(global_id, "installed_on", "2011-09-01", "date"),
         Defect(global_id, "crack", 3, "2026-05-04", 0.2, 0.7, note="from the left edge, 12 cm"),
     ]
-    page.desk.put_all(entries)
+    page.controller.put_all(entries)

@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from groundstation.gui.photos.photos_page import PhotosPage
-from groundstation.gui.window.project_controller import Desk
+from groundstation.gui.window.project_controller import ProjectController
 from groundstation.services.photos.synthetic_flight import write_made_flight
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.settings import Language, Theme
@@ -19,7 +19,7 @@ Take = Callable[[str], None]
 Wait = Callable[[], None]
 
 
-def photo_states(desk: Desk, scratch: Path, take: Take, wait_until_idle: Wait) -> None:
+def photo_states(controller: ProjectController, scratch: Path, take: Take, wait_until_idle: Wait) -> None:
     """Drive the Photos tab through its states.
 
     Parameters
@@ -43,29 +43,29 @@ def photo_states(desk: Desk, scratch: Path, take: Take, wait_until_idle: Wait) -
             wait_until_idle()
 
     def page() -> PhotosPage:
-        tab = desk.window.tab("photos")
+        tab = controller.window.tab("photos")
         assert isinstance(tab, PhotosPage)
         return tab
 
-    desk.open_path(site)
+    controller.open_path(site)
     wait_until_idle()
-    desk.window.show_tab("photos")
-    page().desk.read(photos)
+    controller.window.show_tab("photos")
+    page().controller.read(photos)
     rest()
-    page().strip.choose(len(page().desk.cards) - 1)
+    page().strip.choose(len(page().controller.cards) - 1)
     rest()
     take("photos-read")
-    model = desk.workspace.document.site
+    model = controller.workspace.document.site
     assert model is not None
-    desk.workspace.select(Item(ItemKind.PANEL, model.site.panels[len(model.site.panels) // 2].id))
+    controller.workspace.select(Item(ItemKind.PANEL, model.site.panels[len(model.site.panels) // 2].id))
     page().pane.coverage.click()
     rest()
     take("photos-coverage")
     page().pane.photo.click()
     page().details.setCurrentIndex(0)
-    page().desk.find()
+    page().controller.find()
     rest()
-    page().strip.choose(len(page().desk.cards) - 1)
+    page().strip.choose(len(page().controller.cards) - 1)
     rest()
     take("photos-known")
     page().strip.choose(0)
@@ -82,19 +82,19 @@ def photo_states(desk: Desk, scratch: Path, take: Take, wait_until_idle: Wait) -
         ("feet", {"theme": Theme.LIGHT, "units": UnitSystem.IMPERIAL}),
         ("german", {"units": UnitSystem.METRIC, "language": Language.GERMAN}),
     ):
-        desk.choose(**changes)
-        desk.window.show_tab("photos")
+        controller.choose(**changes)
+        controller.window.show_tab("photos")
         rest()
         _choose_line(page())
         take(f"{name}-photos")
     page().pane.coverage.click()
     rest()
     take("german-photos-coverage")
-    desk.choose(language=Language.ENGLISH)
-    desk.window.show_tab("photos")
+    controller.choose(language=Language.ENGLISH)
+    controller.window.show_tab("photos")
     page().use.click()
     wait_until_idle()
-    desk.workspace.select(Item(ItemKind.PANEL, desk.workspace.document.site.site.panels[0].id))
+    controller.workspace.select(Item(ItemKind.PANEL, controller.workspace.document.site.site.panels[0].id))
     take("photos-used")
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from groundstation.gui.reconstruct.reconstruct_controller import Phase
 from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
-from groundstation.gui.window.project_controller import Desk
+from groundstation.gui.window.project_controller import ProjectController
 from groundstation.services.reconstruct.choices import TrainChoice
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
@@ -25,7 +25,7 @@ Take = Callable[[str], None]
 WaitFor = Callable[[Callable[[], bool]], None]
 
 
-def reconstruct_states(desk: Desk, scratch: Path, take: Take, wait_for: WaitFor) -> Path:
+def reconstruct_states(controller: ProjectController, scratch: Path, take: Take, wait_for: WaitFor) -> Path:
     """Drive the Reconstruct tab through its states; returns the folder of the model that was trained.
 
     Parameters
@@ -40,38 +40,38 @@ def reconstruct_states(desk: Desk, scratch: Path, take: Take, wait_for: WaitFor)
     photos = scratch / "planar.photos"
     if not (photos / "dataset.json").exists():
         _render(photos)
-    out = scratch / f"planar-{desk.window.width()}.model"
+    out = scratch / f"planar-{controller.window.width()}.model"
 
     def page() -> ReconstructPage:
-        tab = desk.window.tab("reconstruct")
+        tab = controller.window.tab("reconstruct")
         assert isinstance(tab, ReconstructPage)
         return tab
 
     def rest() -> None:
         wait_for(lambda: page().pane.looks.is_at_rest() and not page().pane.pictures.is_busy())
-        wait_for(lambda: not desk.workspace.jobs())
+        wait_for(lambda: not controller.workspace.jobs())
 
-    desk.window.show_tab("reconstruct")
-    page().desk.read(photos)
-    wait_for(lambda: page().desk.card is not None and page().desk.cuda is not None)
+    controller.window.show_tab("reconstruct")
+    page().controller.read(photos)
+    wait_for(lambda: page().controller.card is not None and page().controller.cuda is not None)
     choice = TrainChoice(minutes=MINUTES)
     page().side.form.setValue(choice)
-    page().desk.choose(choice)
-    page().desk.choose_out(out)
+    page().controller.choose(choice)
+    page().controller.choose_out(out)
     rest()
     take("reconstruct-chosen")
     page().side.train.click()
-    wait_for(lambda: page().desk.training.stage is not None)
+    wait_for(lambda: page().controller.training.stage is not None)
     take("reconstruct-preparing")
-    wait_for(lambda: _steps(page()) >= STEPS and len(page().desk.training.quality.y) >= MEASURED)
+    wait_for(lambda: _steps(page()) >= STEPS and len(page().controller.training.quality.y) >= MEASURED)
     page().side.pause.click()
     rest()
     take("reconstruct-training")
     _layers(page(), rest, take)
-    _looks(desk, page, rest, take)
+    _looks(controller, page, rest, take)
     page().side.pause.click()
     page().side.stop.click()
-    wait_for(lambda: page().desk.phase is Phase.IDLE)
+    wait_for(lambda: page().controller.phase is Phase.IDLE)
     page().pane.worst.click()
     page().details.setCurrentIndex(2)
     rest()
@@ -81,13 +81,13 @@ def reconstruct_states(desk: Desk, scratch: Path, take: Take, wait_for: WaitFor)
 
 def _render(photos: Path) -> None:
     """Photos of a bundled scene. Rendering is loaded by its name only: it is no part of the window."""
-    wish = import_module("groundstation.services.scenes.views").SceneWish
+    wish = import_module("groundstation.services.scenes.views").SceneRequest
     render = import_module("groundstation.services.scenes.photos").photograph_files
     render(wish("planar", n_views=N_VIEWS, width_px=WIDTH_PX), photos)
 
 
 def _steps(page: ReconstructPage) -> int:
-    stepped = page.desk.training.stepped
+    stepped = page.controller.training.stepped
     return 0 if stepped is None else stepped.step
 
 
@@ -108,7 +108,9 @@ def _layers(page: ReconstructPage, rest: Callable[[], None], take: Take) -> None
     rest()
 
 
-def _looks(desk: Desk, page: Callable[[], ReconstructPage], rest: Callable[[], None], take: Take) -> None:
+def _looks(
+    controller: ProjectController, page: Callable[[], ReconstructPage], rest: Callable[[], None], take: Take
+) -> None:
     """The same in other looks and another language."""
     for name, changes in (
         ("dark", {"theme": Theme.DARK}),
@@ -116,13 +118,13 @@ def _looks(desk: Desk, page: Callable[[], ReconstructPage], rest: Callable[[], N
         ("feet", {"theme": Theme.LIGHT, "units": UnitSystem.IMPERIAL}),
         ("german", {"units": UnitSystem.METRIC, "language": Language.GERMAN}),
     ):
-        desk.choose(**changes)
-        desk.window.show_tab("reconstruct")
+        controller.choose(**changes)
+        controller.window.show_tab("reconstruct")
         page().pane.bar.setValue("", "depth" if name == "feet" else "picture", "photo")
         rest()
         take(f"{name}-reconstruct")
         page().details.setCurrentIndex(0)
         take(f"{name}-reconstruct-computer")
-    desk.choose(language=Language.ENGLISH)
-    desk.window.show_tab("reconstruct")
+    controller.choose(language=Language.ENGLISH)
+    controller.window.show_tab("reconstruct")
     rest()

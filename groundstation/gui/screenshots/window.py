@@ -1,7 +1,7 @@
 """Pictures of the real window in every tab and state, for the README and for looking at: `app.py --screenshots DIR`.
 
-The window is driven as a user drives it, through its own widgets and desk; files are read and written in a folder that
-goes away afterwards, settings too.
+The window is driven as a user drives it, through its own widgets and controller; files are read and written in a folder
+that goes away afterwards, settings too.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.screenshots.camera import camera_states, rendered_photo
-from groundstation.gui.shared_view import StagePage
+from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.widgets.questions import Answer, Questions
-from groundstation.gui.window.project_controller import Desk
+from groundstation.gui.window.project_controller import ProjectController
 from groundstation.services.fly.sortie import TakeOff
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.settings import CONFIG_VARIABLE, Language, Theme
@@ -110,17 +110,17 @@ class _Photographer(QObject):
         super().__init__()
         self._application, self._folder, self._scratch = application, folder, scratch
         self._site = write_scene("library", scratch) if site is None else site
-        self._desk = Desk(application, _NoQuestions())
+        self._controller = ProjectController(application, _NoQuestions())
         self._size_px = size_px
         self._n_pictures = 0
 
     def run(self) -> int:
         """All pictures; returns their number."""
-        desk = self._desk
-        desk.show()
-        desk.window.setGeometry(0, 0, *self._size_px)
-        self._wait_for(lambda: desk.window.stage.scene() is not None)
-        desk.choose(theme=Theme.LIGHT, language=Language.ENGLISH)
+        controller = self._controller
+        controller.show()
+        controller.window.setGeometry(0, 0, *self._size_px)
+        self._wait_for(lambda: controller.window.stage.scene() is not None)
+        controller.choose(theme=Theme.LIGHT, language=Language.ENGLISH)
         self._empty()
         self._site_states()
         self._planning()
@@ -132,21 +132,21 @@ class _Photographer(QObject):
         self._looks()
         self._photos()
         self._reconstruct()
-        desk.window.close()
-        desk.close()
+        controller.window.close()
+        controller.close()
         return self._n_pictures
 
     # States
 
     def _empty(self) -> None:
-        for name in self._desk.window.tab_names():
-            self._desk.window.show_tab(name)
+        for name in self._controller.window.tab_names():
+            self._controller.window.show_tab(name)
             self._take(f"empty-{name}")
 
     def _site_states(self) -> None:
-        window, workspace = self._desk.window, self._desk.workspace
+        window, workspace = self._controller.window, self._controller.workspace
         window.show_tab("site")
-        self._desk.open_path(self._site)
+        self._controller.open_path(self._site)
         self._wait_until_idle()
         self._take("site")
         site = workspace.document.site
@@ -162,26 +162,26 @@ class _Photographer(QObject):
         workspace.select(None)
 
     def _planning(self) -> None:
-        window, workspace = self._desk.window, self._desk.workspace
+        window, workspace = self._controller.window, self._controller.workspace
         window.show_tab("plan")
         page = window.tab("plan")
         self._take("plan-nothing-yet")
-        page.desk.set_request(PlanRequest(n_views=80, time_budget_s=12.0))  # type: ignore[attr-defined]
-        page.desk.plan()  # type: ignore[attr-defined]
+        page.controller.set_request(PlanRequest(n_views=80, time_budget_s=12.0))  # type: ignore[attr-defined]
+        page.controller.plan()  # type: ignore[attr-defined]
         self._wait_for(lambda: "sections" in page.chart.text())  # type: ignore[attr-defined]
         self._take("plan-running")
         self._wait_until_idle()
         self._take("plan-planned")
-        page.desk.set_request(PlanRequest(method="noto", share=0.9, time_budget_s=6.0))  # type: ignore[attr-defined]
-        page.desk.plan()  # type: ignore[attr-defined]
+        page.controller.set_request(PlanRequest(method="noto", share=0.9, time_budget_s=6.0))  # type: ignore[attr-defined]
+        page.controller.plan()  # type: ignore[attr-defined]
         self._wait_until_idle()
-        page.desk.choose(workspace.document.plans[0].id)  # type: ignore[attr-defined]
+        page.controller.choose(workspace.document.plans[0].id)  # type: ignore[attr-defined]
         self._wait_until_idle()
 
     def _planned(self) -> None:
         from groundstation.gui.plan.paint_bar import PanelPaint, RoutePaint
 
-        workspace, page = self._desk.workspace, self._desk.window.tab("plan")
+        workspace, page = self._controller.workspace, self._controller.window.tab("plan")
         site = workspace.document.site
         assert site is not None
         lists, paint = page.lists, page.paint  # type: ignore[attr-defined]
@@ -210,27 +210,31 @@ class _Photographer(QObject):
     def _by_hand(self) -> None:
         from dataclasses import replace
 
-        window, workspace, page = self._desk.window, self._desk.workspace, self._desk.window.tab("plan")
+        window, workspace, page = (
+            self._controller.window,
+            self._controller.workspace,
+            self._controller.window.tab("plan"),
+        )
         entry = workspace.document.current
         assert entry is not None
         viewpoint = entry.plan.viewpoints[len(entry.plan.viewpoints) // 2]
         workspace.jump_to(Item(ItemKind.VIEWPOINT, viewpoint.id))
         self._take("plan-viewpoint")
-        window.stage.show_page(StagePage.CAMERA)
+        window.stage.show_page(SharedViewPage.CAMERA)
         self._take("plan-camera")
-        camera_states(self._desk, self._take, self._wait_until_idle)
-        window.stage.show_page(StagePage.SCENE)
+        camera_states(self._controller, self._take, self._wait_until_idle)
+        window.stage.show_page(SharedViewPage.SCENE)
         site = workspace.document.site
         assert site is not None
         panel = site.site.panels[len(site.site.panels) // 2].corners_enu_m[0]
-        page.desk.set_viewpoint(  # type: ignore[attr-defined]
+        page.controller.set_viewpoint(  # type: ignore[attr-defined]
             replace(viewpoint, position_enu_m=(panel[0], panel[1] - 3.0, panel[2]))
         )
         self._wait_until_idle()
         self._take("plan-finding")
 
     def _mission(self) -> None:
-        window, workspace = self._desk.window, self._desk.workspace
+        window, workspace = self._controller.window, self._controller.workspace
         window.show_tab("mission")
         self._wait_until_idle()
         self._take("mission-finding")
@@ -242,9 +246,9 @@ class _Photographer(QObject):
             bottom.setCurrentIndex(page)  # type: ignore[union-attr]
             self._wait_until_idle()
             self._take(f"mission-{page + 1}")
-        window.stage.show_page(StagePage.MAP)
+        window.stage.show_page(SharedViewPage.MAP)
         self._take("mission-map")
-        window.stage.show_page(StagePage.SCENE)
+        window.stage.show_page(SharedViewPage.SCENE)
 
     def _fly(self) -> None:
         """A simulated flight that is broken off, from connecting to the top-up that closes what it missed."""
@@ -252,28 +256,28 @@ class _Photographer(QObject):
         from groundstation.services.fly.events import Request
         from groundstation.services.fly.link_choice import ConnectionChoice
 
-        window = self._desk.window
+        window = self._controller.window
         window.show_tab("fly")
         page = window.tab("fly")
         assert isinstance(page, FlyPage)
         page.questions = _ReadyToFly()
-        self._desk.workspace.select(None)
+        self._controller.workspace.select(None)
         scene = window.stage.scene()
         assert scene is not None
         scene.look_at_all()
         self._wait_until_idle()
         self._take("fly-disconnected")
-        page.desk.set_choice(ConnectionChoice(speed_up=FLY_SPEED_UP))
-        page.desk.connect_vehicle()
+        page.controller.set_choice(ConnectionChoice(speed_up=FLY_SPEED_UP))
+        page.controller.connect_vehicle()
         for request, name in ((Request.UPLOAD, "fly-connected"), (Request.START, "fly-ready")):
             button = page.buttons.button(request)
             self._wait_for(button.isEnabled)
             self._take(name)
             button.click()
         self._wait_for(lambda: page.n_photos() >= FLY_PHOTOS // 2)
-        window.stage.show_page(StagePage.MAP)
+        window.stage.show_page(SharedViewPage.MAP)
         self._take("fly-map")
-        window.stage.show_page(StagePage.SCENE)
+        window.stage.show_page(SharedViewPage.SCENE)
         self._wait_for(lambda: page.n_photos() >= FLY_PHOTOS)
         page.buttons.button(Request.PAUSE).click()
         self._wait_for(page.buttons.button(Request.RESUME).isEnabled)
@@ -283,55 +287,55 @@ class _Photographer(QObject):
         page.buttons.button(Request.RETURN).click()
         self._wait_for(lambda: page.report.top_up.isEnabled())
         self._take("fly-report")
-        page.desk.disconnect_vehicle()
-        self._wait_for(lambda: not page.desk.is_connected)
+        page.controller.disconnect_vehicle()
+        self._wait_for(lambda: not page.controller.is_connected)
 
     def _error(self) -> None:
         damaged = self._scratch / "damaged"
         damaged.mkdir(exist_ok=True)
         (damaged / "project.json").write_text('{"format": "reflight-project/2", "name": ')
-        self._desk.window.show_tab("site")
-        self._desk.open_folder(damaged)
+        self._controller.window.show_tab("site")
+        self._controller.open_folder(damaged)
         self._wait_until_idle()
         self._take("error")
 
     def _looks(self) -> None:
-        desk = self._desk
+        controller = self._controller
         for name, changes in (
             ("dark", {"theme": Theme.DARK}),
             ("sunlight", {"theme": Theme.SUNLIGHT}),
             ("feet", {"theme": Theme.LIGHT, "units": UnitSystem.IMPERIAL}),
             ("german", {"units": UnitSystem.METRIC, "language": Language.GERMAN}),
         ):
-            desk.choose(**changes)
-            self._wait_for(lambda: desk.window.stage.scene() is not None)
+            controller.choose(**changes)
+            self._wait_for(lambda: controller.window.stage.scene() is not None)
             for tab in ("site", "plan", "mission", "fly"):
-                desk.window.show_tab(tab)
+                controller.window.show_tab(tab)
                 self._wait_until_idle()
                 self._take(f"{name}-{tab}")
-            desk.window.show_tab("plan")
-            rendered_photo(desk, f"{name}-photo", self._take, self._wait_until_idle)
-        desk.choose(language=Language.ENGLISH)
+            controller.window.show_tab("plan")
+            rendered_photo(controller, f"{name}-photo", self._take, self._wait_until_idle)
+        controller.choose(language=Language.ENGLISH)
 
     def _photos(self) -> None:
         from groundstation.gui.screenshots.photos import photo_states
 
-        photo_states(self._desk, self._scratch, self._take, self._wait_until_idle)
+        photo_states(self._controller, self._scratch, self._take, self._wait_until_idle)
 
     # The camera
 
     def _reconstruct(self) -> None:
         from groundstation.gui.screenshots.reconstruct import reconstruct_states
 
-        model = reconstruct_states(self._desk, self._scratch, self._take, self._wait_for)
+        model = reconstruct_states(self._controller, self._scratch, self._take, self._wait_for)
         from groundstation.gui.screenshots.model import model_states
 
-        model_states(self._desk, model, self._take, self._wait_for)
+        model_states(self._controller, model, self._take, self._wait_for)
 
     def _take(self, name: str, widget: QWidget | None = None, rest_ms: int = SETTLE_MS) -> None:
         self._rest(rest_ms)
         path = self._folder / f"{name}.png"
-        if not (self._desk.window if widget is None else widget).grab().save(str(path)):
+        if not (self._controller.window if widget is None else widget).grab().save(str(path)):
             raise InputError(f"{path}: the picture cannot be written")
         self._n_pictures += 1
 
@@ -341,10 +345,10 @@ class _Photographer(QObject):
         loop.exec()
 
     def _wait_until_idle(self) -> None:
-        self._wait_for(lambda: not self._desk.workspace.jobs())
+        self._wait_for(lambda: not self._controller.workspace.jobs())
         # A job's end can start the next one a little later.
         self._rest(SETTLE_MS)
-        self._wait_for(lambda: not self._desk.workspace.jobs())
+        self._wait_for(lambda: not self._controller.workspace.jobs())
 
     def _wait_for(self, condition: Callable[[], bool]) -> None:
         end_s = time.monotonic() + TIMEOUT_S

@@ -23,7 +23,7 @@ MAX_GAP_M = 20.0
 
 
 @dataclass(frozen=True, slots=True)
-class GridWish:
+class GridRequest:
     """A grid as it is wanted; `rectangle_enu_m` is None until it was picked."""
 
     rectangle_enu_m: Rectangle | None = None
@@ -34,11 +34,11 @@ class GridWish:
 
 
 class GridForm(QWidget):
-    """Edits one `GridWish`.
+    """Edits one `GridRequest`.
 
     Signals
     -------
-    valueChanged(GridWish)
+    valueChanged(GridRequest)
     pickAsked(), accepted(), cancelled()
         The user wants to pick the rectangle in the view, to keep the grid, to give it up.
     """
@@ -68,7 +68,7 @@ class GridForm(QWidget):
         self._pick.clicked.connect(self.pickAsked)
         self._accept.clicked.connect(self.accepted)
         self._cancel.clicked.connect(self.cancelled)
-        self.setValue(GridWish())
+        self.setValue(GridRequest())
 
     def _lay_out(self) -> None:
         self._size.setWordWrap(True)
@@ -97,17 +97,17 @@ class GridForm(QWidget):
         layout.addLayout(buttons)
         layout.addWidget(self._corner_rows)
 
-    def value(self) -> GridWish:
+    def value(self) -> GridRequest:
         """The grid as it is wanted."""
         rectangle: Rectangle | None = None
         if self._has_rectangle:
             a, b, c = (box.value() for box in self._corners)
             rectangle = (a, b, c)
-        return GridWish(
+        return GridRequest(
             rectangle, self._rows.value(), self._columns.value(), self._gap.value(), self._tolerance.value()
         )
 
-    def setValue(self, wish: GridWish) -> None:  # noqa: N802
+    def setValue(self, wish: GridRequest) -> None:  # noqa: N802
         """Show a wish."""
         for box, count in ((self._rows, wish.n_rows), (self._columns, wish.n_columns)):
             box.blockSignals(True)
@@ -124,7 +124,7 @@ class GridForm(QWidget):
     def set_rectangle(self, rectangle_enu_m: Rectangle) -> None:
         """Take over what was picked."""
         self.setValue(
-            GridWish(
+            GridRequest(
                 rectangle_enu_m, self._rows.value(), self._columns.value(), self._gap.value(), self._tolerance.value()
             )
         )

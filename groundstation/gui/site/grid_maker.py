@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.shared_view import Stage
-from groundstation.gui.site.grid_form import GridForm, GridWish
+from groundstation.gui.site.grid_form import GridForm, GridRequest
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.site.site_tools import SiteTool, SiteTools
 from groundstation.services.project.document import Document, Item, ItemKind
@@ -19,7 +19,7 @@ from planning.site.records import SiteModel
 CHECK_AFTER_MS = 200
 
 
-def checked_grid(model: SiteModel, wish: GridWish) -> AddedGrid | InputError:
+def checked_grid(model: SiteModel, wish: GridRequest) -> AddedGrid | InputError:
     """The site with the grid that is wanted, or why it cannot be: an answer for the form, not a failure of a job."""
     if wish.rectangle_enu_m is None:
         raise ValueError("rectangle_enu_m: expected a rectangle that was picked")
@@ -41,7 +41,7 @@ class GridMaker(QObject):
     activeChanged = Signal(bool)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(
-        self, workspace: Workspace, stage: Stage, editor: SiteEditor, tools: SiteTools, form: GridForm
+        self, workspace: ApplicationContext, stage: Stage, editor: SiteEditor, tools: SiteTools, form: GridForm
     ) -> None:
         super().__init__(form)
         self._workspace, self._stage, self._editor = workspace, stage, editor
@@ -64,7 +64,7 @@ class GridMaker(QObject):
     def begin(self) -> None:
         """Show the form."""
         if self._form.isHidden():
-            self._form.setValue(GridWish())
+            self._form.setValue(GridRequest())
             self._form.show()
             self.activeChanged.emit(True)
 
@@ -87,7 +87,7 @@ class GridMaker(QObject):
     def _picked(self, rectangle: Rectangle) -> None:
         self._form.set_rectangle(rectangle)
 
-    def _changed(self, wish: GridWish) -> None:
+    def _changed(self, wish: GridRequest) -> None:
         self._tools.set_grid(wish.n_rows, wish.n_columns)
         if wish.rectangle_enu_m is not None:
             self._form.show_state(self.tr("Checking ..."), is_good=False)

@@ -22,8 +22,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Workspace
-from groundstation.gui.site.grid_form import GridForm, GridWish
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.site.grid_form import GridForm, GridRequest
 from groundstation.gui.site.origin_box import OriginBox
 from groundstation.gui.site.site_tree import size_text
 from groundstation.gui.view3d.drawing_tools import PickedRectangle, RectangleTool
@@ -281,7 +281,7 @@ class ImportDialog(QDialog):
 
     imported = Signal(object)
 
-    def __init__(self, workspace: Workspace, path: Path, parent: QWidget | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, path: Path, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._workspace, self._path = workspace, path
         self._job: Job[ImportPreview | InputError] | None = None
@@ -455,7 +455,7 @@ class ImportDialog(QDialog):
     def _picked(self, picked: PickedRectangle) -> None:
         self.grid.set_rectangle((picked.lower_left_enu_m, picked.lower_right_enu_m, picked.upper_left_enu_m))
 
-    def _check_grid(self, wish: GridWish) -> None:
+    def _check_grid(self, wish: GridRequest) -> None:
         preview, rectangle = self._preview, wish.rectangle_enu_m
         tool = self.scene.tool()
         if isinstance(tool, RectangleTool):
@@ -504,7 +504,7 @@ def _without_grids(preview: ImportPreview) -> ImportOptions:
     return replace(preview.options, panel_grids=(), grid_tolerance_m=0.0)
 
 
-def _grid_notes(preview: ImportPreview, rectangle: Rectangle, wish: GridWish) -> PanelGridError | tuple[str, ...]:
+def _grid_notes(preview: ImportPreview, rectangle: Rectangle, wish: GridRequest) -> PanelGridError | tuple[str, ...]:
     """What is worth knowing about a grid on the building that is looked at, or why it cannot be."""
     counts = (wish.n_rows, wish.n_columns)
     try:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.site.item_pages import FacadePage, ItemPage, NoFlyPage, ObstaclePage, PanelPage, RallyPage
 from groundstation.gui.site.pages import SITE, AirspacePage, Edit, HomePage, Page, SitePage
 from groundstation.gui.site.site_editor import SiteEditor
@@ -28,7 +28,7 @@ PAGES: dict[ItemKind, Callable[[UnitSystem], Page]] = {
 class PropertyPanel(QWidget):
     """Shows the page of the selected thing; of the site where nothing of a site is selected."""
 
-    def __init__(self, workspace: Workspace, editor: SiteEditor, parent: QWidget | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, editor: SiteEditor, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._workspace, self._editor = workspace, editor
         self._pages: dict[ItemKind, Page] = {}

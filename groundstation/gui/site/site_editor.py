@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.site.pages import Edit
 from groundstation.services.jobs.runner import ENDED, Job
 from groundstation.services.project.document import Document, Item
@@ -32,7 +32,7 @@ class SiteEditor(QObject):
 
     findingsChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
-    def __init__(self, workspace: Workspace, parent: QObject | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self._job: Job[tuple[Finding, ...]] | None = None

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QMenu, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.widgets.questions import choose_file
 from groundstation.services.project.facades import facades_beside
 from groundstation.services.site.sources import bundled_site, open_site, with_new_site
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class SiteOpener(QObject):
     """The three ways to a site; each is one step that can be undone."""
 
-    def __init__(self, workspace: Workspace, window: QWidget) -> None:
+    def __init__(self, workspace: ApplicationContext, window: QWidget) -> None:
         super().__init__(window)
         self._workspace, self._window = workspace, window
 

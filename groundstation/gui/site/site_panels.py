@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.site.findings_list import FindingsList
 from groundstation.gui.site.grid_form import GridForm
@@ -65,7 +65,7 @@ def _large(text: str, *, primary: bool = False) -> QPushButton:
 class SiteTab:
     """The Site tab; see `groundstation.gui.tabs.Tab`."""
 
-    def __init__(self, workspace: Workspace, stage: Stage) -> None:
+    def __init__(self, workspace: ApplicationContext, stage: Stage) -> None:
         self.left = SiteSide(workspace)
         self.detail = SiteDetail(workspace, stage, self.left)
         self.right: QWidget | None = scrolled(self.detail)
@@ -88,7 +88,7 @@ class SiteTab:
 class SiteSide(QWidget):
     """Where a site comes from, and the tree of what is on it."""
 
-    def __init__(self, workspace: Workspace, parent: QWidget | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self.opener = SiteOpener(workspace, self)
@@ -158,7 +158,9 @@ class SiteSide(QWidget):
 class SiteDetail(QWidget):
     """Tools, the panel grid while one is made, properties of what is selected, and what the check found."""
 
-    def __init__(self, workspace: Workspace, stage: Stage, side: SiteSide, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, workspace: ApplicationContext, stage: Stage, side: SiteSide, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self.editor = SiteEditor(workspace, self)

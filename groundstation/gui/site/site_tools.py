@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QPushButton, QWidget
 
-from groundstation.gui.application.context import Workspace
-from groundstation.gui.shared_view import Stage, StagePage
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.shared_view import SharedViewPage, Stage
 from groundstation.gui.site.pages import Edit
 from groundstation.gui.site.site_editor import SiteEditor
 from groundstation.gui.widgets.questions import choose_file
@@ -60,7 +60,9 @@ class SiteTools(QWidget):
     gridPicked = Signal(object)  # noqa: N815  (Qt's own way of naming)
     gridAsked = Signal()  # noqa: N815
 
-    def __init__(self, workspace: Workspace, stage: Stage, editor: SiteEditor, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, workspace: ApplicationContext, stage: Stage, editor: SiteEditor, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self._workspace, self._stage, self._editor = workspace, stage, editor
         self._active: SiteTool | None = None
@@ -107,7 +109,7 @@ class SiteTools(QWidget):
         """Start a tool in the 3-D view; rows and columns are those of a panel grid."""
         if tool is SiteTool.GRID and self._active is not SiteTool.GRID:
             self.gridAsked.emit()
-        self._stage.show_page(StagePage.SCENE)
+        self._stage.show_page(SharedViewPage.SCENE)
 
         def start(scene: SceneView) -> None:
             scene.start_tool(self._made(tool, n_rows, n_columns))

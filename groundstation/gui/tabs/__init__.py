@@ -18,7 +18,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QWidget
 
 if TYPE_CHECKING:
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.shared_view import Stage
 
 CONTEXT = "Tabs"
@@ -76,7 +76,7 @@ class TabSpec:
     title: str
     tip: str
     place: Place
-    make: Callable[[Workspace, Stage], Tab]
+    make: Callable[[ApplicationContext, Stage], Tab]
     implementation: str = ""
 
     def shown_title(self) -> str:

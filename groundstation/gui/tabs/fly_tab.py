@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.fly.fly_page import FlyPage
     from groundstation.gui.shared_view import Stage
 
 
-def make(workspace: Workspace, stage: Stage) -> FlyPage:
+def make(workspace: ApplicationContext, stage: Stage) -> FlyPage:
     """Connection, pre-flight list, readouts, photos and report."""
     from groundstation.gui.fly.fly_page import FlyPage
 

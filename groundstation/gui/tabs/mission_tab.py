@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.mission.mission_page import MissionPage
     from groundstation.gui.shared_view import Stage
 
 
-def make(workspace: Workspace, stage: Stage) -> MissionPage:
+def make(workspace: ApplicationContext, stage: Stage) -> MissionPage:
     """Waypoints, findings, profile, files and flight brief."""
     from groundstation.gui.mission.mission_page import MissionPage
 

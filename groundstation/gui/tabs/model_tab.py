@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.model.model_page import ModelPage
     from groundstation.gui.shared_view import Stage
 
 
-def make(workspace: Workspace, stage: Stage) -> ModelPage:
+def make(workspace: ApplicationContext, stage: Stage) -> ModelPage:
     """Panels, the view of the model, and records."""
     from groundstation.gui.model.model_page import ModelPage
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.photos.photos_page import PhotosPage
     from groundstation.gui.shared_view import Stage
 
 
-def make(workspace: Workspace, stage: Stage) -> PhotosPage:
+def make(workspace: ApplicationContext, stage: Stage) -> PhotosPage:
     """Strip, map and findings of the photos, and the grid over the one that is chosen."""
     from groundstation.gui.photos.photos_page import PhotosPage
 

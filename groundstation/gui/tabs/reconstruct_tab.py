@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
     from groundstation.gui.shared_view import Stage
 
 
-def make(workspace: Workspace, stage: Stage) -> ReconstructPage:
+def make(workspace: ApplicationContext, stage: Stage) -> ReconstructPage:
     """What to train, the view of the model, and its curves."""
     from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
 

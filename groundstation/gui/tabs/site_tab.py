@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from groundstation.gui.tabs import QT_TRANSLATE_NOOP, Place, TabSpec
 
 if TYPE_CHECKING:
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.shared_view import Stage
     from groundstation.gui.site.site_panels import SiteTab
 
 
-def make(workspace: Workspace, stage: Stage) -> SiteTab:
+def make(workspace: ApplicationContext, stage: Stage) -> SiteTab:
     """Tree, tools and properties of the site."""
     from groundstation.gui.site.site_panels import SiteTab
 

@@ -87,6 +87,21 @@
     </message>
 </context>
 <context>
+    <name>ApplicationContext</name>
+    <message>
+        <source>{0}: cancelled</source>
+        <translation>{0}: abgebrochen</translation>
+    </message>
+    <message>
+        <source>{0}: {1}</source>
+        <translation>{0}: {1}</translation>
+    </message>
+    <message>
+        <source>{0}: Reflight failed where it should not ({1}: {2}); please report it</source>
+        <translation>{0}: Reflight versagte, wo es nicht darf ({1}: {2}); bitte melden</translation>
+    </message>
+</context>
+<context>
     <name>Axes</name>
     <message>
         <source>East</source>
@@ -1033,58 +1048,7 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
-    <name>Desk</name>
-    <message>
-        <source>Something is running: the language changes when Reflight is started next.</source>
-        <translation>Etwas läuft noch: Die Sprache wechselt beim nächsten Start von Reflight.</translation>
-    </message>
-    <message>
-        <source>New project</source>
-        <translation>Neues Projekt</translation>
-    </message>
-    <message>
-        <source>Map tiles</source>
-        <translation>Kartenkacheln</translation>
-    </message>
-    <message>
-        <source>Map tiles (*.mbtiles)</source>
-        <translation>Kartenkacheln (*.mbtiles)</translation>
-    </message>
-    <message>
-        <source>The settings could not be kept: {0}</source>
-        <translation>Die Einstellungen ließen sich nicht sichern: {0}</translation>
-    </message>
-    <message>
-        <source>Open project</source>
-        <translation>Projekt öffnen</translation>
-    </message>
-    <message>
-        <source>{0}: this folder is not there any more; was it moved or renamed?</source>
-        <translation>{0}: Dieser Ordner ist nicht mehr da; wurde er verschoben oder umbenannt?</translation>
-    </message>
-    <message>
-        <source>Save project as</source>
-        <translation>Projekt speichern unter</translation>
-    </message>
-    <message>
-        <source>Saved in {0}</source>
-        <translation>Gespeichert in {0}</translation>
-    </message>
-    <message>
-        <source>Save</source>
-        <translation>Speichern</translation>
-    </message>
-    <message>
-        <source>{0}: {1} panels, {2} plans</source>
-        <translation>{0}: Scheiben {1}, Pläne {2}</translation>
-    </message>
-    <message>
-        <source>Your work is back. It is not saved yet: Project &gt; Save keeps it.</source>
-        <translation>Ihre Arbeit ist wieder da. Gespeichert ist sie noch nicht: Projekt &gt; Speichern behält sie.</translation>
-    </message>
-</context>
-<context>
-    <name>EffectsDesk</name>
+    <name>EffectsController</name>
     <message>
         <source>Look at the scene</source>
         <translation>Szene auswerten</translation>
@@ -1787,7 +1751,7 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
     </message>
 </context>
 <context>
-    <name>FlyDesk</name>
+    <name>FlyController</name>
     <message>
         <source>Home to the aircraft</source>
         <translation>Startplatz zum Fluggerät</translation>
@@ -1882,6 +1846,21 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
     <message>
         <source>In flight; the list comes back after the landing.</source>
         <translation>Im Flug; die Liste kommt nach der Landung wieder.</translation>
+    </message>
+</context>
+<context>
+    <name>FolderController</name>
+    <message>
+        <source>Read the data set</source>
+        <translation>Datensatz lesen</translation>
+    </message>
+    <message>
+        <source>This data set shows other panels than the site that is open ({0} against {1}). It can be trained on all the same; is it the right one?</source>
+        <translation>Dieser Datensatz zeigt andere Scheiben als der geöffnete Standort ({0} gegen {1}). Trainiert werden kann trotzdem; ist es der richtige?</translation>
+    </message>
+    <message>
+        <source>Look for models</source>
+        <translation>Modelle suchen</translation>
     </message>
 </context>
 <context>
@@ -2885,7 +2864,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
-    <name>MissionDesk</name>
+    <name>MissionController</name>
     <message>
         <source>Check</source>
         <translation>Prüfen</translation>
@@ -3014,7 +2993,7 @@ Scheiben: {2}, je {3} × {4}</translation>
     </message>
 </context>
 <context>
-    <name>ModelDesk</name>
+    <name>ModelController</name>
     <message>
         <source>Open the model</source>
         <translation>Modell öffnen</translation>
@@ -3541,7 +3520,7 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
-    <name>PhotoDesk</name>
+    <name>PhotoController</name>
     <message>
         <source>This site has no panels yet, and nothing to mirror in them.</source>
         <translation>Dieser Standort hat noch keine Scheiben, in denen sich etwas spiegeln könnte.</translation>
@@ -3677,7 +3656,7 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
-    <name>PhotosDesk</name>
+    <name>PhotosController</name>
     <message>
         <source>Open or import a site first: photos are placed on it.</source>
         <translation>Öffnen oder importieren Sie zuerst einen Standort: darauf werden die Fotos eingeordnet.</translation>
@@ -3815,21 +3794,6 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
-    <name>PlaceDesk</name>
-    <message>
-        <source>Read the data set</source>
-        <translation>Datensatz lesen</translation>
-    </message>
-    <message>
-        <source>This data set shows other panels than the site that is open ({0} against {1}). It can be trained on all the same; is it the right one?</source>
-        <translation>Dieser Datensatz zeigt andere Scheiben als der geöffnete Standort ({0} gegen {1}). Trainiert werden kann trotzdem; ist es der richtige?</translation>
-    </message>
-    <message>
-        <source>Look for models</source>
-        <translation>Modelle suchen</translation>
-    </message>
-</context>
-<context>
     <name>PlaceMap</name>
     <message>
         <source>Where the photos were taken</source>
@@ -3841,7 +3805,7 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
-    <name>PlanDesk</name>
+    <name>PlanController</name>
     <message>
         <source>Only “Greedy with proof” can keep viewpoints. Choose it, or release those kept: {0}</source>
         <translation>Nur „Greedy mit Beweis“ kann Aufnahmepunkte fixieren. Diese Methode wählen oder die fixierten freigeben: {0}</translation>
@@ -4590,6 +4554,57 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>ProjectController</name>
+    <message>
+        <source>Something is running: the language changes when Reflight is started next.</source>
+        <translation>Etwas läuft noch: Die Sprache wechselt beim nächsten Start von Reflight.</translation>
+    </message>
+    <message>
+        <source>New project</source>
+        <translation>Neues Projekt</translation>
+    </message>
+    <message>
+        <source>Map tiles</source>
+        <translation>Kartenkacheln</translation>
+    </message>
+    <message>
+        <source>Map tiles (*.mbtiles)</source>
+        <translation>Kartenkacheln (*.mbtiles)</translation>
+    </message>
+    <message>
+        <source>The settings could not be kept: {0}</source>
+        <translation>Die Einstellungen ließen sich nicht sichern: {0}</translation>
+    </message>
+    <message>
+        <source>Open project</source>
+        <translation>Projekt öffnen</translation>
+    </message>
+    <message>
+        <source>{0}: this folder is not there any more; was it moved or renamed?</source>
+        <translation>{0}: Dieser Ordner ist nicht mehr da; wurde er verschoben oder umbenannt?</translation>
+    </message>
+    <message>
+        <source>Save project as</source>
+        <translation>Projekt speichern unter</translation>
+    </message>
+    <message>
+        <source>Saved in {0}</source>
+        <translation>Gespeichert in {0}</translation>
+    </message>
+    <message>
+        <source>Save</source>
+        <translation>Speichern</translation>
+    </message>
+    <message>
+        <source>{0}: {1} panels, {2} plans</source>
+        <translation>{0}: Scheiben {1}, Pläne {2}</translation>
+    </message>
+    <message>
+        <source>Your work is back. It is not saved yet: Project &gt; Save keeps it.</source>
+        <translation>Ihre Arbeit ist wieder da. Gespeichert ist sie noch nicht: Projekt &gt; Speichern behält sie.</translation>
+    </message>
+</context>
+<context>
     <name>QShortcut</name>
     <message>
         <source>Return</source>
@@ -4806,7 +4821,7 @@ Damit weiterarbeiten?</translation>
     </message>
 </context>
 <context>
-    <name>ReconstructDesk</name>
+    <name>ReconstructController</name>
     <message>
         <source>The training was broken off; go on with it whenever you like.</source>
         <translation>Das Training wurde abgebrochen; setzen Sie es fort, wann Sie möchten.</translation>
@@ -12811,7 +12826,7 @@ Damit weiterarbeiten?</translation>
     </message>
 </context>
 <context>
-    <name>SigningDesk</name>
+    <name>SigningController</name>
     <message>
         <source>Look for the signing key</source>
         <translation>Schlüssel für die Signatur suchen</translation>
@@ -12877,7 +12892,7 @@ Damit weiterarbeiten?</translation>
     </message>
 </context>
 <context>
-    <name>SimulationDesk</name>
+    <name>SimulationController</name>
     <message>
         <source>Look at the flight</source>
         <translation>Flug betrachten</translation>
@@ -13940,21 +13955,6 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>“{0}”</source>
         <translation>„{0}“</translation>
-    </message>
-</context>
-<context>
-    <name>Workspace</name>
-    <message>
-        <source>{0}: cancelled</source>
-        <translation>{0}: abgebrochen</translation>
-    </message>
-    <message>
-        <source>{0}: {1}</source>
-        <translation>{0}: {1}</translation>
-    </message>
-    <message>
-        <source>{0}: Reflight failed where it should not ({1}: {2}); please report it</source>
-        <translation>{0}: Reflight versagte, wo es nicht darf ({1}: {2}); bitte melden</translation>
     </message>
 </context>
 <context>

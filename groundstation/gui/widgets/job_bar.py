@@ -14,7 +14,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Message, Workspace
+from groundstation.gui.application.context import ApplicationContext, Message
 from groundstation.gui.widgets.short_text import ShortText, severity_words
 from groundstation.services.jobs.runner import JobProgress
 
@@ -25,7 +25,7 @@ SHOW_AFTER_MS = 150
 class JobBar(QWidget):
     """Progress of the running job; hidden while nothing runs."""
 
-    def __init__(self, workspace: Workspace, parent: QWidget | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._workspace = workspace
         self._label, self._bar, self._left = ShortText(), QProgressBar(), QLabel()
@@ -106,7 +106,7 @@ class JobBar(QWidget):
 class DialogFoot(QWidget):
     """The job bar and the last message, for dialogs that lie over those of the window."""
 
-    def __init__(self, workspace: Workspace, parent: QWidget | None = None) -> None:
+    def __init__(self, workspace: ApplicationContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.job_bar, self._text = JobBar(workspace), ShortText()
         layout = QVBoxLayout(self)

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.loading import BackgroundImport
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.tabs import Place, Tab, TabSpec, find_tabs
@@ -51,7 +51,7 @@ class MainWindow(QMainWindow):
     tabShown = Signal(str)  # noqa: N815  (Qt's own way of naming)
     closing = Signal(object)
 
-    def __init__(self, workspace: Workspace) -> None:
+    def __init__(self, workspace: ApplicationContext) -> None:
         super().__init__()
         self._workspace = workspace
         self._specs = find_tabs()

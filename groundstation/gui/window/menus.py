@@ -9,8 +9,8 @@ from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QMenu, QMessageBox
 
-from groundstation.gui.application.context import Workspace
-from groundstation.gui.shared_view import StagePage
+from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.window.main_window import MainWindow
 from groundstation.services.settings import Language, Settings, Theme
 from groundstation.services.units import UnitSystem
@@ -52,7 +52,7 @@ class Commands(Protocol):
 class Menus(QObject):
     """Fills the menu bar of a window."""
 
-    def __init__(self, window: MainWindow, workspace: Workspace, commands: Commands) -> None:
+    def __init__(self, window: MainWindow, workspace: ApplicationContext, commands: Commands) -> None:
         super().__init__(window)
         self._window, self._workspace, self._commands = window, workspace, commands
         bar = window.menuBar()
@@ -115,9 +115,9 @@ class Menus(QObject):
     def _view_menu(self, menu: QMenu) -> None:
         look, choose = self._commands.settings(), self._commands.choose
         for page, text, key in (
-            (StagePage.SCENE, self.tr("&3-D view"), "F5"),
-            (StagePage.MAP, self.tr("&Map"), "F6"),
-            (StagePage.CAMERA, self.tr("&Camera preview"), "F7"),
+            (SharedViewPage.SCENE, self.tr("&3-D view"), "F5"),
+            (SharedViewPage.MAP, self.tr("&Map"), "F6"),
+            (SharedViewPage.CAMERA, self.tr("&Camera preview"), "F7"),
         ):
             self._add(menu, text, key, lambda page=page: self._window.stage.show_page(page))
         menu.addSeparator()

@@ -33,7 +33,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from groundstation.gui.application.context import Message, Workspace
+from groundstation.gui.application.context import ApplicationContext, Message
 from groundstation.gui.widgets.short_text import ShortText, severity_words
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Document
@@ -62,7 +62,7 @@ class MessageArea(QWidget):
     """
 
     def __init__(
-        self, workspace: Workspace, parent: QWidget | None = None, clock: Callable[[], float] = time.monotonic
+        self, workspace: ApplicationContext, parent: QWidget | None = None, clock: Callable[[], float] = time.monotonic
     ) -> None:
         super().__init__(parent)
         self._workspace, self._clock = workspace, clock

@@ -1,4 +1,4 @@
-"""The desk: what happens to the project as a whole. New, open, save, autosave, recovery, settings, and the end.
+"""The controller: what happens to the project as a whole. New, open, save, autosave, recovery, settings, and the end.
 
 It owns the workspace and the window, and makes the window anew when the language changes: everything that matters is
 in the workspace, the window only shows it.
@@ -16,7 +16,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
 from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import QApplication
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.garbage import GarbageCollector
 from groundstation.gui.application.languages import Translations
 from groundstation.gui.application.loading import leave_modules_alone
@@ -30,7 +30,7 @@ from groundstation.services.project.document import Document
 from groundstation.services.project.folder import create_project, save_project
 from groundstation.services.project.lock import ProjectLock
 from groundstation.services.project.project_file import is_project
-from groundstation.services.project.project_session import Keeper, TakenProject
+from groundstation.services.project.project_session import ProjectSession, TakenProject
 from groundstation.services.project.recovery import Recovery, discard_recovery, find_recovery, find_unsaved, recover
 from groundstation.services.project.session import Session
 from groundstation.services.settings import Settings, settings_at_start, settings_path, write_settings
@@ -39,13 +39,13 @@ from planning.base.findings import Severity
 from planning.request import PlanRequest
 
 
-class Desk(QObject):
+class ProjectController(QObject):
     """One project at a time, in one window.
 
     Signals
     -------
     opened()
-        Another project, or a new one, is on the desk.
+        Another project, or a new one, is on the controller.
     autosaveFailed(str)
     """
 
@@ -66,8 +66,8 @@ class Desk(QObject):
         self._own_worker = Worker() if worker is None else None
         self._worker = self._own_worker if worker is None else worker
         self._runner = JobRunner(worker=self._worker)
-        self.keeper = Keeper(self.autosaveFailed.emit)
-        self.workspace = Workspace(Session(_first_document(self._settings)), self._runner, self)
+        self.keeper = ProjectSession(self.autosaveFailed.emit)
+        self.workspace = ApplicationContext(Session(_first_document(self._settings)), self._runner, self)
         self.workspace.set_units(self._settings.units)
         self._dress()
         self.window = self._make_window()
@@ -195,7 +195,7 @@ class Desk(QObject):
 
     def new_project(self) -> None:
         """Start over, after asking about what is not saved."""
-        self._leave(lambda: self._put_on_desk(_first_document(self._settings), None))
+        self._leave(lambda: self._put_on_controller(_first_document(self._settings), None))
 
     def open_project(self) -> None:
         """Ask for a folder, and open it."""
@@ -283,7 +283,7 @@ class Desk(QObject):
     def _opened(self, taken: TakenProject) -> None:
         project = taken.project
         site_source = project.folder / project.record.site if project.record.site else None
-        self._put_on_desk(replace(project.document, site_source=site_source), project.folder, taken.lock)
+        self._put_on_controller(replace(project.document, site_source=site_source), project.folder, taken.lock)
         if taken.problem:
             self._warn(taken.problem, "project.lock")
         for note in project.notes:
@@ -300,7 +300,7 @@ class Desk(QObject):
         if found is not None:
             self._offer(found)
 
-    def _put_on_desk(self, document: Document, folder: Path | None, lock: ProjectLock | None = None) -> None:
+    def _put_on_controller(self, document: Document, folder: Path | None, lock: ProjectLock | None = None) -> None:
         self.keeper.hold(lock)
         for topic in ("project.", "plan.", "job."):
             self.workspace.settle(topic)

@@ -20,13 +20,13 @@ Row = tuple[str, str]
 VIEWS = {
     "3-D view": ("view3d/navigator.py", "view3d/scene_view.py"),
     "Tools in the 3-D view": ("view3d/tool_driver.py",),
-    "Map": ("mission/map_canvas.py",),
+    "Map": ("map/map_canvas.py",),
     "Camera preview": ("camera_preview/preview.py", "camera_preview/photo_box.py"),
     "Tree of the site": ("site/site_tree.py",),
     "Photo strip of a flight": ("fly/photo_strip.py",),
     "Photos": ("photos/picture_view.py", "photos/grid_view.py"),
     "Models": ("reconstruct/model_view.py",),
-    "Messages": ("message_area.py",),
+    "Messages": ("window/message_area.py",),
 }
 """Modules of the window that take keys by themselves, by the section that tells of them."""
 

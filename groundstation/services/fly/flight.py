@@ -37,7 +37,7 @@ from groundstation.services.fly.events import (
 from groundstation.services.fly.link import WAIT_S, LoggedLink
 from groundstation.services.fly.options import USUAL, FlightSettings
 from groundstation.services.fly.readouts import BEFORE_TAKE_OFF, allowed_requests, link_state, readouts
-from groundstation.services.fly.record import FlightKeeper
+from groundstation.services.fly.record import FlightRecordings
 from groundstation.services.fly.signing import signing_problem
 from groundstation.services.fly.sortie import LiveSortie
 from groundstation.vehicle.commands import CommandCall, CommandOutcome
@@ -268,7 +268,7 @@ class LiveFlight:
         self._thread = threading.Thread(target=self._live, name="live-flight", daemon=True)
         self._is_closing = False
         self._wire = LoggedLink(connection, folder, lambda text: publish(LogProblem(text)), clock, unix_clock)
-        self._keeper = FlightKeeper(sortie.case, folder, flown)
+        self._keeper = FlightRecordings(sortie.case, folder, flown)
         self._link = LinkState.OPENING
         self._view: LiveView | None = None
         self._shown_s = -math.inf

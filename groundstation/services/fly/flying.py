@@ -109,7 +109,7 @@ Between = Callable[[int], None]
 
 
 @dataclass(frozen=True, slots=True)
-class FlightWish:
+class FlightRequest:
     """How a plan shall be flown.
 
     Parameters
@@ -184,7 +184,7 @@ def fly_files(
     plan_path: Path,
     site_path: Path,
     out: Path,
-    wish: FlightWish,
+    wish: FlightRequest,
     show: Show | None = None,
     monitor: Monitor = QUIET,
     between: Between | None = None,
@@ -209,7 +209,7 @@ def fly_files(
 def fly_plan(
     plan: Plan,
     site_model: SiteModel,
-    wish: FlightWish,
+    wish: FlightRequest,
     show: Show | None = None,
     monitor: Monitor = QUIET,
     between: Between | None = None,
@@ -286,7 +286,7 @@ class _Case:
 
     plan: Plan
     site_model: SiteModel
-    wish: FlightWish
+    wish: FlightRequest
     autopilot: Autopilot
     show: Show | None
     monitor: Monitor

@@ -40,7 +40,7 @@ def open_log(folder: Path, unix_time_s: float) -> tuple[TelemetryLog | None, str
     return None, problem
 
 
-class FlightKeeper:
+class FlightRecordings:
     """Keeps the sorties of a plan as they end, each time with the report on all of them.
 
     Parameters

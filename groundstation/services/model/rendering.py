@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class RenderWish:
+class RenderRequest:
     """What is to be rendered.
 
     Parameters
@@ -39,7 +39,7 @@ class RenderWish:
     held_out_only: bool = False
 
 
-def render_files(model: Path, wish: RenderWish, out: Path, monitor: Monitor = QUIET) -> tuple[Path, ...]:
+def render_files(model: Path, wish: RenderRequest, out: Path, monitor: Monitor = QUIET) -> tuple[Path, ...]:
     """Render a model's views into a folder; the pictures written.
 
     Raises
@@ -58,7 +58,7 @@ def render_files(model: Path, wish: RenderWish, out: Path, monitor: Monitor = QU
     return render.render_files(trained.model, photos, out, wish.layers, trained.record.config.raster, monitor)
 
 
-def _cameras(wish: RenderWish, trained: TrainedModel) -> tuple[PosedPhoto, ...]:
+def _cameras(wish: RenderRequest, trained: TrainedModel) -> tuple[PosedPhoto, ...]:
     from groundstation.services.project.input_files import read_given_plan
     from reconstruction.light.photo_set import read_photo_set
     from reconstruction.scenes.photos.flight_views import WIDTHS_PX, lens_of, planned_shots, posed_photos

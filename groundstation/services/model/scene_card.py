@@ -158,7 +158,7 @@ class SceneCard:
 
 def is_scene(folder: Path) -> bool:
     """Whether a folder holds a scene of objects."""
-    return (folder / MODEL).is_file()
+    return (folder / DESCRIPTION).is_file()
 
 
 def is_model(folder: Path) -> bool:

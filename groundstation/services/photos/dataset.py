@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.services.photos.intake import PhotoIntake
-from groundstation.services.photos.poses import RefinedOutcome, RefineWish, better_poses, refined_summary, still_true
+from groundstation.services.photos.poses import RefinedOutcome, RefineRequest, better_poses, refined_summary, still_true
 from groundstation.services.project.input_files import read_given_site
 from planning.base.findings import Finding
 from planning.base.progress import QUIET, Monitor
@@ -43,7 +43,7 @@ def prepare_files(
     *,
     heights: PhotoHeights = "auto",
     colmap: Path | None = None,
-    refine: RefineWish | None = None,
+    refine: RefineRequest | None = None,
     monitor: Monitor = QUIET,
 ) -> PreparedFiles:
     """Write the data set of a folder of photos.

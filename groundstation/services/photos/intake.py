@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from groundstation.services.photos.poses import BetterPoses, RefineWish, better_poses, refined_summary, still_true
+from groundstation.services.photos.poses import BetterPoses, RefineRequest, better_poses, refined_summary, still_true
 from groundstation.services.project.input_files import read_given_plan, read_given_site
 from planning.aircraft.catalogue import DEFAULT_PROFILE, profile
 from planning.base.effects import Decision
@@ -76,7 +76,7 @@ def take_in(
     *,
     heights: PhotoHeights = "auto",
     colmap: Path | None = None,
-    refine: RefineWish | None = None,
+    refine: RefineRequest | None = None,
     monitor: Monitor = QUIET,
 ) -> PhotoIntake:
     """Read a folder of photos over a site file, and a plan file where one was flown; see `take_in_photos`.
@@ -101,7 +101,7 @@ def take_in_photos(
     *,
     heights: PhotoHeights = "auto",
     colmap: Path | None = None,
-    refine: RefineWish | None = None,
+    refine: RefineRequest | None = None,
     monitor: Monitor = QUIET,
 ) -> PhotoIntake:
     """Read a folder of photos over a site.

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.services.photos.poses import RefinedOutcome, RefineWish, better_poses, refined_summary, still_true
+from groundstation.services.photos.poses import RefinedOutcome, RefineRequest, better_poses, refined_summary, still_true
 from groundstation.services.project.input_files import FileKind, kind_of, read_given_site
 from groundstation.services.project.project_file import check_not_index
 from planning.base.errors import InputError
@@ -87,7 +87,7 @@ def find_panel_files(
     *,
     heights: PhotoHeights = "auto",
     colmap: Path | None = None,
-    refine: RefineWish | None = None,
+    refine: RefineRequest | None = None,
     grids: Path | None = None,
     monitor: Monitor = QUIET,
 ) -> PanelSearch:

@@ -36,7 +36,7 @@ REFINED_SUFFIX = ".refined"
 
 
 @dataclass(frozen=True, slots=True)
-class RefineWish:
+class RefineRequest:
     """That poses are to be refined.
 
     Parameters
@@ -121,7 +121,7 @@ def better_poses(
     posed: PhotoSet,
     folder: Path,
     colmap: Path | None = None,
-    refine: RefineWish | None = None,
+    refine: RefineRequest | None = None,
     monitor: Monitor = QUIET,
 ) -> BetterPoses:
     """The photos' own poses, or better ones where they are asked for.
@@ -161,7 +161,7 @@ def better_poses(
 
 
 def refined_poses(
-    photos: Sequence[PosedPhoto], folder: Path, wish: RefineWish, monitor: Monitor = QUIET
+    photos: Sequence[PosedPhoto], folder: Path, wish: RefineRequest, monitor: Monitor = QUIET
 ) -> BetterPoses:
     """Poses refined with COLMAP, or those that were kept of the same photos.
 
@@ -216,7 +216,7 @@ def refined_summary(outcome: RefinedOutcome) -> dict[str, Any]:
     }
 
 
-def _kept(where: Path, photos: Sequence[PosedPhoto], wish: RefineWish) -> KeptRefinement | None:
+def _kept(where: Path, photos: Sequence[PosedPhoto], wish: RefineRequest) -> KeptRefinement | None:
     """What was computed before of the same photos, and in the size that is wished for."""
     if not is_refined_folder(where):
         return None

@@ -1,8 +1,8 @@
 """What looking at plans, editing them and planning again have in common, kept so that it is computed once.
 
 Preparing a site takes seconds (what can be reached is proven), taking a plan in hand a fraction of one; an edit then
-takes milliseconds. A `Bench` is a value that lives in the window's thread; `take_in_hand` is for jobs and gives a
-`PlanInHand` that the bench keeps.
+takes milliseconds. A `PlanCache` is a value that lives in the window's thread; `take_in_hand` is for jobs and gives a
+`ActivePlan` that the bench keeps.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ MAX_GROUNDWORKS = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Groundwork:
+class PreparedSite:
     """A prepared site and why parts of it cannot be seen; the same for all plans with one camera and constraints.
 
     Planning leaves it without the reasons; they are found when a plan is taken in hand.
@@ -44,10 +44,10 @@ class Groundwork:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlanInHand:
+class ActivePlan:
     """A plan that can be looked at and edited."""
 
-    groundwork: Groundwork
+    groundwork: PreparedSite
     revision: Revision
     insight: PlanInsight
 
@@ -56,19 +56,19 @@ class PlanInHand:
         """The plan."""
         return self.revision.plan
 
-    def with_revision(self, revision: Revision) -> PlanInHand:
+    def with_revision(self, revision: Revision) -> ActivePlan:
         """After an edit."""
         return replace(self, revision=revision, insight=insight_of(revision, self.insight.reasons, self))
 
 
-class Bench:
+class PlanCache:
     """The plans that were in hand, the last ones first to be found."""
 
     def __init__(self) -> None:
-        self._in_hand: OrderedDict[int, tuple[Plan, PlanInHand]] = OrderedDict()
-        self._groundworks: list[Groundwork] = []
+        self._in_hand: OrderedDict[int, tuple[Plan, ActivePlan]] = OrderedDict()
+        self._groundworks: list[PreparedSite] = []
 
-    def find(self, plan: Plan, site_model: SiteModel) -> PlanInHand | None:
+    def find(self, plan: Plan, site_model: SiteModel) -> ActivePlan | None:
         """A plan that is in hand on this site; None where it must be taken first.
 
         Plans are told apart by being one object, as the document's history keeps them; the record inside may be
@@ -80,7 +80,7 @@ class Bench:
         self._in_hand.move_to_end(id(plan))
         return found[1]
 
-    def keep(self, plan: Plan, in_hand: PlanInHand) -> None:
+    def keep(self, plan: Plan, in_hand: ActivePlan) -> None:
         """Remember a plan, under the object that the document has."""
         self._in_hand[id(plan)] = (plan, in_hand)
         self._in_hand.move_to_end(id(plan))
@@ -88,13 +88,13 @@ class Bench:
             self._in_hand.popitem(last=False)
         self.keep_groundwork(in_hand.groundwork)
 
-    def keep_groundwork(self, groundwork: Groundwork) -> None:
+    def keep_groundwork(self, groundwork: PreparedSite) -> None:
         """Remember a prepared site."""
         others = [kept for kept in self._groundworks if kept.prepared is not groundwork.prepared]
         self._groundworks = [groundwork, *others][:MAX_GROUNDWORKS]
 
-    def groundwork_for(self, plan: Plan, site_model: SiteModel) -> Groundwork | None:
-        """Groundwork on which a plan can be taken in hand."""
+    def groundwork_for(self, plan: Plan, site_model: SiteModel) -> PreparedSite | None:
+        """PreparedSite on which a plan can be taken in hand."""
         return next((kept for kept in self._groundworks if _fits(kept.prepared, plan, site_model)), None)
 
     def prepared_for(self, request: PlanRequest, site_model: SiteModel) -> Prepared | None:
@@ -105,8 +105,8 @@ class Bench:
 
 
 def take_in_hand(
-    site_model: SiteModel, plan: Plan, groundwork: Groundwork | None, monitor: Monitor = QUIET
-) -> PlanInHand:
+    site_model: SiteModel, plan: Plan, groundwork: PreparedSite | None, monitor: Monitor = QUIET
+) -> ActivePlan:
     """Measure a plan and find out what it leaves unseen and why.
 
     Parameters
@@ -121,16 +121,16 @@ def take_in_hand(
     """
     if groundwork is None:
         prepared = prepare(site_model, plan.camera, plan.constraints, seed=plan.seed, monitor=monitor)
-        groundwork = Groundwork(prepared)
+        groundwork = PreparedSite(prepared)
     reasons = groundwork.reasons
     if reasons is None:
         reasons = section_reasons(site_model, groundwork.prepared, monitor=monitor)
     monitor.report("measuring the plan", 0, 1)
     revision = revise(plan, groundwork.prepared)
-    return PlanInHand(Groundwork(groundwork.prepared, reasons), revision, insight_of(revision, reasons))
+    return ActivePlan(PreparedSite(groundwork.prepared, reasons), revision, insight_of(revision, reasons))
 
 
-def insight_of(revision: Revision, reasons: SectionReasons, before: PlanInHand | None = None) -> PlanInsight:
+def insight_of(revision: Revision, reasons: SectionReasons, before: ActivePlan | None = None) -> PlanInsight:
     """What a plan in hand covers, from what is measured on it already; `before` is the same plan before an edit."""
     prepared, plan = revision.prepared, revision.plan
     if before is None:
@@ -156,7 +156,7 @@ def _fill_row(sections: NDArray[np.int16], number: int, revision: Revision) -> N
     sections[number, panel] = section
 
 
-def _measured_since(revision: Revision, before: PlanInHand) -> tuple[NDArray[np.int16], PanelSampling]:
+def _measured_since(revision: Revision, before: ActivePlan) -> tuple[NDArray[np.int16], PanelSampling]:
     """As `_measured`, where only what an edit changed is computed: new views, and the panels that these see or saw."""
     model, viewpoints = revision.prepared.problem.model, revision.plan.viewpoints
     known = {pose_of(viewpoint): row for row, viewpoint in enumerate(before.plan.viewpoints)}

@@ -23,7 +23,7 @@ class TakenProject:
     problem: str
 
 
-class Keeper:
+class ProjectSession:
     """Keeps one project for one window.
 
     Parameters

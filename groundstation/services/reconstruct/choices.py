@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from groundstation.services.reconstruct.folders import DataSetCard
-from groundstation.services.reconstruct.request import TrainWish
+from groundstation.services.reconstruct.request import TrainRequest
 from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 from reconstruction.training.names import LIGHTS, PRESETS
 from reconstruction.training.photos.decoded_photo import DECODING_BYTES_PER_PX, Decoding, decoded_bytes
@@ -99,10 +99,10 @@ class TrainChoice:
     light: str = "auto"
     on_cuda: bool = False
 
-    def wish(self, memory_bytes: int | None = None) -> TrainWish:
+    def wish(self, memory_bytes: int | None = None) -> TrainRequest:
         """What is asked of the training."""
         knows_panels = METHODS[self.method].knows_panels
-        return TrainWish(
+        return TrainRequest(
             self.preset if self.minutes is None else preset_for(self.minutes),
             self.method,
             self.light if knows_panels and self.light != "auto" else None,

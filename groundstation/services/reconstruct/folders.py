@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from groundstation.services.reconstruct.request import TrainWish
+from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import real_path
@@ -105,7 +105,7 @@ class TrainingNote:
     time_limit_s: float | None = None
 
 
-def note_training(out: Path, dataset: Path, wish: TrainWish) -> None:
+def note_training(out: Path, dataset: Path, wish: TrainRequest) -> None:
     """Note what a training is begun with, for going on with it and for the next one.
 
     Raises

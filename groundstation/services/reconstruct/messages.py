@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.services.reconstruct.request import TrainWish
+from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.effects import Decision
 from reconstruction.base.cameras import PosedPhoto
 
@@ -73,7 +73,7 @@ class Train:
 
     dataset: Path
     out: Path
-    wish: TrainWish
+    wish: TrainRequest
     resume: bool = False
 
 
@@ -82,7 +82,7 @@ class AskScene:
     """Which model of mirrored light the photos call for."""
 
     dataset: Path
-    wish: TrainWish
+    wish: TrainRequest
 
 
 @dataclass(frozen=True, slots=True)

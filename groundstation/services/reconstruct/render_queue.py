@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from groundstation.services.reconstruct.messages import Look, PhotoError, Probe, Probed, Seen, Subject, WatchErrors
 from groundstation.services.reconstruct.shown_models import ShownModel, ShownModels, probed, shown_of, tinted
 from planning.base.errors import GroundStationError
-from reconstruction.training.names import PICTURE
+from reconstruction.training.layers import PICTURE
 
 if TYPE_CHECKING:
     from planning.base.effects import Decision
@@ -104,7 +104,7 @@ JUDGING_SHARE = 0.03
 NO_MODEL = "there is no model yet: it is being prepared"
 
 
-class Darkroom:
+class RenderQueue:
     """Answers looks, and judges photos.
 
     Parameters

@@ -9,7 +9,7 @@ DEFAULT_PRESET = "10min"
 
 
 @dataclass(frozen=True, slots=True)
-class TrainWish:
+class TrainRequest:
     """What is asked of a training; None: as the preset has it.
 
     Parameters

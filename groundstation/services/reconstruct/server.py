@@ -37,7 +37,7 @@ from groundstation.services.reconstruct.messages import (
     Train,
     WatchErrors,
 )
-from groundstation.services.reconstruct.render_queue import Darkroom
+from groundstation.services.reconstruct.render_queue import RenderQueue
 from planning.base.errors import GroundStationError, OperationCancelled
 from planning.base.progress import Trace
 
@@ -110,7 +110,7 @@ class _Server:
 
     def __init__(self, out: IO[bytes], wishes: _Wishes) -> None:
         self._out, self._wishes = out, wishes
-        self._darkroom = Darkroom(self._tell)
+        self._darkroom = RenderQueue(self._tell)
         self._stage, self._reported_s, self._stepped_s = "", 0.0, 0.0
         self._is_joint, self._n_measured = False, 0
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.services.plan.tradeoff import output_folder, write_results
-from groundstation.services.reconstruct.training import TrainWish, config_of_wish
+from groundstation.services.reconstruct.training import TrainRequest, config_of_wish
 from planning.base.errors import InputError
 from planning.base.progress import QUIET, Monitor
 
@@ -31,7 +31,7 @@ class TrainTradeoff:
 
 
 def train_tradeoff(
-    dataset: Path, wish: TrainWish, knobs: Mapping[str, Sequence[Any]], out: Path, monitor: Monitor = QUIET
+    dataset: Path, wish: TrainRequest, knobs: Mapping[str, Sequence[Any]], out: Path, monitor: Monitor = QUIET
 ) -> TrainTradeoff:
     """Turn settings of a training one at a time; write `tradeoff-train.csv` and `.png` into `out`.
 

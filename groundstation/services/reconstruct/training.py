@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.services.reconstruct.request import DEFAULT_PRESET, TrainWish
+from groundstation.services.reconstruct.request import DEFAULT_PRESET, TrainRequest
 from planning.base.errors import InputError
 from planning.base.folders import check_ending, make_folder
 from planning.base.json_file import check_output, read_toml, write_atomically
@@ -16,15 +16,15 @@ from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 
 if TYPE_CHECKING:
     from planning.base.effects import Decision
-    from reconstruction.training.callbacks import Preview, Visit, Watching
+    from reconstruction.training.callbacks import Callbacks, Preview, Visit
     from reconstruction.training.config import TrainConfig
     from reconstruction.training.model.saved import TrainedModel
     from reconstruction.training.ranks import Ranks
-    from reconstruction.training.timer import Stopwatch
+    from reconstruction.training.timer import Timer
 
 __all__ = [
     "DEFAULT_PRESET",
-    "TrainWish",
+    "TrainRequest",
     "TrainedFiles",
     "config_of_wish",
     "light_of_scene",
@@ -46,7 +46,7 @@ class TrainedFiles:
     is_written: bool = True
 
 
-def config_of_wish(wish: TrainWish) -> TrainConfig:
+def config_of_wish(wish: TrainRequest) -> TrainConfig:
     """Settings of a wish: the preset's, then the method's, then the file's, then what was asked for by itself.
 
     Raises
@@ -76,7 +76,7 @@ def config_of_wish(wish: TrainWish) -> TrainConfig:
 def train_files(
     dataset: Path,
     out: Path,
-    wish: TrainWish,
+    wish: TrainRequest,
     *,
     resume: bool = False,
     preview: Callable[[Preview], None] | None = None,
@@ -97,7 +97,7 @@ def train_files(
     begun_s
         What `time.perf_counter` said when the time limit began to count; None for now.
     visit
-        See `Watching`.
+        See `Callbacks`.
 
     Raises
     ------
@@ -110,16 +110,16 @@ def train_files(
     """
     # Before the libraries are loaded, which takes seconds.
     begun_s = time.perf_counter() if begun_s is None else begun_s
-    from reconstruction.training.callbacks import Watching
+    from reconstruction.training.callbacks import Callbacks
     from reconstruction.training.model.saved import save_model
     from reconstruction.training.names import CHECKPOINT
     from reconstruction.training.ranks import ranks_of_environment
-    from reconstruction.training.timer import Stopwatch
+    from reconstruction.training.timer import Timer
 
-    watch = Stopwatch(begun_s=begun_s)
+    watch = Timer(begun_s=begun_s)
     with ranks_of_environment() as ranks:
         waiting = _Waiting(monitor, pause, watch)
-        watching = Watching(waiting, stop, pause, trace, preview if ranks.is_first else None, visit)
+        watching = Callbacks(waiting, stop, pause, trace, preview if ranks.is_first else None, visit)
         trained = _trained(dataset, out, wish, resume, watching, ranks, watch)
         if ranks.is_first:
             save_model(trained, out)
@@ -130,7 +130,7 @@ def train_files(
 class _Waiting:
     """Monitor of what comes before the joint training: it waits while there is a pause. The joint one waits itself."""
 
-    def __init__(self, monitor: Monitor, pause: Stop, watch: Stopwatch) -> None:
+    def __init__(self, monitor: Monitor, pause: Stop, watch: Timer) -> None:
         self._monitor, self._pause, self._watch = monitor, pause, watch
 
     def report(self, stage: str, done: float, total: float) -> None:
@@ -147,7 +147,7 @@ class _Waiting:
 JOINT_STAGES = frozenset({"training", "paused", "settling"})
 
 
-def light_of_scene(dataset: Path, wish: TrainWish, monitor: Monitor = QUIET) -> tuple[str, tuple[Decision, ...]]:
+def light_of_scene(dataset: Path, wish: TrainRequest, monitor: Monitor = QUIET) -> tuple[str, tuple[Decision, ...]]:
     """The model of mirrored light that the photos of a data set call for, and the decisions that lead to it.
 
     Raises
@@ -176,7 +176,7 @@ def light_of_scene(dataset: Path, wish: TrainWish, monitor: Monitor = QUIET) -> 
 
 
 def _trained(
-    dataset: Path, out: Path, wish: TrainWish, resume: bool, watching: Watching, ranks: Ranks, watch: Stopwatch
+    dataset: Path, out: Path, wish: TrainRequest, resume: bool, watching: Callbacks, ranks: Ranks, watch: Timer
 ) -> TrainedModel:
     from reconstruction.training.names import CHECKPOINT
     from reconstruction.training.train import resume_model, train_model

@@ -12,7 +12,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from groundstation.services.scenes.views import SITE_FILE, SceneWish, as_written, given_scene, scene_views
+from groundstation.services.scenes.views import SITE_FILE, SceneRequest, as_written, given_scene, scene_views
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.parallel_map import cluster_client
@@ -41,7 +41,7 @@ class RenderedScene:
 
 
 def photograph_files(
-    wish: SceneWish,
+    wish: SceneRequest,
     folder: Path,
     n_processes: int | None = None,
     monitor: Monitor = QUIET,
@@ -76,7 +76,7 @@ def photograph_files(
 
 
 def _photographed(
-    wish: SceneWish, folder: Path, n_processes: int | None, monitor: Monitor, cluster: Any
+    wish: SceneRequest, folder: Path, n_processes: int | None, monitor: Monitor, cluster: Any
 ) -> RenderedScene:
     started_s = time.perf_counter()
     monitor.report("building the scene", 0, 1)
@@ -101,7 +101,7 @@ def _photographed(
     return RenderedScene(scene.name, written, findings, time.perf_counter() - started_s)
 
 
-def _lens(wish: SceneWish, camera: Camera, taking: Taking) -> Intrinsics:
+def _lens(wish: SceneRequest, camera: Camera, taking: Taking) -> Intrinsics:
     try:
         return lens_of(camera, wish.width_px, taking)
     except InputError as error:

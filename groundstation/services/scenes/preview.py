@@ -58,7 +58,7 @@ EXTRA_ROWS = 1
 
 
 @dataclass(frozen=True, slots=True)
-class PhotoWish:
+class PhotoRequest:
     """A photo that somebody wants to see.
 
     Parameters
@@ -108,7 +108,7 @@ class SeenPhoto:
         Of rendering, without what was prepared for it.
     """
 
-    wish: PhotoWish
+    wish: PhotoRequest
     picture: NDArray[np.uint8]
     panels: NDArray[np.int64]
     decisions: tuple[Decision, ...]
@@ -134,7 +134,7 @@ def quick_width_px(fine_width_px: int, seconds_per_px: float | None) -> int:
 
 
 def kept_photo(
-    wish: PhotoWish, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
+    wish: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
 ) -> SeenPhoto | None:
     """The photo, if this process still has its scene; None if not."""
     studio = next((kept for kept in _KEPT if kept.key == wish.scene_key), None)
@@ -142,7 +142,7 @@ def kept_photo(
 
 
 def site_photo(
-    model: SiteModel, wish: PhotoWish, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
+    model: SiteModel, wish: PhotoRequest, *, stop: Stop = never, trace: Trace | None = None, monitor: Monitor = QUIET
 ) -> SeenPhoto:
     """The photo; its scene is kept in place of the last one.
 
@@ -160,7 +160,7 @@ def site_photo(
 class _Studio:
     """A scene, with renderers for quick and for fine pictures. What renders takes a second to import."""
 
-    def __init__(self, model: SiteModel, wish: PhotoWish) -> None:
+    def __init__(self, model: SiteModel, wish: PhotoRequest) -> None:
         from reconstruction.scenes.photos.renderer import Renderer, RenderSettings
         from reconstruction.scenes.world.build import build_scene
 
@@ -171,7 +171,7 @@ class _Studio:
         self._fine: tuple[frozenset[str], Renderer] | None = None
         """With the effects that it simulates."""
 
-    def photo(self, wish: PhotoWish, monitor: Monitor) -> SeenPhoto:
+    def photo(self, wish: PhotoRequest, monitor: Monitor) -> SeenPhoto:
         from reconstruction.base.cameras import Pose, PosedPhoto
         from reconstruction.scenes.photos.flight_views import lens_of
         from reconstruction.scenes.photos.lens_effects import developed

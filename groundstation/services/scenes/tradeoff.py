@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from groundstation.services.plan.tradeoff import output_folder, write_results, write_rows
-from groundstation.services.scenes.views import SceneWish, given_scene, plan_of_site, planned_photos
+from groundstation.services.scenes.views import SceneRequest, given_scene, plan_of_site, planned_photos
 from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.errors import InputError
@@ -64,7 +64,7 @@ class SceneTradeoff:
 
 
 def scene_tradeoff(
-    wish: SceneWish,
+    wish: SceneRequest,
     variants: SceneVariants,
     truth_rays: int | None,
     out: Path,
@@ -117,7 +117,7 @@ def scene_tradeoff(
 
 
 def _worths(
-    wish: SceneWish, scene: Scene, effects: Sequence[str], config: ReflectionConfig | None, monitor: Monitor
+    wish: SceneRequest, scene: Scene, effects: Sequence[str], config: ReflectionConfig | None, monitor: Monitor
 ) -> tuple[EffectWorth, ...]:
     from reconstruction.tradeoff.scene_downstream import effects_worth
 
@@ -139,7 +139,7 @@ def _physically_based() -> MakeRenderer:
     return MitsubaRenderer
 
 
-def _photos(wish: SceneWish, scene: Scene, folder: Path) -> tuple[PosedPhoto, ...]:
+def _photos(wish: SceneRequest, scene: Scene, folder: Path) -> tuple[PosedPhoto, ...]:
     if wish.plan is None:
         lens = lens_of(profile(wish.profile_id).camera, wish.width_px)
         return square_photos(scene, lens, wish.n_views or DEFAULT_VIEWS, folder, wish.seed)

@@ -119,7 +119,7 @@ FARTHEST_M = 40.0
 
 
 @dataclass(frozen=True, slots=True)
-class SceneWish:
+class SceneRequest:
     """What is to be photographed, from where, and how.
 
     Parameters
@@ -174,7 +174,7 @@ class SceneViews:
     findings: tuple[Finding, ...] = ()
 
 
-def given_scene(wish: SceneWish) -> tuple[Scene, dict[str, Any]]:
+def given_scene(wish: SceneRequest) -> tuple[Scene, dict[str, Any]]:
     """The scene, and what it is made from.
 
     Raises
@@ -216,7 +216,7 @@ def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
     return replace(model, site=site, sha256=site_sha256(site)), {SITE_FILE: site_bytes(site), **files}
 
 
-def scene_views(wish: SceneWish, scene: Scene, written: SiteModel, folder: Path, monitor: Monitor) -> SceneViews:
+def scene_views(wish: SceneRequest, scene: Scene, written: SiteModel, folder: Path, monitor: Monitor) -> SceneViews:
     """The views that are wished for: a plan's, a flight's, square ones, or some that are planned here.
 
     Parameters
@@ -273,13 +273,13 @@ def plan_of_site(path: Path, model: SiteModel) -> Plan:
     return plan
 
 
-def planned_photos(wish: SceneWish, scene: Scene, folder: Path, monitor: Monitor = QUIET) -> tuple[PosedPhoto, ...]:
+def planned_photos(wish: SceneRequest, scene: Scene, folder: Path, monitor: Monitor = QUIET) -> tuple[PosedPhoto, ...]:
     """Photos from views that are planned here, around what the scene has beside the building, to lie in `folder`."""
     plan = _planned_here(wish, as_written(scene.site)[0], folder, monitor)
     return posed_photos(planned_shots(plan), lens_of(plan.camera, wish.width_px), folder)
 
 
-def _planned_here(wish: SceneWish, model: SiteModel, folder: Path, monitor: Monitor) -> Plan:
+def _planned_here(wish: SceneRequest, model: SiteModel, folder: Path, monitor: Monitor) -> Plan:
     """The plan that the folder has already, or a quick new one."""
     if (folder / PLAN_FILE).is_file() and (folder / RUN_FILE).is_file():
         return read_plan(folder / PLAN_FILE)
@@ -289,7 +289,7 @@ def _planned_here(wish: SceneWish, model: SiteModel, folder: Path, monitor: Moni
     return plan_document_site(model, request, monitor=monitor).plan
 
 
-def _flown(wish: SceneWish, flight: Path, plan: Plan | None, model: SiteModel) -> SceneViews:
+def _flown(wish: SceneRequest, flight: Path, plan: Plan | None, model: SiteModel) -> SceneViews:
     shots, findings = shots_of_flight(flight, plan, model)
     camera = profile(wish.profile_id).camera if plan is None else plan.camera
     made_from = {"flight": flight.name, "plan": None if wish.plan is None else wish.plan.name}

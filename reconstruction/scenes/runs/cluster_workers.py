@@ -27,7 +27,7 @@ import reconstruction
 from planning.base.errors import GroundStationError, InputError, ReconstructionError
 from planning.base.json_file import write_atomically
 from planning.base.progress import Monitor
-from reconstruction.scenes.runs.photo_job import PATIENCE_S, Photographer, PhotoJob, written
+from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, written
 
 TOKEN_FILE = ".reflight-cluster"
 """In the folder while a cluster works for it: a worker that reads the same content there sees the same folder."""
@@ -56,13 +56,13 @@ def program_sha256() -> str:
 class Studio(WorkerPlugin):  # type: ignore[misc]  # Dask is not typed
     """What a worker has of a run: how its photographer is made, and, from the first photo on, the photographer."""
 
-    def __init__(self, photographer: Callable[[], Photographer], folder: Path, token: bytes, program: str) -> None:
+    def __init__(self, photographer: Callable[[], RenderWorker], folder: Path, token: bytes, program: str) -> None:
         self._make, self._folder, self._token, self._program = photographer, folder, token, program
 
     def setup(self, worker: Any) -> None:
         """Begin; called by Dask in the worker."""
         self._place = worker.address
-        self._photographer: Photographer | None = None
+        self._photographer: RenderWorker | None = None
         self._one_at_a_time, self._is_over = threading.Lock(), threading.Event()
 
     def teardown(self, worker: Any) -> None:
@@ -103,7 +103,7 @@ def _take(run: str, number: int) -> Taken:
 
 def photographed_by(
     client: Any,
-    photographer: Callable[[], Photographer],
+    photographer: Callable[[], RenderWorker],
     job: PhotoJob,
     folder: Path,
     numbers: Sequence[int],
@@ -155,7 +155,7 @@ def _files(future: Any, name: str, folder: Path) -> dict[str, str]:
 
 
 @contextmanager
-def _studios(client: Any, photographer: Callable[[], Photographer], folder: Path, monitor: Monitor) -> Iterator[str]:
+def _studios(client: Any, photographer: Callable[[], RenderWorker], folder: Path, monitor: Monitor) -> Iterator[str]:
     """Name of a run that all workers know of."""
     for place, program in client.run(program_sha256, on_error="return").items():
         if program != program_sha256():

@@ -67,7 +67,7 @@ class PhotoJob:
                 raise ValueError(f"{name}: expected one for each of {len(self.photos)} photos, or none, got {n}")
 
 
-class Photographer:
+class RenderWorker:
     """Takes photos of a scene; made once in each process."""
 
     def __init__(self, job: PhotoJob, folder: Path, exposure: float) -> None:

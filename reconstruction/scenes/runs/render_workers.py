@@ -15,17 +15,17 @@ from typing import Any
 from planning.base.errors import ReconstructionError
 from planning.base.jit import n_threads
 from planning.base.progress import Monitor
-from reconstruction.scenes.runs.photo_job import PATIENCE_S, Photographer, PhotoJob, written
+from reconstruction.scenes.runs.photo_job import PATIENCE_S, PhotoJob, RenderWorker, written
 
 CORES_EACH = 4
 """The threads of a renderer share each photo: on 2 cores a second process took 27 % longer (12 photos of 1024 px)."""
 
 
-_IN_THIS_PROCESS: list[Photographer] = []
+_IN_THIS_PROCESS: list[RenderWorker] = []
 """The photographer of a process that does nothing else."""
 
 
-def _begin_process(photographer: Callable[[], Photographer]) -> None:
+def _begin_process(photographer: Callable[[], RenderWorker]) -> None:
     # Ctrl-C goes to all processes of a terminal; the first one decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _IN_THIS_PROCESS.append(photographer())
@@ -53,7 +53,7 @@ def photographed(
     """
     if not numbers:
         return
-    photographer = partial(Photographer, job, folder, exposure)
+    photographer = partial(RenderWorker, job, folder, exposure)
     n_processes = min(max(1, n_threads() // CORES_EACH) if n_processes is None else n_processes, len(numbers))
     if cluster is not None:
         # It needs Dask, which nobody else does.
@@ -70,7 +70,7 @@ def photographed(
 
 
 def _side_by_side(
-    photographer: Callable[[], Photographer],
+    photographer: Callable[[], RenderWorker],
     job: PhotoJob,
     folder: Path,
     numbers: Sequence[int],
@@ -91,7 +91,7 @@ def _side_by_side(
 
 
 @contextmanager
-def _pool(photographer: Callable[[], Photographer], folder: Path, n_processes: int) -> Iterator[ProcessPoolExecutor]:
+def _pool(photographer: Callable[[], RenderWorker], folder: Path, n_processes: int) -> Iterator[ProcessPoolExecutor]:
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(n_processes, context, _begin_process, (photographer,))
     try:

@@ -21,8 +21,8 @@ from reconstruction.dataset.layers import normals_to_16_bit
 from reconstruction.light.shading import display_from_linear
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.views import View
+from reconstruction.training.layers import PICTURE
 from reconstruction.training.model.joint_model import Picture, SceneModel
-from reconstruction.training.names import PICTURE
 
 AT_ONCE_PX = 1 << 19
 """Pixels of a strip: about 200 MB with all that is blended into them."""

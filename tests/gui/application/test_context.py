@@ -25,9 +25,9 @@ def runner():
 
 @pytest.fixture
 def workspace(application, runner):
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
 
-    workspace = Workspace(Session(Document(site=single_panel())), runner)
+    workspace = ApplicationContext(Session(Document(site=single_panel())), runner)
     yield workspace
     workspace.close()
 
@@ -112,9 +112,9 @@ def test_a_queued_job_is_cancelled_at_once_and_calls_nobody(application, workspa
 
 
 def test_closing_cancels_what_runs_and_what_waits(application, runner):
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
 
-    workspace, gate, heard = Workspace(Session(), runner), Gate(), []
+    workspace, gate, heard = ApplicationContext(Session(), runner), Gate(), []
     jobs = [workspace.start("first", gate, heard.append), workspace.start("second", gate, heard.append)]
     wait(application, gate.begun.is_set)
     assert workspace.close(120.0)

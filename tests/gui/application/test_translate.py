@@ -42,7 +42,7 @@ NOT_SHOWN = {
     "reconstruction/dataset/effects.py": "the decision about each effect, for the command line",
     "reconstruction/dataset/records.py": "file content",
     "reconstruction/training/method_registry.py": "but for what each method is: where it is from, what changed",
-    "reconstruction/training/names.py": "the window has names of its own for layers",
+    "reconstruction/training/layers.py": "the window has names of its own for layers",
     "planning/base/effects.py": "the decision as one line, for the command line; the window has a card",
     "planning/geo/enu.py": "descriptions of transformations for PROJ",
     "planning/viewpoints/pso.py": "names of parameter settings, for benchmarks",
@@ -62,7 +62,7 @@ NOT_SHOWN = {
     "groundstation/services/model/facility_records.py": "records are made, read and written on the command line",
     **{
         f"reconstruction/records/{name}.py": "records are taken from tables and building models on the command line"
-        for name in ("csv_cells", "csv_import", "csv_tables", "ifc_import", "ifc_process", "step_text")
+        for name in ("csv/cells", "csv/reading", "csv/tables", "ifc/importing", "ifc/process")
     },
     "reconstruction/records/ifc/sets.py": "file content",
     "reconstruction/exports/sog/images.py": "the window writes SOG and reads none",
@@ -97,13 +97,11 @@ NOT_SHOWN = {
 """Files that the window imports, but whose sentences nobody reads there, and why."""
 
 FROM_MODEL_PROCESS = {
-    *(f"groundstation/services/{name}.py" for name in ("model_training", "reconstruct_looks", "shown_models")),
-    *(
-        f"reconstruction/training/{name}.py"
-        for name in ("checkpoints", "photo_stream", "saved", "start", "train", "trainer", "training_state")
-    ),
+    *(f"groundstation/services/reconstruct/{name}.py" for name in ("training", "render_queue", "shown_models")),
+    *(f"reconstruction/training/{name}.py" for name in ("checkpoints", "start", "train", "trainer", "training_state")),
+    *(f"reconstruction/training/{name}.py" for name in ("photos/photo_stream", "model/saved")),
     *(f"reconstruction/light/{name}.py" for name in ("choose_light", "glass_rays", "light_training")),
-    *(f"reconstruction/splats/{name}.py" for name in ("gsplat_backend", "initialise", "start_data")),
+    *(f"reconstruction/splats/{name}.py" for name in ("rasterising/gsplat_backend", "initialise", "start_data")),
     "reconstruction/base/out_of_memory.py",
 }
 """Files that the process of models imports and the window does not, and whose sentences it tells the window."""
@@ -114,6 +112,10 @@ NO_SENTENCE = {
         *("of what can be covered", "facade {0}, of what can be covered", "sections no other plan covers"),
         *("covered at least {0} times", "finest pixel", "coarsest pixel", "finest pixel on the worst panel"),
         *("smallest clearance", "findings: {0}"),
+    ),
+    "splats to start from are named on the command line": (
+        "has splats on panel {0}, and {1} has {2} panels; name a file of the same site",
+        "has no splat within {0} m of the panels of {1}; are both in one frame?",
     ),
     "what the history of records says": ("objects of the model", "{0} put", "{0} removed", "undone: {0}"),
     "names that GlobalIds follow from": ("component {0}", "panel {0}"),

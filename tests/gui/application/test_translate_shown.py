@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 from PySide6.QtCore import QTranslator
 
-from groundstation.gui.application.context import Workspace
+from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.languages import FOLDER
 from groundstation.gui.application.translate import finding_in_own_words, own_words
 from groundstation.gui.plan.method_names import method_name
@@ -53,7 +53,7 @@ def german(application):
 
 @pytest.fixture
 def workspace(application):
-    workspace = Workspace(Session(Document()), JobRunner())
+    workspace = ApplicationContext(Session(Document()), JobRunner())
     yield workspace
     workspace.close()
 
@@ -183,7 +183,7 @@ def test_what_the_window_says_instead_has_the_same_fields():
 
 
 def test_every_option_that_the_import_may_name_has_a_field():
-    sources = [*(ROOT / "planning" / "site_import").glob("*.py"), *(ROOT / "planning" / "geodesy").glob("*.py")]
+    sources = [*(ROOT / "planning" / "site" / "importing").glob("*.py"), *(ROOT / "planning" / "geo").glob("*.py")]
     named = {found for source in sources for found in re.findall(r"--[a-z][a-z-]+", source.read_text("utf-8"))}
     instead = {option for template in IN_WINDOW for option in re.findall(r"--[a-z][a-z-]+", template)}
     assert len(named) > 10

@@ -26,7 +26,7 @@ from planning.revision.top_up import TopUpRequest, top_up
 from tests.gui.driving import (
     click_on,
     clicked,
-    close_desk,
+    close_controller,
     escape,
     press,
     scroll_to,
@@ -46,32 +46,32 @@ GAP_S = 0.05
 
 @pytest.fixture
 def radio():
-    """A link that can be unplugged; asked for before `desk`, it ends after it."""
+    """A link that can be unplugged; asked for before `controller`, it ends after it."""
     radio = Reopening()
     yield radio
     radio.end()
 
 
 @pytest.fixture
-def desk(application, worker, tmp_path, monkeypatch):
+def controller(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
-    desk = Desk(application, worker=worker)
-    desk.show()
-    desk.window.setGeometry(0, 0, 1280, 720)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    controller = ProjectController(application, worker=worker)
+    controller.show()
+    controller.window.setGeometry(0, 0, 1280, 720)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
     model, plan = planned()
-    desk.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
-    desk.window.show_tab("fly")
-    turn_until_idle(application, desk)
-    yield desk
-    close_desk(desk)
+    controller.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    controller.window.show_tab("fly")
+    turn_until_idle(application, controller)
+    yield controller
+    close_controller(controller)
 
 
 @pytest.fixture
-def page(desk):
-    return desk.window.tab("fly")
+def page(controller):
+    return controller.window.tab("fly")
 
 
 def ask_for(page, request):
@@ -80,8 +80,8 @@ def ask_for(page, request):
 
 
 def connect(application, page, speed_up=20.0, autopilot=Autopilot.ARDUPILOT):
-    page.desk.set_choice(ConnectionChoice(speed_up=speed_up, autopilot=autopilot))
-    page.connection.setValue(page.desk.choice)
+    page.controller.set_choice(ConnectionChoice(speed_up=speed_up, autopilot=autopilot))
+    page.connection.setValue(page.controller.choice)
     page.connection.button.click()
     turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
 
@@ -95,15 +95,15 @@ def take_off(application, page):
 
 
 def n_photos(page):
-    return 0 if page.desk.in_hand is None else len(page.desk.in_hand.photos)
+    return 0 if page.controller.in_hand is None else len(page.controller.in_hand.photos)
 
 
 def has_landed(page):
-    return page.desk.in_hand is not None and page.desk.in_hand.ended is not None
+    return page.controller.in_hand is not None and page.controller.in_hand.ended is not None
 
 
 @pytest.mark.alone
-def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(application, desk, page):
+def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(application, controller, page):
     """Ten times as fast; turns of the event loop are no longer than 50 ms, but for a few in which others work.
 
     The simulated vehicle is in the same process, and machines are shared: of those few, the window's own work counts.
@@ -135,29 +135,29 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     assert "6/6" in page.readouts.text()
     assert "Photos: 6 of 6 views" in page.report.text()
     assert {row[2] for row in page.report.rows()} == {"taken"}
-    assert len(page.desk.in_hand.track_enu_m) > 20
+    assert len(page.controller.in_hand.track_enu_m) > 20
     assert not page.report.resume.isEnabled()
     findings = "\n".join(page.findings.texts())
     assert "all 6 views have a photo" in findings
     assert "smallest distance flown" in findings
     assert page._lists.tabText(2).startswith("Findings (")
     page.report.top_up.click()
-    turn_until_idle(application, desk)
-    assert "Nothing is missing" in desk.window.messages.texts()
+    turn_until_idle(application, controller)
+    assert "Nothing is missing" in controller.window.messages.texts()
 
 
-def test_coverage_is_painted_on_the_panels_as_it_grows(application, desk, page):
+def test_coverage_is_painted_on_the_panels_as_it_grows(application, controller, page):
     connect(application, page)
     take_off(application, page)
-    scene = desk.window.stage.scene()
+    scene = controller.window.stage.scene()
     turn_until(application, lambda: scene._panel_values is not None)
     _, first = scene._panel_values
     turn_until(application, lambda: n_photos(page) >= 5 and (scene._panel_values[1] > first).any())
-    desk.window.show_tab("site")
+    controller.window.show_tab("site")
     assert scene._panel_values is None  # the shared view is given back
 
 
-def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(application, desk, page):
+def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(application, controller, page):
     connect(application, page)
     take_off(application, page)
     ask_for(page, Request.PAUSE)
@@ -169,50 +169,50 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     missing = {row[0] for row in page.report.rows() if row[2] != "taken"}
     assert missing
     page.report.top_up.click()
-    turn_until_idle(application, desk)
-    plans = desk.workspace.document.plans
+    turn_until_idle(application, controller)
+    plans = controller.workspace.document.plans
     assert [entry.title for entry in plans] == ["First", "Top-up"]
     assert 0 < len(plans[-1].plan.viewpoints) <= 6
-    assert "Fly it before the battery is changed" in desk.window.messages.texts()
-    left = page.desk.in_hand.battery
+    assert "Fly it before the battery is changed" in controller.window.messages.texts()
+    left = page.controller.in_hand.battery
     # The plan that is shown is another one now: what is uploaded and what is seen must not differ.
     turn_until(application, lambda: "for another plan" in page._phase.text())
     assert not page.buttons.button(Request.UPLOAD).isEnabled()
     page.connection.button.click()
-    turn_until(application, lambda: not page.desk.is_connected)
+    turn_until(application, lambda: not page.controller.is_connected)
     connect(application, page)
     assert len(page.strip.states()) == len(plans[-1].plan.viewpoints)
-    turn_until(application, lambda: page.desk.in_hand.battery is not None)
-    assert page.desk.in_hand.battery == pytest.approx(left, abs=0.011)
+    turn_until(application, lambda: page.controller.in_hand.battery is not None)
+    assert page.controller.in_hand.battery == pytest.approx(left, abs=0.011)
     assert "as the flight before left it" in page.notes.texts()
     page.connection.button.click()
-    turn_until(application, lambda: not page.desk.is_connected)
-    page.desk.after.resume_sortie()
-    turn_until_idle(application, desk)
-    rest = desk.workspace.document.plans[-1]
+    turn_until(application, lambda: not page.controller.is_connected)
+    page.controller.after.resume_sortie()
+    turn_until_idle(application, controller)
+    rest = controller.workspace.document.plans[-1]
     assert rest.title == "Rest of sortie 1"
     assert {view.id for view in rest.plan.viewpoints} == missing
-    assert "It needs a full battery" in desk.window.messages.texts()
+    assert "It needs a full battery" in controller.window.messages.texts()
     connect(application, page)
-    turn_until(application, lambda: page.desk.in_hand.battery is not None)
-    assert page.desk.in_hand.battery > 0.99
+    turn_until(application, lambda: page.controller.in_hand.battery is not None)
+    assert page.controller.in_hand.battery > 0.99
 
 
 @pytest.mark.parametrize(("answer", "titles"), [("Yes", ["First", "Top-up"]), ("Cancel", ["First"])])
-def test_hardly_anything_missing_is_asked_about_with_what_it_would_cost(application, desk, page, answer, titles):
-    document = desk.workspace.document
+def test_hardly_anything_missing_is_asked_about_with_what_it_would_cost(application, controller, page, answer, titles):
+    document = controller.workspace.document
     plan = document.plans[0].plan
     found = top_up(document.site, plan, viewpoint_arrays(plan.viewpoints[:1]), TopUpRequest(time_budget_s=0.5))
     button = getattr(QMessageBox.StandardButton, answer)
     with clicked(press(button)) as said:
-        page.desk.after.restFound.emit(replace(found, aimed=100_000))
+        page.controller.after.restFound.emit(replace(found, aimed=100_000))
     assert f"{found.wanted} of 100000 sections are missing" in said[0]
     assert f"in the air (photos: {len(found.plan.viewpoints)}, batteries: {len(found.plan.sorties)})" in said[0]
-    assert [entry.title for entry in desk.workspace.document.plans] == titles
+    assert [entry.title for entry in controller.workspace.document.plans] == titles
 
 
-def test_losing_the_link_shows_a_band_and_is_survived(application, radio, desk, page, monkeypatch):
-    monkeypatch.setattr(page.desk, "_connection", lambda *_: radio)
+def test_losing_the_link_shows_a_band_and_is_survived(application, radio, controller, page, monkeypatch):
+    monkeypatch.setattr(page.controller, "_connection", lambda *_: radio)
     connect(application, page)
     take_off(application, page)
     assert page.band.isHidden()
@@ -220,11 +220,11 @@ def test_losing_the_link_shows_a_band_and_is_survived(application, radio, desk, 
     turn_until(application, page.band.isVisible)
     assert "LINK LOST" in page.band.text()
     assert page.buttons.button(Request.RETURN).isEnabled()
-    desk.window.show_tab("site")
+    controller.window.show_tab("site")
     assert page.band.isVisible()
-    desk.window.show_tab("fly")
+    controller.window.show_tab("fly")
     radio.cut.is_unplugged.clear()
-    turn_until(application, lambda: page.band.isHidden() and page.desk.in_hand.link is LinkState.ALIVE)
+    turn_until(application, lambda: page.band.isHidden() and page.controller.in_hand.link is LinkState.ALIVE)
     assert "link found again" in page.notes.texts()
 
 
@@ -235,16 +235,18 @@ def test_losing_the_link_shows_a_band_and_is_survived(application, radio, desk, 
         (LinkKind.UDP, "nowhere", "expected KIND:HOST:PORT"),
     ],
 )
-def test_an_address_that_leads_nowhere_is_told_and_another_can_be_tried(application, desk, page, kind, address, words):
-    page.desk.set_choice(ConnectionChoice(kind, address))
-    page.connection.setValue(page.desk.choice)
+def test_an_address_that_leads_nowhere_is_told_and_another_can_be_tried(
+    application, controller, page, kind, address, words
+):
+    page.controller.set_choice(ConnectionChoice(kind, address))
+    page.connection.setValue(page.controller.choice)
     page.connection.button.click()
-    turn_until(application, lambda: words in desk.window.messages.texts())
-    turn_until(application, lambda: not page.desk.is_connected)
+    turn_until(application, lambda: words in controller.window.messages.texts())
+    turn_until(application, lambda: not page.controller.is_connected)
     assert page.connection.button.text() == "Connect"
     assert read_choice(choice_path()) == ConnectionChoice(kind, address)
     connect(application, page)
-    assert page.desk.is_connected
+    assert page.controller.is_connected
 
 
 def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page):
@@ -259,67 +261,67 @@ def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page
         while time.monotonic() < end:
             application.processEvents()
             time.sleep(0.005)
-        assert not page.desk.is_in_flight
+        assert not page.controller.is_in_flight
 
 
-def test_closing_the_window_in_flight_asks_and_keeps_what_was_flown(application, desk, page, tmp_path):
+def test_closing_the_window_in_flight_asks_and_keeps_what_was_flown(application, controller, page, tmp_path):
     connect(application, page)
     take_off(application, page)
     for no in ("Cancel", escape):
         with clicked(no) as asked:
-            desk.window.close()
+            controller.window.close()
         assert "nothing will warn you" in asked[-1]
-        assert desk.window.isVisible()
-        assert page.desk.is_connected
+        assert controller.window.isVisible()
+        assert page.controller.is_connected
     with clicked("Cancel"):
-        click_on(desk.window, page.connection.button)
-    assert page.desk.is_connected
+        click_on(controller.window, page.connection.button)
+    assert page.controller.is_connected
     with clicked("Yes"):
-        desk.window.close()
-    assert not desk.window.isVisible()
+        controller.window.close()
+    assert not controller.window.isVisible()
     folder = tmp_path / "data" / "flights"
     assert list(folder.glob("*.json"))
     assert list(folder.glob("*.tlog"))
 
 
-def test_a_click_on_a_photo_goes_to_its_view(application, desk, page):
+def test_a_click_on_a_photo_goes_to_its_view(application, controller, page):
     connect(application, page)
     turn_until(application, lambda: len(page.strip.states()) == 6)
     place = page.strip.cell(3).center()
     QTest.mouseClick(page.strip, Qt.MouseButton.LeftButton, pos=QPoint(int(place.x()), int(place.y())))
-    selection = desk.workspace.selection
+    selection = controller.workspace.selection
     assert (selection.kind, selection.id) == (ItemKind.VIEWPOINT, page.strip.states()[3][0])
     assert "still to come" in page.strip.words(3)
 
 
-def test_a_new_window_takes_the_flight_over(application, desk, page):
+def test_a_new_window_takes_the_flight_over(application, controller, page):
     """As when the language changes: the flight belongs to the workspace."""
     connect(application, page)
     take_off(application, page)
-    desk._rebuild_window()
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    again = desk.window.tab("fly")
-    assert again.desk is page.desk
+    controller._rebuild_window()
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    again = controller.window.tab("fly")
+    assert again.controller is page.controller
     before = n_photos(again)
     turn_until(application, lambda: n_photos(again) > before)
     assert again.strip.states()[0][1] is ViewState.TAKEN
 
 
-def test_lengths_are_shown_in_feet_once_they_are_chosen(application, desk, page):
+def test_lengths_are_shown_in_feet_once_they_are_chosen(application, controller, page):
     connect(application, page)
     turn_until(application, lambda: "min 10.0 m" in page.readouts.text())
-    desk.workspace.set_units(UnitSystem.IMPERIAL)
+    controller.workspace.set_units(UnitSystem.IMPERIAL)
     assert "min 32.8 ft" in page.readouts.text()
-    desk.workspace.set_units(UnitSystem.METRIC)
+    controller.workspace.set_units(UnitSystem.METRIC)
 
 
-def test_without_a_plan_it_says_what_to_do_first(application, desk, page):
-    desk.workspace.session.open(Document(planned()[0]), None)
+def test_without_a_plan_it_says_what_to_do_first(application, controller, page):
+    controller.workspace.session.open(Document(planned()[0]), None)
     assert "Plan a flight first" in page._phase.text()
     assert not page.connection.button.isEnabled()
 
 
-def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(application, desk, page):
+def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(application, controller, page):
     page.right.setCurrentIndex(1)
     turn_until(application, lambda: "wind" in page.simulation.effects._cards)
     assert "no wind" in page.simulation.effects.card("wind").text()
@@ -328,14 +330,14 @@ def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(applicati
     card = page.simulation.effects.card("wind")
     card.wish.setCurrentIndex(card.wish.findData("off"))
     turn_until(application, lambda: "is off" in page.simulation.effects.card("wind").text())
-    assert page.desk.simulation.wishes == {"wind": "off"}
+    assert page.controller.simulation.wishes == {"wind": "off"}
 
 
-def test_what_went_wrong_is_said_as_an_error(application, desk, page):
+def test_what_went_wrong_is_said_as_an_error(application, controller, page):
     heard = []
-    desk.workspace.messageShown.connect(heard.append)
+    controller.workspace.messageShown.connect(heard.append)
     connect(application, page)
-    page.desk.request(Request.START)
+    page.controller.request(Request.START)
     turn_until(application, lambda: any(message.severity is Severity.ERROR for message in heard))
     assert "pre-flight list" in heard[-1].text
 
@@ -343,10 +345,10 @@ def test_what_went_wrong_is_said_as_an_error(application, desk, page):
 class Places:
     """Where the buttons of a flight stand in the window, looked at in every turn of the event loop."""
 
-    def __init__(self, desk, page):
-        self.window, self.page = desk.window, page
+    def __init__(self, controller, page):
+        self.window, self.page = controller.window, page
         self.first, self.moved, self.covered, self.away = self.now(), [], [], set()
-        self.timer = QTimer(desk.window, interval=20)
+        self.timer = QTimer(controller.window, interval=20)
         self.timer.timeout.connect(self.look)
         self.timer.start()
 
@@ -371,14 +373,14 @@ class Places:
                 self.covered.append((request, phase))
 
 
-def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio, desk, page, monkeypatch):
+def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio, controller, page, monkeypatch):
     """Not connected, uploading, ready, starting, flying, hovering, link lost, coming home, landed."""
-    monkeypatch.setattr(page.desk, "_connection", lambda *_: radio)
-    turn_until_idle(application, desk)
-    places = Places(desk, page)
+    monkeypatch.setattr(page.controller, "_connection", lambda *_: radio)
+    turn_until_idle(application, controller)
+    places = Places(controller, page)
     assert all(visible for _, _, visible in places.first.values())
     phases = set()
-    page.desk.viewChanged.connect(lambda view: phases.add((view.phase, view.link)))
+    page.controller.viewChanged.connect(lambda view: phases.add((view.phase, view.link)))
     connect(application, page)
     take_off(application, page)
     ask_for(page, Request.PAUSE)
@@ -391,8 +393,8 @@ def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio
     ask_for(page, Request.RESUME)
     ask_for(page, Request.RETURN)
     turn_until(application, lambda: has_landed(page))
-    click_on(desk.window, page.connection.button)
-    turn_until(application, lambda: not page.desk.is_connected)
+    click_on(controller.window, page.connection.button)
+    turn_until(application, lambda: not page.controller.is_connected)
     places.look()
     assert len(phases) >= 4, "ready, flying, lost, and before the upload"
     assert places.moved == []
@@ -403,13 +405,13 @@ def test_buttons_of_a_flight_keep_their_places_in_every_phase(application, radio
     ("language", "scale"),
     [(Language.ENGLISH, 1.0), slow(Language.ENGLISH, 1.6), slow(Language.GERMAN, 1.0), (Language.GERMAN, 1.6)],
 )
-def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application, desk, scale, language):
+def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application, controller, scale, language):
     from groundstation.gui.widgets.theme import TOUCH_PX
 
-    desk.choose(language=language, text_scale=scale)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    turn_until_idle(application, desk)
-    page = desk.window.tab("fly")
+    controller.choose(language=language, text_scale=scale)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    turn_until_idle(application, controller)
+    page = controller.window.tab("fly")
     try:
         rooms = {request: page.buttons.button(request).geometry() for request in PLACES}
         for request in (Request.RETURN, Request.LAND):
@@ -423,27 +425,27 @@ def test_return_and_land_lie_apart_from_each_other_and_from_the_rest(application
             assert button.fontMetrics().horizontalAdvance(button.text()) + ICON_PX < button.width()
             assert not button.icon().isNull()
     finally:
-        desk.choose(language=Language.ENGLISH, text_scale=1.0)
-        turn_until(application, lambda: desk.window.stage.scene() is not None)
+        controller.choose(language=Language.ENGLISH, text_scale=1.0)
+        turn_until(application, lambda: controller.window.stage.scene() is not None)
 
 
-def test_pressing_the_keyboard_twice_gives_no_second_order(application, desk, page):
+def test_pressing_the_keyboard_twice_gives_no_second_order(application, controller, page):
     """The button that was pressed is disabled, and Qt would give the keyboard to the next one."""
     connect(application, page)
     heard = []
     page.buttons.requested.connect(heard.append)
-    desk.window.activateWindow()
-    turn_until(application, desk.window.isActiveWindow)
+    controller.window.activateWindow()
+    turn_until(application, controller.window.isActiveWindow)
     page.buttons.button(Request.UPLOAD).setFocus()
     for _ in range(40):
-        QTest.keyClick(desk.window.focusWidget(), Qt.Key.Key_Space)
+        QTest.keyClick(controller.window.focusWidget(), Qt.Key.Key_Space)
         application.processEvents()
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
-    QTest.keyClick(desk.window.focusWidget(), Qt.Key.Key_Space)
+    QTest.keyClick(controller.window.focusWidget(), Qt.Key.Key_Space)
     assert heard == [Request.UPLOAD]
 
 
-def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, desk, page):
+def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, controller, page):
     connect(application, page)
     ask_for(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
@@ -459,23 +461,23 @@ def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, 
     assert heard == [Request.START]
 
 
-def test_keys_of_a_flight_do_nothing_in_other_tabs_nor_what_is_not_allowed(application, desk, page):
+def test_keys_of_a_flight_do_nothing_in_other_tabs_nor_what_is_not_allowed(application, controller, page):
     heard = []
     page.buttons.requested.connect(heard.append)
-    desk.window.activateWindow()
-    turn_until(application, desk.window.isActiveWindow)
+    controller.window.activateWindow()
+    turn_until(application, controller.window.isActiveWindow)
     for tab in ("fly", "site", "fly"):
-        desk.window.show_tab(tab)
-        turn_until_idle(application, desk)
+        controller.window.show_tab(tab)
+        turn_until_idle(application, controller)
         for action in page.buttons.flight_actions():
             assert not action.isEnabled(), "nothing is connected"
-            QTest.keySequence(desk.window, action.shortcut())
+            QTest.keySequence(controller.window, action.shortcut())
     connect(application, page)
-    desk.window.show_tab("site")
-    QTest.keySequence(desk.window, page.buttons.flight_actions()[0].shortcut())
+    controller.window.show_tab("site")
+    QTest.keySequence(controller.window, page.buttons.flight_actions()[0].shortcut())
     assert heard == []
-    desk.window.show_tab("fly")
-    QTest.keySequence(desk.window, page.buttons.flight_actions()[0].shortcut())
+    controller.window.show_tab("fly")
+    QTest.keySequence(controller.window, page.buttons.flight_actions()[0].shortcut())
     assert heard == [Request.UPLOAD]
 
 
@@ -485,15 +487,15 @@ def test_times_of_notes_carry_seconds_into_minutes(application, page):
 
 
 @pytest.mark.slow
-def test_a_finding_of_the_report_leads_to_its_view(application, desk, page):
+def test_a_finding_of_the_report_leads_to_its_view(application, controller, page):
     connect(application, page)
     take_off(application, page)
     ask_for(page, Request.RETURN)
     turn_until(application, lambda: has_landed(page))
-    found = next(finding for finding in page.desk.in_hand.ended.report.findings if finding.code == "views-taken")
+    found = next(finding for finding in page.controller.in_hand.ended.report.findings if finding.code == "views-taken")
     row = next(n for n, text in enumerate(page.findings.texts()) if "views-taken" in text)
     page.findings.clicked.emit(page.findings.model().index(row, 0))
-    selection = desk.workspace.selection
+    selection = controller.workspace.selection
     assert (selection.kind, selection.id) == (ItemKind.VIEWPOINT, found.place)
 
 
@@ -502,29 +504,29 @@ def few_items(monkeypatch, limit):
     monkeypatch.setattr("groundstation.services.mission.item_limit.photos_that_fit", lambda _autopilot: limit)
 
 
-def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, desk, page, monkeypatch):
+def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, controller, page, monkeypatch):
     few_items(monkeypatch, 4)
     for no in ("Cancel", escape):
         with clicked(no) as asked:
-            click_on(desk.window, page.connection.button)
-        turn_until_idle(application, desk)
+            click_on(controller.window, page.connection.button)
+        turn_until_idle(application, controller)
         assert "about 4 photos, and a sortie of this plan has 6" in asked[0]
-        assert not page.desk.is_connected
-        assert len(desk.workspace.document.plans) == 1
+        assert not page.controller.is_connected
+        assert len(controller.workspace.document.plans) == 1
     with clicked("Yes"):
         connect(application, page)
-    entry = desk.workspace.document.current
+    entry = controller.workspace.document.current
     assert entry.title == "First, shared out"
     assert [len(sortie.viewpoint_ids) <= 4 for sortie in entry.plan.sorties] == [True] * page.sortie.count()
     assert {view.id for view in entry.plan.viewpoints} == {view.id for view in planned()[1].viewpoints}
-    assert page.desk.is_for_shown_plan
+    assert page.controller.is_for_shown_plan
     assert page._phase.text() == "Connected. Upload the mission."
 
 
-def test_start_waits_for_rtk_only_where_it_is_needed(application, desk, page):
+def test_start_waits_for_rtk_only_where_it_is_needed(application, controller, page):
     from missions.simulator.scene import Conditions
 
-    page.desk.simulation.conditions = Conditions(fix="single")
+    page.controller.simulation.conditions = Conditions(fix="single")
     connect(application, page)
     ask_for(page, Request.UPLOAD)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
@@ -539,9 +541,9 @@ def connect_radio(application, radio, page, monkeypatch):
     """Connect the vehicle at the radio, which is not taken for a simulation, and upload to it."""
     # Answers are waited for a second of the vehicle's: on a busy computer too short for 40 times as fast.
     radio.is_simulated, radio.speed_up = False, 8.0
-    monkeypatch.setattr(page.desk, "_connection", lambda *_: radio)
-    page.desk.set_choice(ConnectionChoice(LinkKind.TCP, "127.0.0.1:5760"))
-    page.connection.setValue(page.desk.choice)
+    monkeypatch.setattr(page.controller, "_connection", lambda *_: radio)
+    page.controller.set_choice(ConnectionChoice(LinkKind.TCP, "127.0.0.1:5760"))
+    page.connection.setValue(page.controller.choice)
     page.connection.button.click()
     upload(application, page)
 
@@ -549,7 +551,7 @@ def connect_radio(application, radio, page, monkeypatch):
 def upload(application, page):
     turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
     ask_for(page, Request.UPLOAD)
-    turn_until(application, lambda: page.desk.in_hand.view.phase in (Phase.CHECKING, Phase.READY))
+    turn_until(application, lambda: page.controller.in_hand.view.phase in (Phase.CHECKING, Phase.READY))
 
 
 def mend(application, page, code, way):
@@ -560,7 +562,7 @@ def mend(application, page, code, way):
     click_on(button.window(), button)
 
 
-def test_parameters_of_a_real_vehicle_are_set_only_after_a_question(application, radio, desk, page, monkeypatch):
+def test_parameters_of_a_real_vehicle_are_set_only_after_a_question(application, radio, controller, page, monkeypatch):
     radio.changes = {"parameters": {"SIM_SPEEDUP": None, "RTL_ALT": 2100.0, "MNT1_PITCH_MIN": -45.0}}
     connect_radio(application, radio, page, monkeypatch)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
@@ -579,7 +581,9 @@ def test_parameters_of_a_real_vehicle_are_set_only_after_a_question(application,
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
 
-def test_an_aircraft_at_another_height_flies_once_the_pilot_has_agreed(application, radio, desk, page, monkeypatch):
+def test_an_aircraft_at_another_height_flies_once_the_pilot_has_agreed(
+    application, radio, controller, page, monkeypatch
+):
     x, y, z = planned()[0].site.home_enu_m
     radio.changes = {"stands_enu_m": (x, y, z - 3.0)}
     connect_radio(application, radio, page, monkeypatch)
@@ -590,20 +594,20 @@ def test_an_aircraft_at_another_height_flies_once_the_pilot_has_agreed(applicati
     assert "stands 3.0 m lower than planned" in asked[-1]
     with clicked("Yes"):
         mend(application, page, "home-height", Mend.RAISE)
-    turn_until(application, lambda: page.desk.in_hand.sortie.orders.raised_m == pytest.approx(3.0, abs=0.1))
+    turn_until(application, lambda: page.controller.in_hand.sortie.orders.raised_m == pytest.approx(3.0, abs=0.1))
     upload(application, page)
     turn_until(application, lambda: page.buttons.button(Request.START).isEnabled())
 
 
-def test_home_can_be_where_the_aircraft_stands(application, radio, desk, page, monkeypatch):
+def test_home_can_be_where_the_aircraft_stands(application, radio, controller, page, monkeypatch):
     x, y, z = planned()[0].site.home_enu_m
     radio.changes = {"stands_enu_m": (x + 8.0, y, z + 2.0)}
     connect_radio(application, radio, page, monkeypatch)
     turn_until(application, lambda: "8.0 m from the planned home" in page.checks.text())
     with clicked("Yes"):
         mend(application, page, "home", Mend.PLAN_FROM_HERE)
-    assert desk.workspace.document.site.site.home_enu_m == pytest.approx((x + 8.0, y, z + 2.0), abs=0.05)
-    assert "plan again" in desk.window.messages.texts()
+    assert controller.workspace.document.site.site.home_enu_m == pytest.approx((x + 8.0, y, z + 2.0), abs=0.05)
+    assert "plan again" in controller.window.messages.texts()
 
 
 def answer(text):
@@ -616,7 +620,7 @@ def answer(text):
     return step
 
 
-def test_a_return_through_the_building_needs_a_typed_word(application, radio, desk, page, monkeypatch):
+def test_a_return_through_the_building_needs_a_typed_word(application, radio, controller, page, monkeypatch):
     radio.changes = {
         "autopilot": Autopilot.PX4,
         "parameters": {"SIM_GZ_EN": None, "SYS_HITL": 0, "RTL_RETURN_ALT": 500.0},
@@ -635,7 +639,9 @@ def test_a_return_through_the_building_needs_a_typed_word(application, radio, de
 
 
 @pytest.mark.slow
-def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_picture(application, desk, page, tmp_path):
+def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_picture(
+    application, controller, page, tmp_path
+):
     from planning.site.bundled import write_scene
     from planning.site.file import read_site
 
@@ -644,11 +650,11 @@ def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_pictur
     folder = tmp_path / "office"
     folder.mkdir()
     other = read_site(write_scene("office", folder))
-    desk.workspace.session.open(Document(other), None)
+    controller.workspace.session.open(Document(other), None)
     before = n_photos(page)
     turn_until(application, lambda: n_photos(page) > before)
     assert page.pictures._flight is None
-    assert desk.window.stage.scene()._panel_values is None
+    assert controller.window.stage.scene()._panel_values is None
     assert page._phase.text().startswith("Flying.")
     assert page.buttons.button(Request.RETURN).isEnabled()
     assert not page.buttons.button(Request.UPLOAD).isEnabled()
@@ -656,11 +662,11 @@ def test_another_project_in_flight_leaves_the_flight_and_gets_none_of_its_pictur
     turn_until(application, lambda: has_landed(page))
     page.report.top_up.click()
     flown_over = planned()[0].site.name
-    assert f"This flight was over the site {flown_over}" in desk.window.messages.texts()
+    assert f"This flight was over the site {flown_over}" in controller.window.messages.texts()
 
 
-def test_a_long_sortie_and_a_lost_link_fit_a_small_screen(application, desk):
-    page, window = desk.window.tab("fly"), desk.window
+def test_a_long_sortie_and_a_lost_link_fit_a_small_screen(application, controller):
+    page, window = controller.window.tab("fly"), controller.window
     for at in (400, 30):
         states = [ViewState.NEXT if number == at else ViewState.TO_COME for number in range(700)]
         page.strip.set_states(tuple((f"v{number:04d}", state) for number, state in enumerate(states)))
@@ -695,16 +701,16 @@ def test_connected_the_form_of_the_vehicle_makes_room_for_the_list_before_take_o
     assert not page.connection.kind.isVisible()
     assert page.connection.button.mapTo(page.left, QPoint(0, 0)) == place
     click_on(page.connection.button.window(), page.connection.button)
-    turn_until(application, lambda: not page.desk.is_connected)
+    turn_until(application, lambda: not page.controller.is_connected)
     assert page.connection.kind.isVisible()
 
 
 @pytest.mark.parametrize("autopilot", Autopilot)
 def test_the_battery_and_the_time_of_a_sortie_agree_from_the_mission_tab_to_the_start(
-    application, desk, page, autopilot
+    application, controller, page, autopilot
 ):
     """What it uses, and with the reserve that must be left; where the autopilot is slower than the plan, that it is."""
-    reserve = 100.0 * desk.workspace.document.current.plan.rules.battery_reserve
+    reserve = 100.0 * controller.workspace.document.current.plan.rules.battery_reserve
     connect(application, page, autopilot=autopilot)
     upload(application, page)
     told = re.search(
@@ -714,9 +720,9 @@ def test_the_battery_and_the_time_of_a_sortie_agree_from_the_mission_tab_to_the_
     assert told is not None, page.checks.text()
     with clicked("Cancel") as asked:
         ask_for(page, Request.START)
-    desk.window.show_tab("mission")
-    turn_until_idle(application, desk)
-    table = desk.window.tab("mission").sorties._rows
+    controller.window.show_tab("mission")
+    turn_until_idle(application, controller)
+    table = controller.window.tab("mission").sorties._rows
     heads = [table.horizontalHeaderItem(column).text() for column in range(table.columnCount())]
     used, planned = (table.item(0, heads.index(head)).text() for head in ("Used", "Time"))
     takes, uses = (re.search(pattern, asked[0])[1] for pattern in (r"in about (\S+),", r"uses about (\d+)%"))
@@ -731,11 +737,11 @@ def test_the_battery_and_the_time_of_a_sortie_agree_from_the_mission_tab_to_the_
 
 
 @pytest.mark.parametrize(("autopilot", "name"), [(Autopilot.ARDUPILOT, "ArduPilot"), (Autopilot.PX4, "PX4")])
-def test_autopilots_are_called_as_their_makers_call_them(application, desk, page, autopilot, name):
+def test_autopilots_are_called_as_their_makers_call_them(application, controller, page, autopilot, name):
     connect(application, page, autopilot=autopilot)
     assert f"Link: {name} answers" in page.checks.text()
-    labels = [label.text() for label in desk.window.findChildren(QLabel) if label.isVisible()]
-    notes = [message.text for message in desk.window.messages.messages()]
+    labels = [label.text() for label in controller.window.findChildren(QLabel) if label.isVisible()]
+    notes = [message.text for message in controller.window.messages.messages()]
     for text in (*labels, *notes, page.checks.text()):
         assert autopilot.value not in text, f"the word of files and commands is shown: {text}"
 
@@ -744,7 +750,7 @@ def test_after_disconnecting_no_battery_and_no_height_is_shown_for_that_of_now(a
     connect(application, page)
     turn_until(application, lambda: "100%" in page.readouts.text() and "RTK" in page.readouts.text())
     page.connection.button.click()
-    turn_until(application, lambda: not page.desk.is_connected)
+    turn_until(application, lambda: not page.controller.is_connected)
     shown = page.readouts.text()
     assert "%" not in shown, shown
     assert "RTK" not in shown, shown

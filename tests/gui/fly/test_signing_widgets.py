@@ -12,7 +12,7 @@ from missions.mavlink.key_store import KeyStore
 from missions.mavlink.link import open_link
 from missions.mavlink.messages import Address, Heartbeat, SetupSigning
 from missions.mavlink.signing import Signer, key_from_passphrase
-from tests.gui.driving import clicked, close_desk, escape, press, shut, turn_until, turn_until_idle, type_into
+from tests.gui.driving import clicked, close_controller, escape, press, shut, turn_until, turn_until_idle, type_into
 from tests.services.live_cases import planned
 
 PASSPHRASE = "correct horse battery staple"
@@ -54,37 +54,37 @@ class Autopilot:
 
 
 @pytest.fixture
-def desk(application, worker):
-    from groundstation.gui.window.project_controller import Desk
+def controller(application, worker):
+    from groundstation.gui.window.project_controller import ProjectController
 
-    desk = Desk(application, worker=worker)
-    desk.show()
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    controller = ProjectController(application, worker=worker)
+    controller.show()
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
     model, plan = planned()
-    desk.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
-    desk.window.show_tab("fly")
-    turn_until_idle(application, desk)
-    yield desk
-    close_desk(desk)
+    controller.workspace.session.open(Document(model, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    controller.window.show_tab("fly")
+    turn_until_idle(application, controller)
+    yield controller
+    close_controller(controller)
 
 
 @pytest.fixture
-def page(desk):
-    return desk.window.tab("fly")
+def page(controller):
+    return controller.window.tab("fly")
 
 
-def choose(application, desk, page, url):
+def choose(application, controller, page, url):
     kind, _, address = url.partition(":")
     page.connection.setValue(ConnectionChoice(LinkKind(kind), address))
     page.connection.valueChanged.emit(page.connection.value())
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
 
 
-def act(application, desk, page, action, *steps):
+def act(application, controller, page, action, *steps):
     """Choose an action of the key's menu, and work the dialog that it brings up."""
     with clicked(*steps) as asked:
         page.connection.signing.action(action).trigger()
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
     return asked[-1]
 
 
@@ -99,10 +99,10 @@ def typed(first, second=None, button="OK"):
     return step
 
 
-def test_signed_is_remembered_for_each_address_and_offered_for_none_in_the_simulation(application, desk, page):
+def test_signed_is_remembered_for_each_address_and_offered_for_none_in_the_simulation(application, controller, page):
     box = page.connection
     assert box.signing.isHidden()
-    choose(application, desk, page, "tcp:127.0.0.1:5760")
+    choose(application, controller, page, "tcp:127.0.0.1:5760")
     assert not box.signing.isHidden()
     assert not box.value().is_signed
     box.signing.signed.click()
@@ -116,58 +116,58 @@ def test_signed_is_remembered_for_each_address_and_offered_for_none_in_the_simul
     assert read_choice(choice_path()).is_signed
     box.signing.signed.click()
     assert read_choice(choice_path()).signed == ()
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
 
 
-def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application, desk, page):
+def test_a_key_is_set_given_withdrawn_and_forgotten_and_never_shown(application, controller, page):
     from groundstation.gui.fly.signing_box import KeyAction
 
     key, box = key_from_passphrase(PASSPHRASE), page.connection.signing
     with Autopilot() as vehicle:
-        choose(application, desk, page, vehicle.url)
+        choose(application, controller, page, vehicle.url)
         assert box.text() == "This computer keeps no key yet."
         assert not box.action(KeyAction.GIVE).isEnabled()
-        act(application, desk, page, KeyAction.SET, typed(PASSPHRASE))
+        act(application, controller, page, KeyAction.SET, typed(PASSPHRASE))
         assert box.text() == "This computer keeps a key."
-        asked = act(application, desk, page, KeyAction.GIVE, "Yes")
+        asked = act(application, controller, page, KeyAction.GIVE, "Yes")
         assert f"The key goes to the vehicle at {vehicle.url}" in asked
         assert vehicle.key == key
-        assert page.desk.choice.is_signed
+        assert page.controller.choice.is_signed
         assert box.value()
-        asked = act(application, desk, page, KeyAction.WITHDRAW, "Yes")
+        asked = act(application, controller, page, KeyAction.WITHDRAW, "Yes")
         assert f"The vehicle at {vehicle.url} forgets the key" in asked
         turn_until(application, lambda: vehicle.key is None)
-        assert not page.desk.choice.is_signed
-        asked = act(application, desk, page, KeyAction.FORGET, "Yes")
+        assert not page.controller.choice.is_signed
+        asked = act(application, controller, page, KeyAction.FORGET, "Yes")
         assert "Forget the key on this computer?" in asked
     assert not box.action(KeyAction.FORGET).isEnabled()
-    told = desk.window.messages.texts()
+    told = controller.window.messages.texts()
     assert "has the key, and signs with it" in told
     assert key.hex() not in told
     assert PASSPHRASE not in told
 
 
-def test_nothing_is_done_when_the_pilot_thinks_better_of_it(application, desk, page):
+def test_nothing_is_done_when_the_pilot_thinks_better_of_it(application, controller, page):
     from groundstation.gui.fly.signing_box import KeyAction
 
     signing.set_passphrase(PASSPHRASE)
-    choose(application, desk, page, "tcp:127.0.0.1:1")
+    choose(application, controller, page, "tcp:127.0.0.1:1")
     for no in ("Cancel", escape, shut):
         for action in KeyAction:
-            act(application, desk, page, action, no)
-    act(application, desk, page, KeyAction.SET, typed("another long passphrase", button="Cancel"))
+            act(application, controller, page, action, no)
+    act(application, controller, page, KeyAction.SET, typed("another long passphrase", button="Cancel"))
     assert signing.link_signer().key == key_from_passphrase(PASSPHRASE)
-    assert "cannot be opened" not in desk.window.messages.texts()
+    assert "cannot be opened" not in controller.window.messages.texts()
 
 
-def test_a_vehicle_that_cannot_be_given_the_key_is_told_of(application, desk, page):
+def test_a_vehicle_that_cannot_be_given_the_key_is_told_of(application, controller, page):
     from groundstation.gui.fly.signing_box import KeyAction
 
     signing.set_passphrase(PASSPHRASE)
-    choose(application, desk, page, "tcp:127.0.0.1:1")
-    act(application, desk, page, KeyAction.GIVE, "Yes")
-    assert "tcp:127.0.0.1:1 cannot be opened" in desk.window.messages.texts()
-    assert not page.desk.choice.is_signed
+    choose(application, controller, page, "tcp:127.0.0.1:1")
+    act(application, controller, page, KeyAction.GIVE, "Yes")
+    assert "tcp:127.0.0.1:1 cannot be opened" in controller.window.messages.texts()
+    assert not page.controller.choice.is_signed
 
 
 @pytest.mark.parametrize(
@@ -178,27 +178,27 @@ def test_a_vehicle_that_cannot_be_given_the_key_is_told_of(application, desk, pa
         (bytes(range(32)), False, "may not obey a link that is not signed"),
     ],
 )
-def test_ends_that_sign_otherwise_are_told_apart_in_words(application, desk, page, vehicle_key, is_signed, words):
+def test_ends_that_sign_otherwise_are_told_apart_in_words(application, controller, page, vehicle_key, is_signed, words):
     signing.set_passphrase(PASSPHRASE)
     with Autopilot(vehicle_key) as vehicle:
-        choose(application, desk, page, vehicle.url)
+        choose(application, controller, page, vehicle.url)
         page.connection.set_signed(vehicle.url, is_signed)
-        turn_until_idle(application, desk)
+        turn_until_idle(application, controller)
         page.connection.button.click()
-        turn_until(application, lambda: words in desk.window.messages.texts())
+        turn_until(application, lambda: words in controller.window.messages.texts())
         if is_signed:
             turn_until(application, lambda: words in page._phase.text())
-        page.desk.disconnect_vehicle()
-        turn_until(application, lambda: not page.desk.is_connected)
+        page.controller.disconnect_vehicle()
+        turn_until(application, lambda: not page.controller.is_connected)
 
 
-def test_a_signed_link_without_a_key_says_so_and_closes(application, desk, page):
-    choose(application, desk, page, "tcp:127.0.0.1:1")
+def test_a_signed_link_without_a_key_says_so_and_closes(application, controller, page):
+    choose(application, controller, page, "tcp:127.0.0.1:1")
     page.connection.signing.signed.click()
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
     page.connection.button.click()
-    turn_until(application, lambda: "there is no signing key" in desk.window.messages.texts())
-    turn_until(application, lambda: not page.desk.is_connected)
+    turn_until(application, lambda: "there is no signing key" in controller.window.messages.texts())
+    turn_until(application, lambda: not page.controller.is_connected)
 
 
 def test_a_link_that_is_opened_again_goes_on_with_the_same_time_stamps():

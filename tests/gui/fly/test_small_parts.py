@@ -10,30 +10,30 @@ from planning.base.findings import Severity
 
 
 @pytest.fixture
-def new_desk(application, tmp_path, monkeypatch):
-    """Makes the desk of another start of the program."""
+def new_controller(application, tmp_path, monkeypatch):
+    """Makes the controller of another start of the program."""
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.application.context import Workspace
-    from groundstation.gui.fly.fly_controller import FlyDesk
+    from groundstation.gui.application.context import ApplicationContext
+    from groundstation.gui.fly.fly_controller import FlyController
 
     runner = JobRunner()
-    yield lambda: FlyDesk(Workspace(Session(Document()), runner))
+    yield lambda: FlyController(ApplicationContext(Session(Document()), runner))
     runner.shutdown()
 
 
-def test_whether_rtk_is_needed_is_known_at_the_next_start(new_desk):
-    new_desk().set_settings(FlightSettings(needs_rtk=True))
-    assert new_desk().settings == FlightSettings(needs_rtk=True)
-    new_desk().set_settings(FlightSettings())
-    assert new_desk().settings == FlightSettings()
+def test_whether_rtk_is_needed_is_known_at_the_next_start(new_controller):
+    new_controller().set_settings(FlightSettings(needs_rtk=True))
+    assert new_controller().settings == FlightSettings(needs_rtk=True)
+    new_controller().set_settings(FlightSettings())
+    assert new_controller().settings == FlightSettings()
 
 
-def test_a_setting_that_cannot_be_kept_is_told_and_holds_for_now(new_desk, tmp_path):
-    desk, said = new_desk(), []
-    desk.parent().messageShown.connect(lambda message: said.append(message.text))
+def test_a_setting_that_cannot_be_kept_is_told_and_holds_for_now(new_controller, tmp_path):
+    controller, said = new_controller(), []
+    controller.parent().messageShown.connect(lambda message: said.append(message.text))
     (tmp_path / "flight.toml").mkdir()
-    desk.set_settings(FlightSettings(needs_rtk=True))
-    assert desk.settings.needs_rtk
+    controller.set_settings(FlightSettings(needs_rtk=True))
+    assert controller.settings.needs_rtk
     assert "this is a folder" in said[0]
 
 

@@ -28,10 +28,10 @@ def planned():
 
 @pytest.fixture
 def workspace(application):
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
 
     runner = JobRunner()
-    workspace = Workspace(Session(), runner)
+    workspace = ApplicationContext(Session(), runner)
     yield workspace
     workspace.close()
     runner.shutdown()
@@ -160,7 +160,7 @@ def test_files_are_taken_in_the_order_of_their_sorties(page, workspace, planned,
     for path in names:
         path.touch()
     heard = []
-    monkeypatch.setattr(page.desk, "import_files", heard.extend)
+    monkeypatch.setattr(page.controller, "import_files", heard.extend)
     with clicked(choose(*names)):
         page._import.trigger()
     assert [path.name for path in heard] == ["roof.plan", "roof-2.plan", "roof-3.plan"]
@@ -193,7 +193,7 @@ def test_cancelling_the_check_leaves_the_page_usable(page, workspace, planned, i
     workspace.cancel(workspace.jobs()[0])
     idle()
     if not page.findings.verdict().startswith("Ready to fly"):
-        page.desk.check()
+        page.controller.check()
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
 
 
@@ -308,7 +308,7 @@ def test_import_makes_a_plan_that_undo_takes_away(page, workspace, planned, idle
     path = tmp_path / "flown.kmz"
     write_export(prepare_export(plan, model, FileFormat.DJI_KMZ), path)
     workspace.session.open(Document(site=model), None)
-    page.desk.import_files([path])
+    page.controller.import_files([path])
     idle(lambda: workspace.document.current is not None)
     entry = workspace.document.current
     assert (entry.title, entry.plan.method, len(entry.plan.viewpoints)) == ("flown", "imported", 10)
@@ -320,7 +320,7 @@ def test_import_makes_a_plan_that_undo_takes_away(page, workspace, planned, idle
 
 def test_a_mission_without_a_site_brings_a_bare_one_of_its_own(page, workspace, idle, said, shared_data):
     workspace.session.open(Document(), None)
-    page.desk.import_files([shared_data / "missions" / "geoyee_m3d_curtainwall_slope_mapping2d.kmz"])
+    page.controller.import_files([shared_data / "missions" / "geoyee_m3d_curtainwall_slope_mapping2d.kmz"])
     idle(lambda: workspace.document.current is not None)
     idle()
     site, plan = workspace.document.site.site, workspace.document.current.plan
@@ -329,7 +329,7 @@ def test_a_mission_without_a_site_brings_a_bare_one_of_its_own(page, workspace, 
     assert len(plan.viewpoints) == 46
     assert len(plan.sorties[0].in_passing_ids) == 46
     assert not [message.text for message in said if message.severity is Severity.ERROR]
-    page.desk.check()
+    page.controller.check()
     idle()
     workspace.session.undo()
     assert workspace.document.site is None
@@ -340,8 +340,8 @@ def test_files_that_are_no_missions_are_refused_by_name(page, workspace, planned
     bad.write_bytes(b"PK not a zip")
     workspace.session.open(opened(planned), None)
     idle()
-    page.desk.import_files([bad])
-    page.desk.compare_files([bad])
+    page.controller.import_files([bad])
+    page.controller.compare_files([bad])
     idle()
     errors = [message.text for message in said if message.severity is Severity.ERROR]
     assert len(errors) == 2
@@ -356,7 +356,7 @@ def test_compare_answers_and_leads_to_the_photos_that_differ(page, workspace, pl
     path = tmp_path / "kiosk.plan"
     write_export(prepare_export(plan, model, FileFormat.MAVLINK_PLAN), path)
     workspace.session.open(opened(planned), None)
-    page.desk.compare_files([path])
+    page.controller.compare_files([path])
     idle(lambda: "kiosk.plan is the plan: all 10 photos" in page.lists.comparison.answer())
     assert page.lists.currentWidget() is page.lists.comparison
     assert page.lists.comparison.table().model().rowCount() == 0
@@ -364,7 +364,7 @@ def test_compare_answers_and_leads_to_the_photos_that_differ(page, workspace, pl
     turned = tuple(replace(v, heading_deg=v.heading_deg - 3.0) if v.id == first else v for v in plan.viewpoints)
     workspace.change("Turn", opened(planned, viewpoints=turned))
     assert "Compare with file" in page.lists.comparison.answer()
-    page.desk.compare_files([path])
+    page.controller.compare_files([path])
     idle(lambda: "NOT the plan: 9 photos the same, 1 changed" in page.lists.comparison.answer())
     rows = page.lists.comparison.table().model()
     assert [rows.index(0, c).data() for c in (0, 1, 5)] == ["changed", first, "3.0"]
@@ -385,7 +385,7 @@ def test_all_photos_in_another_order_are_neither_the_plan_nor_strangers(page, wo
         for sortie in plan.sorties
     )
     workspace.session.open(opened(planned, sorties=backwards), None)
-    page.desk.compare_files([path])
+    page.controller.compare_files([path])
     idle(lambda: "takes all 10 photos of the plan, but flies otherwise" in page.lists.comparison.answer())
     assert "NOT the plan" not in page.lists.comparison.answer()
 

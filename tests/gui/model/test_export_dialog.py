@@ -17,8 +17,8 @@ def trained(tmp_path_factory):
 
 
 def opened_with(application, page, folder):
-    page.desk.open(folder)
-    turn_until(application, lambda: page.desk.card is not None and not page._workspace.jobs())
+    page.controller.open(folder)
+    turn_until(application, lambda: page.controller.card is not None and not page._workspace.jobs())
 
 
 def test_every_format_is_offered_with_what_it_is_for(application):
@@ -76,7 +76,7 @@ def test_a_model_is_written_and_the_user_is_told(application, page, trained, tmp
         page.side.export.click()
     turn_until(application, lambda: bool(page.messages))
     assert "The model is written" in page.messages[-1].text
-    assert 0 < len(read_spz(tmp_path / "tower.spz")) <= page.desk.card.n_gaussians
+    assert 0 < len(read_spz(tmp_path / "tower.spz")) <= page.controller.card.n_gaussians
 
 
 def test_a_web_page_is_written_into_a_folder_that_is_named(application, page, trained, tmp_path):
@@ -91,7 +91,7 @@ def test_a_web_page_is_written_into_a_folder_that_is_named(application, page, tr
 
 def test_what_cannot_be_written_is_told_and_the_window_goes_on(application, page, trained, tmp_path):
     opened_with(application, page, trained)
-    page.desk.export(tmp_path / "absent" / "tower.spz", ModelExport(ModelFormat.SPZ))
+    page.controller.export(tmp_path / "absent" / "tower.spz", ModelExport(ModelFormat.SPZ))
     turn_until(application, lambda: bool(page.messages))
     assert "there is no folder" in page.messages[-1].text
     assert page.side.export.isEnabled()
@@ -99,7 +99,7 @@ def test_what_cannot_be_written_is_told_and_the_window_goes_on(application, page
 
 def test_an_export_that_is_cancelled_leaves_nothing(application, page, trained, tmp_path):
     opened_with(application, page, trained)
-    page.desk.export(tmp_path / "tower.web", ModelExport(ModelFormat.WEB))
+    page.controller.export(tmp_path / "tower.web", ModelExport(ModelFormat.WEB))
     page._workspace.cancel(page._workspace.jobs()[0])
     turn_until(application, lambda: not page._workspace.jobs())
     assert list(tmp_path.iterdir()) == []

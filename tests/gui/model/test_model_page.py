@@ -29,7 +29,7 @@ def answer(page, look, value=90):
     """The process's answer to a look."""
     lens = look.camera.intrinsics
     picture = np.full((lens.height_px, lens.width_px, 3), value, np.uint8)
-    page.desk._take(Seen(look, picture, depth_m=12.0))
+    page.controller._take(Seen(look, picture, depth_m=12.0))
 
 
 def probe(page, x=0.5, y=0.5):
@@ -53,7 +53,7 @@ def test_a_scene_shows_its_panels_and_asks_for_its_picture(opened):
     assert names(opened) == ["A-0000", "A-0001", "B-0000", "B-0001"]
     assert "4 panels, 12 Gaussians" in opened.side.title.text()
     look = looks(opened)[0]
-    assert look.subject.folder == opened.desk.card.folder
+    assert look.subject.folder == opened.controller.card.folder
     answer(opened, look)
     assert opened.pane.view.pictures()[0] is not None
 
@@ -62,24 +62,24 @@ def test_a_trained_model_is_organised_by_the_process_and_then_opened(application
     model = tmp_path / "made.model"
     model.mkdir()
     (model / "model.json").write_text("{}")
-    page.desk.open(model)
+    page.controller.open(model)
     asked = page.told.of(Organise)[0]
     assert asked.folder == model
     assert not page.side.open.isEnabled()
-    page.desk._take(SceneMade(asked, None, f"{model}: holds no finished model"))
+    page.controller._take(SceneMade(asked, None, f"{model}: holds no finished model"))
     assert "holds no finished model" in page.messages[-1].text
     assert page.side.open.isEnabled()
-    page.desk.open(model)
-    page.desk._take(SceneMade(asked, scene))
-    turn_until(application, lambda: page.desk.card is not None)
-    assert page.desk.card.folder == scene
+    page.controller.open(model)
+    page.controller._take(SceneMade(asked, scene))
+    turn_until(application, lambda: page.controller.card is not None)
+    assert page.controller.card.folder == scene
 
 
 def test_what_is_no_model_is_refused_in_words(application, page, tmp_path):
-    page.desk.open(tmp_path)
+    page.controller.open(tmp_path)
     turn_until(application, lambda: bool(page.messages))
     assert "no scene of objects" in page.messages[-1].text
-    assert page.desk.card is None
+    assert page.controller.card is None
     assert page.side.open.isEnabled()
 
 
@@ -103,39 +103,39 @@ def test_the_dialog_begins_at_the_projects_models_where_there_are_some(page, tmp
 
 def test_a_click_chooses_the_panel_that_the_process_finds(opened):
     asked = probe(opened)
-    panel = opened.desk.card.panels[2]
-    opened.desk._take(Probed(asked, panel.element.panel, (1.0, 0.0, 1.0)))
-    assert opened.desk.selected == panel.global_id
+    panel = opened.controller.card.panels[2]
+    opened.controller._take(Probed(asked, panel.element.panel, (1.0, 0.0, 1.0)))
+    assert opened.controller.selected == panel.global_id
     assert opened.records.title.text() == "B-0000"
     assert opened.side.list.currentIndex().row() == 2
     assert any(mark.is_closed for mark in opened.pane.view.marks())
     late = probe(opened)
     probe(opened)
-    opened.desk._take(Probed(late, 0, (0.0, 0.0, 0.0)))
-    assert opened.desk.selected == panel.global_id
-    opened.desk._take(Probed(opened.told.of(Probe)[-1], None, None))
-    assert opened.desk.selected == ""
+    opened.controller._take(Probed(late, 0, (0.0, 0.0, 0.0)))
+    assert opened.controller.selected == panel.global_id
+    opened.controller._take(Probed(opened.told.of(Probe)[-1], None, None))
+    assert opened.controller.selected == ""
 
 
 def test_the_list_chooses_too_and_the_camera_turns_to_the_panel(opened):
     opened.side.list.setCurrentIndex(opened.side.rows.index(1))
-    panel = opened.desk.card.panels[1]
-    assert opened.desk.selected == panel.global_id
+    panel = opened.controller.card.panels[1]
+    assert opened.controller.selected == panel.global_id
     opened.pane.front.click()
     camera = opened.pane.camera()
     middle = np.mean(panel.element.corners_enu_m, axis=0)
     np.testing.assert_allclose(camera.pose.points_cam(middle[None])[0, :2], 0.0, atol=1e-9)
     opened.pane.home.click()
-    assert opened.pane.camera() is opened.desk.card.first_view
+    assert opened.pane.camera() is opened.controller.card.first_view
 
 
 def test_records_are_kept_found_and_taken_back(opened):
-    opened.desk.select(opened.desk.card.panels[0].global_id)
-    global_id = opened.desk.selected
-    assert not opened.desk.has_records
+    opened.controller.select(opened.controller.card.panels[0].global_id)
+    global_id = opened.controller.selected
+    assert not opened.controller.has_records
     opened.records.putAsked.emit(Defect(global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note="lower left"), None)
     opened.records.putAsked.emit(Inspection(global_id, "2026-05-04", "M. Weber", "drone photos"), None)
-    assert (opened.desk.card.folder / FILE).is_file()
+    assert (opened.controller.card.folder / FILE).is_file()
     texts = tree_texts(opened)
     assert "2026-05-04: crack, severity 4, open, lower left" in texts
     assert "Defects (1)" in texts
@@ -147,9 +147,9 @@ def test_records_are_kept_found_and_taken_back(opened):
     assert names(opened) == ["B-0000", "B-0001"]
     opened.records.undo.click()
     assert "2026-05-04: drone photos, M. Weber" not in tree_texts(opened)
-    entry = opened.desk.entries(Defect)[0]
+    entry = opened.controller.entries(Defect)[0]
     opened.records.removeAsked.emit(entry)
-    assert opened.desk.entries(Defect) == ()
+    assert opened.controller.entries(Defect) == ()
 
 
 def choose_level(page, level):
@@ -157,7 +157,7 @@ def choose_level(page, level):
 
 
 def test_facades_and_the_building_have_records_too(opened):
-    card, records = opened.desk.card, opened.records
+    card, records = opened.controller.card, opened.records
     choose_level(opened, "building")
     assert records.title.text() == card.name
     assert records.add.isEnabled()
@@ -168,13 +168,13 @@ def test_facades_and_the_building_have_records_too(opened):
     assert not records.add.isEnabled()
     assert "Inspections" in tree_texts(opened)
     panel = card.panels[2]
-    opened.desk.select(panel.global_id)
+    opened.controller.select(panel.global_id)
     assert (records.title.text(), records.global_id.text()) == (panel.facade, panel.facade_id)
     assert not records.size.isVisibleTo(opened.left)
     records.putAsked.emit(Document(panel.facade_id, "drawings of the posts", "plan", "posts.pdf"), None)
     assert any("drawings of the posts" in text for text in tree_texts(opened))
     # Another panel of the facade has the same; the panel itself has none of them.
-    opened.desk.select(card.panels[3].global_id)
+    opened.controller.select(card.panels[3].global_id)
     assert any("drawings of the posts" in text for text in tree_texts(opened))
     choose_level(opened, "panel")
     assert records.title.text() == card.panels[3].name
@@ -192,20 +192,20 @@ def tree_texts(page):
 
 
 def test_panels_are_coloured_by_what_their_records_say(opened):
-    first, second, *_ = (panel.global_id for panel in opened.desk.card.panels)
-    opened.desk.put(Defect(first, "crack", 5, "2026-05-04"))
-    opened.desk.put(Attribute(second, "maker", "Glas Nord"))
+    first, second, *_ = (panel.global_id for panel in opened.controller.card.panels)
+    opened.controller.put(Defect(first, "crack", 5, "2026-05-04"))
+    opened.controller.put(Attribute(second, "maker", "Glas Nord"))
     assert opened.side.colour.findData("maker") >= 0
     opened.side.colour.setCurrentIndex(opened.side.colour.findData(str(Computed.DEFECTS)))
-    assert dict(opened.desk.tints) == {0: (128, 0, 38)}
+    assert dict(opened.controller.tints) == {0: (128, 0, 38)}
     opened.pane.looks.forget()
     opened.pane.show_view()
-    assert looks(opened)[-1].tints == opened.desk.tints
+    assert looks(opened)[-1].tints == opened.controller.tints
     assert opened.side.without.text() == "3 without a value"
     opened.side.colour.setCurrentIndex(opened.side.colour.findData("maker"))
-    assert dict(opened.desk.tints) == {1: (0, 114, 178)}
+    assert dict(opened.controller.tints) == {1: (0, 114, 178)}
     opened.side.colour.setCurrentIndex(0)
-    assert opened.desk.tints == ()
+    assert opened.controller.tints == ()
 
 
 def test_a_section_is_asked_for_with_the_picture(opened):
@@ -221,21 +221,21 @@ def test_a_section_is_asked_for_with_the_picture(opened):
 def test_two_clicks_measure_and_a_third_begins_anew(opened):
     opened.pane.measure.click()
     for at in ((0.0, 0.0, 1.0), (3.0, 0.0, 5.0)):
-        opened.desk._take(Probed(probe(opened), 0, at))
+        opened.controller._take(Probed(probe(opened), 0, at))
     assert opened.pane.view.note() == "5.0 m; 3.0 m along the ground, 4.0 m in height"
     assert any(mark.text == "5.0 m" for mark in opened.pane.view.marks())
     opened.pane.set_units(UnitSystem.IMPERIAL)
     assert "ft" in opened.pane.view.note()
     opened.pane.set_units(UnitSystem.METRIC)
-    opened.desk._take(Probed(probe(opened), 0, (1.0, 0.0, 0.0)))
+    opened.controller._take(Probed(probe(opened), 0, (1.0, 0.0, 0.0)))
     assert opened.pane.view.note() == "Click two places."
-    assert opened.desk.selected == ""
+    assert opened.controller.selected == ""
 
 
 def test_another_scene_of_the_building_is_shown_beside_it(application, page, scene, tmp_path):
     write_scene(made_scene(((3, 2), (2, 1)), seed=1), tmp_path / "later.gsscene")
-    page.desk.open(scene)
-    turn_until(application, lambda: page.desk.card is not None)
+    page.controller.open(scene)
+    turn_until(application, lambda: page.controller.card is not None)
     assert page.pane.compare.findText("later.gsscene") == 1
     page.pane.compare.setCurrentIndex(1)
     right = [look for look in looks(page) if look.place == "right"]
@@ -249,24 +249,24 @@ def test_panels_have_their_colours_beside_too_where_they_have_other_numbers(appl
     facade = later.components[1]
     moved = tuple(replace(each, panel=5 - each.panel) for each in facade.elements)
     components = (later.components[0], replace(facade, elements=moved), *later.components[2:])
-    write_scene(replace(later, components=components), opened.desk.card.folder.parent / "later.gsscene")
-    opened.desk.open(opened.desk.card.folder)
+    write_scene(replace(later, components=components), opened.controller.card.folder.parent / "later.gsscene")
+    opened.controller.open(opened.controller.card.folder)
     turn_until(application, lambda: not opened._workspace.jobs())
-    opened.desk.put(Defect(opened.desk.card.panels[2].global_id, "crack", 5, "2026-05-04"))
+    opened.controller.put(Defect(opened.controller.card.panels[2].global_id, "crack", 5, "2026-05-04"))
     opened.side.colour.setCurrentIndex(opened.side.colour.findData(str(Computed.DEFECTS)))
     opened.pane.axis.setCurrentIndex(1)
     opened.pane.compare.setCurrentIndex(1)
-    turn_until(application, lambda: opened.desk.beside is not None)
-    assert dict(opened.desk.tints) == {2: (128, 0, 38)}
-    assert dict(opened.desk.tints_beside) == {3: (128, 0, 38)}
+    turn_until(application, lambda: opened.controller.beside is not None)
+    assert dict(opened.controller.tints) == {2: (128, 0, 38)}
+    assert dict(opened.controller.tints_beside) == {3: (128, 0, 38)}
     opened.pane.looks.forget()
     opened.pane.show_view()
     left, right = looks(opened)[-2:]
     assert (left.place, right.place) == ("left", "right")
-    assert (left.tints, right.tints) == (opened.desk.tints, opened.desk.tints_beside)
+    assert (left.tints, right.tints) == (opened.controller.tints, opened.controller.tints_beside)
     assert left.section == right.section is not None
     opened.pane.compare.setCurrentIndex(0)
-    assert opened.desk.tints_beside == ()
+    assert opened.controller.tints_beside == ()
 
 
 def test_the_picture_is_saved_with_its_marks(opened, tmp_path):
@@ -283,9 +283,9 @@ def test_the_picture_is_saved_with_its_marks(opened, tmp_path):
 
 
 def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application, opened, tmp_path):
-    panels = opened.desk.card.panels[:2]
+    panels = opened.controller.card.panels[:2]
     note = "<script>alert(1)</script>"
-    opened.desk.put(Defect(panels[0].global_id, "crack", 2, "2026-05-04", 0.5, 0.5, note=note))
+    opened.controller.put(Defect(panels[0].global_id, "crack", 2, "2026-05-04", 0.5, 0.5, note=note))
     opened.side.list.setCurrentIndex(opened.side.rows.index(0))
     opened.side.list.selectAll()
     for no in ("Cancel", escape, shut):
@@ -309,12 +309,12 @@ def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application
 
 
 def test_a_report_of_a_facade_shows_it_whole_and_the_panels_that_something_is_known_of(application, opened, tmp_path):
-    card, desk = opened.desk.card, opened.desk
+    card, controller = opened.controller.card, opened.controller
     panels = [each for each in card.panels if each.facade == card.panels[0].facade]
-    desk.put(Inspection(panels[0].facade_id, "2026-03-30", "Moreau"))
-    desk.put(Defect(panels[1].global_id, "crack", 4, "2026-05-04"))
-    desk.put(Defect(card.panels[-1].global_id, "leak of another facade", 4, "2026-05-04"))
-    desk.select(panels[0].global_id)
+    controller.put(Inspection(panels[0].facade_id, "2026-03-30", "Moreau"))
+    controller.put(Defect(panels[1].global_id, "crack", 4, "2026-05-04"))
+    controller.put(Defect(card.panels[-1].global_id, "leak of another facade", 4, "2026-05-04"))
+    controller.select(panels[0].global_id)
     choose_level(opened, "facade")
     with clicked(choose(tmp_path / "facade.pdf")):
         opened.records.report.click()
@@ -335,12 +335,12 @@ def test_a_report_of_a_facade_shows_it_whole_and_the_panels_that_something_is_kn
 
 
 def test_another_model_in_the_middle_of_a_report_ends_it(application, opened, tmp_path):
-    opened.desk.select(opened.desk.card.panels[0].global_id)
+    opened.controller.select(opened.controller.card.panels[0].global_id)
     opened.make_report(tmp_path / "r.pdf")
     look, folder = looks(opened)[-1], tmp_path / "other.gsscene"
     write_scene(made_scene(((1,),), name="other"), folder)
-    opened.desk.open(folder)
-    turn_until(application, lambda: opened.desk.card.folder == folder)
+    opened.controller.open(folder)
+    turn_until(application, lambda: opened.controller.card.folder == folder)
     answer(opened, look)
     assert not opened.report.is_busy
     assert not (tmp_path / "r.pdf").exists()
@@ -356,23 +356,23 @@ def pictures_come(application, page, n):
 
 def test_a_report_holds_what_is_attached_and_what_is_known_of_facade_and_building(application, opened, tmp_path):
     """Of a panel: photos of its defects under their numbers, names of documents, and files that are missing."""
-    card, desk = opened.desk.card, opened.desk
+    card, controller = opened.controller.card, opened.controller
     panel = card.panels[1]
     photo, contract, lost = tmp_path / "crack.png", tmp_path / "contract.pdf", tmp_path / "lost.png"
     for path, grey in ((photo, 40), (lost, 41)):
         assert cv2.imwrite(str(path), np.full((60, 90, 3), grey, np.uint8))
     contract.write_bytes(b"%PDF-1.7" + bytes(2400))
     long = "It runs from the lower left corner. " * 60 + "x" * 400
-    desk.put(Defect(panel.global_id, "scratch", 1, "2026-05-04"))
-    desk.put(Defect(panel.global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note=f"below\n{long}"), photo)
-    desk.put(Defect(panel.global_id, "leak", 3, "2026-05-04"), lost)
-    desk.put(Inspection(panel.facade_id, "2026-03-30", "Moreau", "rope access", "sound"))
-    desk.put(Document(panel.facade_id, "Maintenance contract", "contract.pdf", "contract"), contract)
-    desk.put(Document(card.global_id, "Entrance", "entrance.png"), photo)
-    desk.put(Document(card.global_id, "Rules", "https://example.org/rules.pdf"))
-    (missing,) = (each.picture for each in desk.entries_of(Defect, panel.global_id) if each.kind == "leak")
+    controller.put(Defect(panel.global_id, "scratch", 1, "2026-05-04"))
+    controller.put(Defect(panel.global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note=f"below\n{long}"), photo)
+    controller.put(Defect(panel.global_id, "leak", 3, "2026-05-04"), lost)
+    controller.put(Inspection(panel.facade_id, "2026-03-30", "Moreau", "rope access", "sound"))
+    controller.put(Document(panel.facade_id, "Maintenance contract", "contract.pdf", "contract"), contract)
+    controller.put(Document(card.global_id, "Entrance", "entrance.png"), photo)
+    controller.put(Document(card.global_id, "Rules", "https://example.org/rules.pdf"))
+    (missing,) = (each.picture for each in controller.entries_of(Defect, panel.global_id) if each.kind == "leak")
     (card.folder / "records-files" / missing).unlink()
-    desk.select(panel.global_id)
+    controller.select(panel.global_id)
     opened.make_report(tmp_path / "panel.pdf")
     pictures_come(application, opened, 1)
     html = opened.report.html()
@@ -392,8 +392,8 @@ def test_a_report_holds_what_is_attached_and_what_is_known_of_facade_and_buildin
 
 
 def test_a_lost_process_is_told_and_asked_anew(opened):
-    opened.make_report(opened.desk.card.folder / "r.pdf")
-    opened.desk._take(Lost(-9))
+    opened.make_report(opened.controller.card.folder / "r.pdf")
+    opened.controller._take(Lost(-9))
     assert "has ended" in opened.messages[-1].text
     before = len(looks(opened))
     opened.pane.show_view()
@@ -401,8 +401,8 @@ def test_a_lost_process_is_told_and_asked_anew(opened):
 
 
 def test_damaged_records_are_told_and_the_model_is_still_there(opened):
-    (opened.desk.card.folder / FILE).write_bytes(b"no records")
-    opened.desk.select(opened.desk.card.panels[0].global_id)
+    (opened.controller.card.folder / FILE).write_bytes(b"no records")
+    opened.controller.select(opened.controller.card.panels[0].global_id)
     assert "SQLite" in opened.messages[-1].text
     assert opened.records.title.text() == "A-0000"
 
@@ -419,7 +419,7 @@ def test_damaged_records_are_told_and_the_model_is_still_there(opened):
     ],
 )
 def test_a_form_says_what_is_wrong_and_stays(opened, kind, texts, problem):
-    dialog = RecordDialog(kind, opened.desk.card.panels[0].global_id, None, str, opened.left)
+    dialog = RecordDialog(kind, opened.controller.card.panels[0].global_id, None, str, opened.left)
     for name, text in texts.items():
         dialog.boxes[name].setText(text)
     dialog.accept()
@@ -429,7 +429,7 @@ def test_a_form_says_what_is_wrong_and_stays(opened, kind, texts, problem):
 
 
 def test_forms_make_records_and_change_them(opened):
-    global_id = opened.desk.card.panels[0].global_id
+    global_id = opened.controller.card.panels[0].global_id
     dialog = RecordDialog(Defect, global_id, None, str, opened.left)
     dialog.boxes["kind"].setText("crack")
     dialog.boxes["u"].setText("0,25")
@@ -438,14 +438,14 @@ def test_forms_make_records_and_change_them(opened):
     dialog.accept()
     made = dialog.found
     assert (made.kind, made.severity, made.u, made.v, made.status) == ("crack", 3, 0.25, 0.5, "open")
-    opened.desk.put(made)
+    opened.controller.put(made)
     kept = RecordDialog(Defect, global_id, None, str, opened.left)
-    before = opened.desk.entries_of(Defect, global_id)[0]
+    before = opened.controller.entries_of(Defect, global_id)[0]
     kept = RecordDialog(Defect, global_id, before, str, opened.left)
     kept.boxes["note"].setPlainText("grows")
     kept.accept()
-    opened.desk.put(kept.found)
-    after = opened.desk.entries_of(Defect, global_id)
+    opened.controller.put(kept.found)
+    after = opened.controller.entries_of(Defect, global_id)
     assert [(entry.key, entry.note) for entry in after] == [(before.key, "grows")]
     named = RecordDialog(Attribute, global_id, None, str, opened.left)
     named.boxes["name"].setCurrentText("thickness")
@@ -455,8 +455,8 @@ def test_forms_make_records_and_change_them(opened):
 
 
 def test_records_are_added_and_changed_in_a_form_and_not_when_it_is_left(opened):
-    global_id = opened.desk.card.panels[0].global_id
-    opened.desk.select(global_id)
+    global_id = opened.controller.card.panels[0].global_id
+    opened.controller.select(global_id)
     add = opened.records.kinds.actions()[list(KIND_TITLES).index(Defect)]
 
     def fill(kind, button):
@@ -469,22 +469,22 @@ def test_records_are_added_and_changed_in_a_form_and_not_when_it_is_left(opened)
     for step in (fill("crack", "Cancel"), escape, shut):
         with clicked(step):
             add.trigger()
-    assert opened.desk.entries_of(Defect, global_id) == ()
+    assert opened.controller.entries_of(Defect, global_id) == ()
     with clicked(fill("crack", "OK")):
         add.trigger()
-    assert [found.kind for found in opened.desk.entries_of(Defect, global_id)] == ["crack"]
+    assert [found.kind for found in opened.controller.entries_of(Defect, global_id)] == ["crack"]
     group = opened.records.tree.topLevelItem(list(KIND_TITLES).index(Defect))
     opened.records.tree.setCurrentItem(group.child(0))
     with clicked(fill("chip", "OK")):
         opened.records.change.click()
-    assert [found.kind for found in opened.desk.entries_of(Defect, global_id)] == ["chip"]
+    assert [found.kind for found in opened.controller.entries_of(Defect, global_id)] == ["chip"]
 
 
 def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_path):
-    global_id = opened.desk.card.panels[0].global_id
+    global_id = opened.controller.card.panels[0].global_id
     (tmp_path / "crack.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(40))
     (tmp_path / "sheet.pdf").write_bytes(b"%PDF-1.7")
-    opened.desk.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "crack.png")
+    opened.controller.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "crack.png")
     dialog = RecordDialog(Document, global_id, None, str, opened.left)
     dialog.boxes["title"].setText("Data sheet")
     for no in ("Cancel", escape, shut):
@@ -494,13 +494,13 @@ def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_pat
     with clicked(choose(tmp_path / "sheet.pdf")):
         dialog.choose.click()
     dialog.accept()
-    opened.desk.put(dialog.found, dialog.file)
-    assert opened.desk.entries_of(Defect, global_id)[0].picture.endswith(".png")
-    assert len(opened.desk.entries_of(Document, global_id)[0].sha256) == 64
+    opened.controller.put(dialog.found, dialog.file)
+    assert opened.controller.entries_of(Defect, global_id)[0].picture.endswith(".png")
+    assert len(opened.controller.entries_of(Document, global_id)[0].sha256) == 64
     (tmp_path / "no.png").write_bytes(b"text")
-    opened.desk.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "no.png")
+    opened.controller.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "no.png")
     assert "picture" in opened.messages[-1].text
-    assert len(opened.desk.entries_of(Defect, global_id)) == 1
+    assert len(opened.controller.entries_of(Defect, global_id)) == 1
 
 
 def test_a_click_is_no_drag_and_a_drag_no_click(opened):
@@ -527,7 +527,7 @@ def mouse(view, kind, at):
 
 
 def test_the_panel_under_the_mouse_is_named(opened):
-    panel = opened.desk.card.panels[0]
+    panel = opened.controller.card.panels[0]
     camera = opened.pane.camera()
     middle = camera.pose.points_cam(np.mean(panel.element.corners_enu_m, axis=0)[None])[0]
     lens = camera.intrinsics

@@ -4,7 +4,7 @@ import gc
 
 import pytest
 
-from tests.gui.driving import close_desk, turn_until
+from tests.gui.driving import close_controller, turn_until
 from tests.gui.photos.photos_tab import PhotosTab
 from tests.services.photo_cases import write_photos
 
@@ -19,25 +19,25 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def desk(application, worker, tmp_path_factory):
+def controller(application, worker, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
-        from groundstation.gui.window.project_controller import Desk
+        from groundstation.gui.window.project_controller import ProjectController
 
-        desk = Desk(application, worker=worker)
-        desk.show()
-        desk.window.setGeometry(0, 0, 1280, 720)
-        turn_until(application, lambda: desk.window.stage.scene() is not None)
-        yield desk
-        close_desk(desk)
+        controller = ProjectController(application, worker=worker)
+        controller.show()
+        controller.window.setGeometry(0, 0, 1280, 720)
+        turn_until(application, lambda: controller.window.stage.scene() is not None)
+        yield controller
+        close_controller(controller)
         gc.collect()
 
 
 @pytest.fixture
-def page(application, desk, folder):
-    page = PhotosTab(application, desk, folder)
+def page(application, controller, folder):
+    page = PhotosTab(application, controller, folder)
     yield page
-    desk.workspace.messageShown.disconnect(page.messages.append)
+    controller.workspace.messageShown.disconnect(page.messages.append)
 
 
 @pytest.fixture

@@ -14,13 +14,13 @@ from tests.services.photo_cases import draft_of, site_model, with_paths
 class PhotosTab:
     """A user at the tab."""
 
-    def __init__(self, application, desk, folder, model=None):
-        self.application, self.desk = application, desk
-        desk.workspace.session.open(Document(site_model() if model is None else model), None)
-        desk.window.show_tab("photos")
-        self.tab = desk.window.tab("photos")
+    def __init__(self, application, controller, folder, model=None):
+        self.application, self.controller = application, controller
+        controller.workspace.session.open(Document(site_model() if model is None else model), None)
+        controller.window.show_tab("photos")
+        self.tab = controller.window.tab("photos")
         self.messages = []
-        desk.workspace.messageShown.connect(self.messages.append)
+        controller.workspace.messageShown.connect(self.messages.append)
         turn_until(application, self.tab.choose.isEnabled)
         with clicked(choose(folder)):
             self.tab.choose.click()
@@ -32,23 +32,23 @@ class PhotosTab:
 
     @property
     def draft(self):
-        return self.tab.desk.draft
+        return self.tab.controller.draft
 
     @property
     def grid(self):
         return self.draft.grid(self.tab.pane.place())
 
     def idle(self):
-        turn_until_idle(self.application, self.desk)
+        turn_until_idle(self.application, self.controller)
         turn_until(self.application, lambda: not self.tab.store.is_busy())
         self.application.processEvents()
 
     def found(self, draft=None):
-        """Give the desk what a search finds in these photos; the search itself is tested where it is."""
-        cards = self.tab.desk.cards
+        """Give the controller what a search finds in these photos; the search itself is tested where it is."""
+        cards = self.tab.controller.cards
         draft = draft_of([card.posed for card in cards]) if draft is None else draft
-        self.tab.desk._history = History(with_paths(draft, [card.path for card in cards]))
-        self.tab.desk.draftChanged.emit()
+        self.tab.controller._history = History(with_paths(draft, [card.path for card in cards]))
+        self.tab.controller.draftChanged.emit()
         self.idle()
 
     def at(self, point_px):

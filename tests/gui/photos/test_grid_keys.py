@@ -18,7 +18,7 @@ from reconstruction.panels.search.record import InclinedLine
 def keyed(found):
     """The view with the keyboard."""
     found.use_tool("MOVE")
-    found.desk.window.activateWindow()
+    found.controller.window.activateWindow()
     found.view.setFocus()
     found.application.processEvents()
     return found
@@ -37,10 +37,10 @@ def test_tab_goes_through_all_lines_and_then_leaves_the_picture(keyed):
     assert passed[0] == ("column", 0)
     assert passed[-1] == ("row", len(keyed.grid.rows) - 1)
     assert len(set(passed)) == n_lines
-    assert keyed.desk.window.focusWidget() is keyed.view
+    assert keyed.controller.window.focusWidget() is keyed.view
     keyed.keys("Tab")
     assert keyed.view.chosen_line() is None
-    assert keyed.desk.window.focusWidget() is not keyed.view
+    assert keyed.controller.window.focusWidget() is not keyed.view
 
 
 def test_shift_and_tab_goes_backwards(keyed):
@@ -65,7 +65,7 @@ def test_arrows_move_a_line_by_a_pixel_and_with_shift_by_ten_as_one_correction(k
     assert np.abs(np.delete(change, 1)).max() == 0.0
     assert not keyed.draft.unsolved
     assert keyed.view.chosen_line() == ("column", 1)
-    assert keyed.tab.desk.undo_label == "Move line"
+    assert keyed.tab.controller.undo_label == "Move line"
     keyed.tab.tools.undo.click()
     keyed.idle()
     assert positions(keyed) == before
@@ -146,7 +146,7 @@ def test_a_pressed_line_is_moved_with_buttons_that_fingers_hit(found):
 def test_the_outcome_of_an_earlier_correction_does_not_drop_the_line_that_is_being_moved(keyed):
     keyed.keys("Tab", "Right", "Return", "Right", "Right")
     before = positions(keyed)[0]
-    keyed.tab.desk.draftChanged.emit()
+    keyed.tab.controller.draftChanged.emit()
     keyed.keys("Return")
     keyed.idle()
     assert positions(keyed)[0] == pytest.approx(before + 2.0)

@@ -23,7 +23,7 @@ def middle(grid, row, column):
 
 
 def test_a_folder_is_read_and_each_photo_has_its_marks(page):
-    cards = page.tab.desk.cards
+    cards = page.tab.controller.cards
     assert len(cards) == 3
     assert PhotoMark.CUT_OFF in cards[2].marks
     assert not cards[0].marks
@@ -34,12 +34,12 @@ def test_a_folder_is_read_and_each_photo_has_its_marks(page):
 
 
 def test_the_first_photo_is_shown_and_a_finding_leads_to_its_own(page):
-    assert page.tab.pane.card() is page.tab.desk.cards[0]
+    assert page.tab.pane.card() is page.tab.controller.cards[0]
     assert page.view.picture().levels[0].width() == 800
-    page.tab.findings.placePicked.emit(str(page.tab.desk.cards[1].path))
+    page.tab.findings.placePicked.emit(str(page.tab.controller.cards[1].path))
     page.idle()
-    assert page.tab.pane.card() is page.tab.desk.cards[1]
-    assert page.view.picture().path == page.tab.desk.cards[1].path
+    assert page.tab.pane.card() is page.tab.controller.cards[1]
+    assert page.view.picture().path == page.tab.controller.cards[1].path
 
 
 def test_a_damaged_photo_says_why_it_is_not_shown(page):
@@ -53,12 +53,12 @@ def test_a_folder_without_photos_is_refused_in_words(page, tmp_path):
     for no in ("Cancel", escape):
         with clicked(no):
             page.tab.choose.click()
-        assert len(page.tab.desk.cards) == 3
+        assert len(page.tab.controller.cards) == 3
     with clicked(choose(tmp_path)):
         page.tab.choose.click()
     page.idle()
     assert any("holds no .jpg photo" in message.text for message in page.messages)
-    assert len(page.tab.desk.cards) == 3
+    assert len(page.tab.controller.cards) == 3
 
 
 def test_a_place_on_the_map_chooses_its_photo(page):
@@ -67,7 +67,7 @@ def test_a_place_on_the_map_chooses_its_photo(page):
     spot = page.tab.map._at(page.tab.map._places[1]).toPoint()
     QTest.mouseClick(page.tab.map, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
     assert found == [1]
-    assert page.tab.pane.card() is page.tab.desk.cards[1]
+    assert page.tab.pane.card() is page.tab.controller.cards[1]
 
 
 @pytest.mark.parametrize("is_rectified", [False, True])
@@ -82,7 +82,7 @@ def test_a_line_is_dragged_in_both_views_and_the_facade_solved_again(found, is_r
     after = [line.position_m for line in found.draft.facade("A").columns]
     assert not found.draft.unsolved
     assert after[4] - before[4] == pytest.approx(0.3 * (before[5] - before[4]), abs=0.06)
-    assert found.tab.desk.undo_label == "Move line"
+    assert found.tab.controller.undo_label == "Move line"
     found.tab.tools.undo.click()
     found.idle()
     assert [line.position_m for line in found.draft.facade("A").columns] == before
@@ -118,9 +118,9 @@ def test_a_press_beside_everything_moves_the_picture_and_changes_nothing(found):
 def test_used_panels_replace_those_of_the_site_and_undo_brings_them_back(found):
     found.tab.use.click()
     found.idle()
-    workspace = found.desk.workspace
+    workspace = found.controller.workspace
     assert [len(facade.panels) for facade in workspace.document.site.site.facades] == [30]
-    assert found.desk.window.shown_tab() == "site"
+    assert found.controller.window.shown_tab() == "site"
     assert workspace.selection.id == "A"
     assert "of 1080 sections" in found.tab.coverage.text()
     workspace.session.undo()
@@ -129,52 +129,52 @@ def test_used_panels_replace_those_of_the_site_and_undo_brings_them_back(found):
 
 
 def test_another_site_clears_the_photos(found):
-    found.desk.workspace.session.open(Document(), None)
-    assert found.tab.desk.cards == ()
+    found.controller.workspace.session.open(Document(), None)
+    assert found.tab.controller.cards == ()
     assert found.draft is None
     assert not found.tab.read.isEnabled()
 
 
 def test_photos_stay_when_the_site_is_saved_and_go_when_it_moves(found):
-    workspace = found.desk.workspace
+    workspace = found.controller.workspace
     model = workspace.document.site
     anew = replace(model, building=site_model().building)
     workspace.session.amend(replace(workspace.document, site=anew))
-    assert len(found.tab.desk.cards) == 3
+    assert len(found.tab.controller.cards) == 3
     moved = set_origin(anew, 22.34, 114.2636, 62.0, HeightReference.ELLIPSOID)
     workspace.change("Move", replace(workspace.document, site=moved))
-    assert found.tab.desk.cards == ()
+    assert found.tab.controller.cards == ()
 
 
 def test_photos_that_were_read_for_another_site_are_not_shown(page):
-    folder = page.tab.desk.folder
-    page.desk.workspace.session.open(Document(), None)
-    page.desk.workspace.session.open(Document(site_model()), None)
-    page.tab.desk.read(folder)
-    page.desk.workspace.session.open(Document(), None)
+    folder = page.tab.controller.folder
+    page.controller.workspace.session.open(Document(), None)
+    page.controller.workspace.session.open(Document(site_model()), None)
+    page.tab.controller.read(folder)
+    page.controller.workspace.session.open(Document(), None)
     page.idle()
-    assert page.tab.desk.cards == ()
+    assert page.tab.controller.cards == ()
 
 
 def test_a_new_window_shows_the_same_photos(application, found):
     from groundstation.services.settings import Language
 
     before = found.draft
-    found.desk.choose(language=Language.GERMAN)
-    turn_until(application, lambda: found.desk.window.stage.scene() is not None)
-    found.desk.window.show_tab("photos")
-    found.tab = found.desk.window.tab("photos")
+    found.controller.choose(language=Language.GERMAN)
+    turn_until(application, lambda: found.controller.window.stage.scene() is not None)
+    found.controller.window.show_tab("photos")
+    found.tab = found.controller.window.tab("photos")
     found.idle()
     assert found.draft is before
     assert found.tab.strip.model().rowCount() == 3
-    found.desk.choose(language=Language.ENGLISH)
-    turn_until(application, lambda: found.desk.window.stage.scene() is not None)
+    found.controller.choose(language=Language.ENGLISH)
+    turn_until(application, lambda: found.controller.window.stage.scene() is not None)
 
 
-def test_a_data_set_is_made_of_the_photos_and_what_was_left_out_is_said(application, page, desk, tmp_path):
+def test_a_data_set_is_made_of_the_photos_and_what_was_left_out_is_said(application, page, controller, tmp_path):
     assert page.tab.data_set.isEnabled()
     with clicked(choose(tmp_path / "new")):
-        click_on(desk.window, page.tab.data_set)
+        click_on(controller.window, page.tab.data_set)
     page.idle()
     assert (tmp_path / "new" / "dataset.json").is_file()
     said = [message.text for message in page.messages]

@@ -11,9 +11,9 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from tests.gui.driving import turn_until, turn_until_idle
-from tests.gui.window.test_main_window import QUICK, desk, opened, planned
+from tests.gui.window.test_main_window import QUICK, controller, opened, planned
 
-__all__ = ["desk"]
+__all__ = ["controller"]
 
 LOOK = "Look at the scene"
 
@@ -26,24 +26,24 @@ def roof():
 
 
 @pytest.fixture
-def page(application, desk, roof):
-    desk.workspace.session.open(roof, None)
-    desk.window.show_tab("plan")
-    page = desk.window.tab("plan")
-    page.desk.set_request(QUICK)
-    turn_until_idle(application, desk)
+def page(application, controller, roof):
+    controller.workspace.session.open(roof, None)
+    controller.window.show_tab("plan")
+    page = controller.window.tab("plan")
+    page.controller.set_request(QUICK)
+    turn_until_idle(application, controller)
     return page
 
 
 @pytest.fixture
-def page_of_new_plan(application, desk):
+def page_of_new_plan(application, controller):
     """The page after its own planning."""
-    opened(application, desk, "roof")
-    return planned(application, desk, QUICK)
+    opened(application, controller, "roof")
+    return planned(application, controller, QUICK)
 
 
-def first_views(desk, n=1):
-    return desk.workspace.document.current.plan.viewpoints[:n]
+def first_views(controller, n=1):
+    return controller.workspace.document.current.plan.viewpoints[:n]
 
 
 def moved(viewpoint, east_m):
@@ -51,151 +51,151 @@ def moved(viewpoint, east_m):
     return replace(viewpoint, position_enu_m=(x + east_m, y, z))
 
 
-def test_edits_and_undo_leave_the_page_that_is_read_in_front(application, desk, page):
-    (viewpoint,) = first_views(desk)
-    desk.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+def test_edits_and_undo_leave_the_page_that_is_read_in_front(application, controller, page):
+    (viewpoint,) = first_views(controller)
+    controller.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
     page.right.setCurrentWidget(page.effects)
-    page.desk.set_viewpoint(moved(viewpoint, 0.5))
+    page.controller.set_viewpoint(moved(viewpoint, 0.5))
     assert page.right.currentWidget() is page.effects
-    desk.workspace.session.undo()
+    controller.workspace.session.undo()
     assert page.right.currentWidget() is page.effects
 
 
-def test_undo_of_the_first_plan_leaves_nothing_of_it(application, desk, page_of_new_plan):
+def test_undo_of_the_first_plan_leaves_nothing_of_it(application, controller, page_of_new_plan):
     page = page_of_new_plan
-    panel = desk.workspace.document.site.site.panels[3].id
-    desk.workspace.select(Item(ItemKind.PANEL, panel))
+    panel = controller.workspace.document.site.site.panels[3].id
+    controller.workspace.select(Item(ItemKind.PANEL, panel))
     assert "sections covered" in page.panel.text()
     assert "The search found" in page.chart.text()
-    desk.workspace.session.undo()
-    turn_until_idle(application, desk)
+    controller.workspace.session.undo()
+    turn_until_idle(application, controller)
     assert "search found" not in page.chart.text()
     assert "sections" not in page.panel.text()
     assert page.lists.waypoints.model().rowCount() == 0
-    desk.workspace.session.redo()
-    turn_until_idle(application, desk)
+    controller.workspace.session.redo()
+    turn_until_idle(application, controller)
     assert f"Panel {panel}" in page.panel.text()
     assert page.lists.waypoints.model().rowCount() > 8
 
 
 @pytest.mark.slow
-def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application, desk, page):
-    desk.workspace.select(Item(ItemKind.PANEL, desk.workspace.document.site.site.panels[3].id))
-    opened(application, desk, "office")
-    planned(application, desk, replace(QUICK, n_views=6))
+def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application, controller, page):
+    controller.workspace.select(Item(ItemKind.PANEL, controller.workspace.document.site.site.panels[3].id))
+    opened(application, controller, "office")
+    planned(application, controller, replace(QUICK, n_views=6))
     shown = page.panel.panel_id()
-    assert shown is None or shown == desk.workspace.document.site.site.panels[3].id
+    assert shown is None or shown == controller.workspace.document.site.site.panels[3].id
 
 
-def test_effects_are_looked_at_only_while_somebody_does(application, desk, page):
+def test_effects_are_looked_at_only_while_somebody_does(application, controller, page):
     names = []
-    desk.workspace.jobsChanged.connect(lambda: names.extend(job.name for job in desk.workspace.jobs()))
+    controller.workspace.jobsChanged.connect(lambda: names.extend(job.name for job in controller.workspace.jobs()))
     page.form.setValue(PlanRequest(n_views=9))
-    page.desk.set_request(PlanRequest(n_views=9))
-    page.desk.set_viewpoint(moved(first_views(desk)[0], 0.5))
-    turn_until_idle(application, desk)
+    page.controller.set_request(PlanRequest(n_views=9))
+    page.controller.set_viewpoint(moved(first_views(controller)[0], 0.5))
+    turn_until_idle(application, controller)
     assert LOOK not in names
     page.right.setCurrentWidget(page.effects)
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
     assert names.count(LOOK) == 1
-    page.desk.set_request(PlanRequest(n_views=10))
+    page.controller.set_request(PlanRequest(n_views=10))
     page.right.setCurrentWidget(page.chart)
     page.right.setCurrentWidget(page.effects)
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
     assert names.count(LOOK) == 1, "the number of views has no effect on effects"
 
 
-def test_asking_for_something_else_leaves_the_list_of_viewpoints_alone(application, desk, page):
+def test_asking_for_something_else_leaves_the_list_of_viewpoints_alone(application, controller, page):
     model, changes, resets = page.lists.waypoints.model(), [], []
     model.modelReset.connect(lambda: resets.append(1))
     model.dataChanged.connect(lambda *_: changes.append(1))
-    page.desk.set_request(PlanRequest(n_views=9))
+    page.controller.set_request(PlanRequest(n_views=9))
     application.processEvents()
     assert not changes
-    page.desk.set_viewpoint(moved(first_views(desk)[0], 0.5))
+    page.controller.set_viewpoint(moved(first_views(controller)[0], 0.5))
     assert changes
     changes.clear()
     page.lists.setCurrentWidget(page.lists.plans)
-    page.desk.set_viewpoint(moved(first_views(desk)[0], 0.5))
+    page.controller.set_viewpoint(moved(first_views(controller)[0], 0.5))
     assert not changes, "nobody sees it"
     page.lists.setCurrentWidget(page.lists.waypoints)
     assert changes
     assert not resets, "the waypoints are the same, elsewhere"
 
 
-def test_a_plan_that_was_not_looked_at_says_so_and_is_taken_up_again(application, desk, page):
-    entry = desk.workspace.document.current
-    home = desk.workspace.document.site.site.home_enu_m
-    site = desk.workspace.document.site
+def test_a_plan_that_was_not_looked_at_says_so_and_is_taken_up_again(application, controller, page):
+    entry = controller.workspace.document.current
+    home = controller.workspace.document.site.site.home_enu_m
+    site = controller.workspace.document.site
     edited = replace(site, site=replace(site.site, home_enu_m=(home[0] + 1.0, *home[1:])))
-    desk.workspace.change("Move home", replace(desk.workspace.document, site=edited))
-    (job,) = [job for job in desk.workspace.jobs() if job.name == "Look at the plan"]
+    controller.workspace.change("Move home", replace(controller.workspace.document, site=edited))
+    (job,) = [job for job in controller.workspace.jobs() if job.name == "Look at the plan"]
     assert "being looked at" in page.verdict()
-    desk.workspace.cancel(job)
-    turn_until_idle(application, desk)
+    controller.workspace.cancel(job)
+    turn_until_idle(application, controller)
     assert "Choose it in the list of plans" in page.verdict()
     refused = []
-    page.desk.refused.connect(refused.append)
-    page.desk.set_viewpoint(moved(first_views(desk)[0], 0.5))
+    page.controller.refused.connect(refused.append)
+    page.controller.set_viewpoint(moved(first_views(controller)[0], 0.5))
     assert refused
-    page.desk.choose(entry.id)
-    turn_until_idle(application, desk)
+    page.controller.choose(entry.id)
+    turn_until_idle(application, controller)
     assert "ready to fly" in page.verdict().lower()
 
 
-def test_an_edit_that_is_refused_leaves_the_boxes_as_they_were(application, desk, page):
-    (viewpoint,) = first_views(desk)
-    desk.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+def test_an_edit_that_is_refused_leaves_the_boxes_as_they_were(application, controller, page):
+    (viewpoint,) = first_views(controller)
+    controller.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
     page.viewpoint.toggle_lock()
-    kept = desk.workspace.document.current.viewpoint(viewpoint.id)
+    kept = controller.workspace.document.current.viewpoint(viewpoint.id)
     editor = page.viewpoint.editor
     assert not editor._position[0].isEnabled()
     editor._position[0].box().setValue(99.0)
     assert editor.value() == kept
     assert "Keep when planning again" in editor._says.text()
-    assert desk.workspace.document.current.viewpoint(viewpoint.id) == kept
+    assert controller.workspace.document.current.viewpoint(viewpoint.id) == kept
 
 
-def test_a_method_that_keeps_no_viewpoints_is_refused_where_some_are_kept(application, desk, page):
-    (viewpoint,) = first_views(desk)
-    page.desk.set_viewpoint(replace(viewpoint, locked=True))
-    page.desk.set_request(PlanRequest(n_views=8, method="pso"))
-    page.desk.plan()
-    assert not page.desk.is_planning
-    text = desk.window.messages.texts().splitlines()[-1]
+def test_a_method_that_keeps_no_viewpoints_is_refused_where_some_are_kept(application, controller, page):
+    (viewpoint,) = first_views(controller)
+    page.controller.set_viewpoint(replace(viewpoint, locked=True))
+    page.controller.set_request(PlanRequest(n_views=8, method="pso"))
+    page.controller.plan()
+    assert not page.controller.is_planning
+    text = controller.window.messages.texts().splitlines()[-1]
     assert "Greedy with proof" in text
     assert viewpoint.id in text
 
 
-def test_a_plan_for_a_site_that_is_gone_is_not_put_on_the_one_that_is_open(application, desk):
-    opened(application, desk, "roof")
-    desk.window.show_tab("plan")
-    page = desk.window.tab("plan")
-    page.desk.set_request(QUICK)
-    page.desk.plan()
-    desk.workspace.session.undo()
-    assert desk.workspace.document.site is None
-    turn_until_idle(application, desk)
-    assert desk.workspace.document.plans == ()
-    assert "not kept" in desk.window.messages.texts()
-    assert not page.desk.is_planning
+def test_a_plan_for_a_site_that_is_gone_is_not_put_on_the_one_that_is_open(application, controller):
+    opened(application, controller, "roof")
+    controller.window.show_tab("plan")
+    page = controller.window.tab("plan")
+    page.controller.set_request(QUICK)
+    page.controller.plan()
+    controller.workspace.session.undo()
+    assert controller.workspace.document.site is None
+    turn_until_idle(application, controller)
+    assert controller.workspace.document.plans == ()
+    assert "not kept" in controller.window.messages.texts()
+    assert not page.controller.is_planning
 
 
-def test_what_panels_and_routes_show_both_have_their_scale(application, desk, page):
+def test_what_panels_and_routes_show_both_have_their_scale(application, controller, page):
     page.paint.setValue(PanelPaint.GSD, RoutePaint.CLEARANCE)
-    overlay = desk.window.stage.scene()._overlay
+    overlay = controller.window.stage.scene()._overlay
     assert [scale.title for scale in overlay._scales] == ["Finest pixel", "Clearance"]
     page.paint.setValue(PanelPaint.FACADE, RoutePaint.CLEARANCE)
     assert [scale.title for scale in overlay._scales] == ["Clearance"]
 
 
-def test_an_edit_draws_the_plan_once(application, desk, page, monkeypatch):
+def test_an_edit_draws_the_plan_once(application, controller, page, monkeypatch):
     from groundstation.gui.view3d import scene_picture
 
     drawn = []
     whole = scene_picture.plan_scene
     monkeypatch.setattr(scene_picture, "plan_scene", lambda *args: drawn.append(1) or whole(*args))
-    page.desk.set_viewpoint(moved(first_views(desk)[0], 0.5))
+    page.controller.set_viewpoint(moved(first_views(controller)[0], 0.5))
     application.processEvents()
     assert len(drawn) == 1
 
@@ -211,38 +211,38 @@ def test_a_plan_found_in_one_go_has_a_curve(application):
     assert set(curve.y) == {500.0}
 
 
-def test_nothing_is_planned_while_the_form_makes_no_sense(application, desk, page):
+def test_nothing_is_planned_while_the_form_makes_no_sense(application, controller, page):
     page.form._is_gsd_limited.setChecked(True)
     page.form._gsd.setValue(0.001)
     page.form._edited()
     assert page.form.problem()
     page._plan_button.click()
-    assert not page.desk.is_planning
+    assert not page.controller.is_planning
     page.form._is_gsd_limited.setChecked(False)
     page._plan_button.click()
-    assert page.desk.is_planning
-    page.desk.stop_here()
-    turn_until(application, lambda: not page.desk.is_planning)
+    assert page.controller.is_planning
+    page.controller.stop_here()
+    turn_until(application, lambda: not page.controller.is_planning)
 
 
-def test_moving_in_the_view_goes_on_from_where_the_viewpoint_is_until_it_is_put_away(application, desk, page):
+def test_moving_in_the_view_goes_on_from_where_the_viewpoint_is_until_it_is_put_away(application, controller, page):
     from groundstation.gui.view3d.viewpoint_tool import MovedViewpoint, ViewpointTool
 
-    first, second = first_views(desk, 2)
-    scene = desk.window.stage.scene()
-    desk.workspace.select(Item(ItemKind.VIEWPOINT, first.id))
+    first, second = first_views(controller, 2)
+    scene = controller.window.stage.scene()
+    controller.workspace.select(Item(ItemKind.VIEWPOINT, first.id))
     page.viewpoint._move.setChecked(True)
     scene.toolFinished.emit(MovedViewpoint(first.id, moved(first, 1.0).position_enu_m))
     assert page.viewpoint._move.isChecked()
     assert scene.tool().value.position_enu_m == pytest.approx(moved(first, 1.0).position_enu_m)
-    desk.workspace.session.undo()
+    controller.workspace.session.undo()
     assert scene.tool().value.position_enu_m == pytest.approx(first.position_enu_m)
     page.viewpoint.toggle_lock()
     assert scene.tool() is None, "it is kept as it is"
-    desk.workspace.select(Item(ItemKind.VIEWPOINT, second.id))
+    controller.workspace.select(Item(ItemKind.VIEWPOINT, second.id))
     assert isinstance(scene.tool(), ViewpointTool)
-    desk.workspace.select(None)
+    controller.workspace.select(None)
     assert scene.tool() is None
-    desk.workspace.select(Item(ItemKind.VIEWPOINT, second.id))
+    controller.workspace.select(Item(ItemKind.VIEWPOINT, second.id))
     scene.cancel_tool()
     assert not page.viewpoint._move.isChecked()

@@ -4,7 +4,7 @@ import gc
 
 import pytest
 
-from tests.gui.driving import close_desk, turn_until
+from tests.gui.driving import close_controller, turn_until
 from tests.reconstruction.training.made_data_set import write_data_set
 
 
@@ -16,15 +16,15 @@ def data(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def desk(application, worker, tmp_path_factory):
+def controller(application, worker, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path_factory.mktemp("config")))
-        from groundstation.gui.window.project_controller import Desk
+        from groundstation.gui.window.project_controller import ProjectController
 
-        desk = Desk(application, worker=worker)
-        desk.window.setGeometry(0, 0, 1280, 720)
-        yield desk
-        close_desk(desk)
+        controller = ProjectController(application, worker=worker)
+        controller.window.setGeometry(0, 0, 1280, 720)
+        yield controller
+        close_controller(controller)
         gc.collect()
 
 
@@ -47,32 +47,32 @@ class Told:
 
 
 @pytest.fixture
-def page(application, desk, monkeypatch):
+def page(application, controller, monkeypatch):
     """The tab, with nothing chosen yet."""
-    from groundstation.gui.reconstruct import reconstruct_controller as reconstruct_desk
+    from groundstation.gui.reconstruct import reconstruct_controller
     from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
 
-    monkeypatch.setattr(reconstruct_desk, "ModelProcess", lambda _listener: Told())
-    page = ReconstructPage(desk.workspace, desk.window.stage)
-    page.told = page.desk._process
+    monkeypatch.setattr(reconstruct_controller, "ModelProcess", lambda _listener: Told())
+    page = ReconstructPage(controller.workspace, controller.window.stage)
+    page.told = page.controller._process
     page.messages = []
-    desk.workspace.messageShown.connect(page.messages.append)
+    controller.workspace.messageShown.connect(page.messages.append)
     page.left.resize(1270, 600)
     page.left.show()
     yield page
-    desk.workspace.messageShown.disconnect(page.messages.append)
-    turn_until(application, lambda: not desk.workspace.jobs())
+    controller.workspace.messageShown.disconnect(page.messages.append)
+    turn_until(application, lambda: not controller.workspace.jobs())
     page.pane.close_pictures()
     page.left.hide()
-    page.desk.phase = reconstruct_desk.Phase.IDLE
-    page.desk.setParent(None)
+    page.controller.phase = reconstruct_controller.Phase.IDLE
+    page.controller.setParent(None)
 
 
 @pytest.fixture
 def chosen(application, page, data, tmp_path):
     """The tab with a data set."""
-    page.desk.read(data)
-    turn_until(application, lambda: page.desk.card is not None and not page._workspace.jobs())
-    page.desk.choose_out(tmp_path / "model")
+    page.controller.read(data)
+    turn_until(application, lambda: page.controller.card is not None and not page._workspace.jobs())
+    page.controller.choose_out(tmp_path / "model")
     turn_until(application, lambda: not page._workspace.jobs())
     return page

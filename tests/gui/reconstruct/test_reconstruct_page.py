@@ -38,7 +38,7 @@ STEP = Stepped("training", 12, 30.0, 0.1, 970, {"colour": 0.2, "high frequency":
 
 def take(page, *messages):
     for message in messages:
-        page.desk._take(message)
+        page.controller._take(message)
 
 
 def begin(page):
@@ -59,12 +59,12 @@ def test_without_a_data_set_it_says_what_to_do(page):
 
 
 def test_a_folder_that_is_no_data_set_is_told_and_can_be_followed_by_one_that_is(application, page, data, tmp_path):
-    page.desk.read(tmp_path)
-    turn_until(application, lambda: not page.desk.is_reading and bool(page.messages))
+    page.controller.read(tmp_path)
+    turn_until(application, lambda: not page.controller.is_reading and bool(page.messages))
     assert page.messages[-1].severity is Severity.ERROR
     assert "has no dataset.json" in page.messages[-1].text
-    page.desk.read(data)
-    turn_until(application, lambda: page.desk.card is not None)
+    page.controller.read(data)
+    turn_until(application, lambda: page.controller.card is not None)
     assert "6 photos" in page.side.data_set.text()
     assert page.side.train.isEnabled()
 
@@ -82,7 +82,7 @@ def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tm
     assert not chosen._workspace.is_busy
     told = begin(chosen)
     assert chosen._workspace.is_busy, "nothing may hold the window up that can wait"
-    assert (told.dataset, told.out, told.resume) == (chosen.desk.card.folder, tmp_path / "model", False)
+    assert (told.dataset, told.out, told.resume) == (chosen.controller.card.folder, tmp_path / "model", False)
     assert enabled(chosen) == {"pause", "stop", "break_off"}
     assert chosen.details.currentWidget() is chosen.progress
     take(chosen, Stage("learning reflections", 3, 80))
@@ -161,10 +161,10 @@ def test_what_stands_in_the_folder_is_said(chosen, tmp_path):
     other = tmp_path / "other"
     other.mkdir()
     (other / "letter").write_text("")
-    chosen.desk.choose_out(other)
+    chosen.controller.choose_out(other)
     assert "something else" in chosen.side.there.text()
     (other / "model.json").write_text("{}")
-    chosen.desk.look_around()
+    chosen.controller.look_around()
     assert "finished model" in chosen.side.there.text()
 
 
@@ -211,9 +211,9 @@ def test_the_computer_page_says_what_is_there_and_what_follows(chosen):
 
 
 def test_short_memory_and_a_full_disk_are_told_before_it_starts(chosen):
-    chosen.desk.machine = replace(chosen.desk.machine, free_bytes=100 << 20)
-    chosen.desk.standing = replace(chosen.desk.standing, free_bytes=5 << 20)
-    chosen.desk.stateChanged.emit()
+    chosen.controller.machine = replace(chosen.controller.machine, free_bytes=100 << 20)
+    chosen.controller.standing = replace(chosen.controller.standing, free_bytes=5 << 20)
+    chosen.controller.stateChanged.emit()
     words = chosen.side.wrong.text()
     assert "Memory is short" in words
     assert "5 MiB are free on the disk" in words
@@ -221,19 +221,19 @@ def test_short_memory_and_a_full_disk_are_told_before_it_starts(chosen):
     assert begin(chosen).wish.memory_bytes < 1 << 30
 
 
-def test_a_data_set_of_another_site_is_told(application, page, data, desk):
+def test_a_data_set_of_another_site_is_told(application, page, data, controller):
     from tests.planning.plan_cases import kiosk
 
-    before = desk.workspace.document
-    desk.workspace.amend(replace(before, site=kiosk()))
+    before = controller.workspace.document
+    controller.workspace.amend(replace(before, site=kiosk()))
     try:
-        page.desk.read(data)
-        turn_until(application, lambda: page.desk.card is not None)
+        page.controller.read(data)
+        turn_until(application, lambda: page.controller.card is not None)
         assert page.messages[-1].severity is Severity.WARNING
         assert "other panels than the site that is open" in page.messages[-1].text
         assert page.side.train.isEnabled()
     finally:
-        desk.workspace.amend(before)
+        controller.workspace.amend(before)
 
 
 def test_photos_are_judged_and_sorted_the_worst_first(application, chosen):
@@ -321,8 +321,8 @@ def test_an_answer_to_an_older_view_of_something_else_is_not_shown(chosen):
     begin(chosen)
     take(chosen, STEP)
     old = next(look for look in reversed(chosen.told.of(Look)) if look.subject == TRAINING)
-    chosen.desk.training.stepped = None
-    chosen.desk.phase = type(chosen.desk.phase).IDLE
+    chosen.controller.training.stepped = None
+    chosen.controller.phase = type(chosen.controller.phase).IDLE
     chosen.pane.offer_models()
     take(chosen, seen(old))
     assert chosen.pane.view.pictures()[0] is None
@@ -350,13 +350,13 @@ def test_the_photo_is_beside_the_model_from_its_own_place_only(chosen):
 
 
 def test_finished_models_of_the_data_set_are_compared(application, chosen, tmp_path):
-    panels = [{"corners_enu_m": each} for each in chosen.desk.card.source.panels.corners_enu_m.tolist()]
+    panels = [{"corners_enu_m": each} for each in chosen.controller.card.source.panels.corners_enu_m.tolist()]
     for name in ("one", "two"):
         (tmp_path / name).mkdir()
         content = {"format": "reflight-model/1", "method": "2dgs", "n_splats": 5, "site": {"panels": panels}}
         (tmp_path / name / "model.json").write_text(json.dumps(content))
-    chosen.desk.look_around()
-    turn_until(application, lambda: len(chosen.desk.others) == 2)
+    chosen.controller.look_around()
+    turn_until(application, lambda: len(chosen.controller.others) == 2)
     bar = chosen.pane.bar
     assert "2DGS" in bar.model.itemText(0)
     bar.setValue(str(tmp_path / "one"), "normals", str(tmp_path / "two"))
@@ -381,15 +381,15 @@ def test_folders_are_chosen_and_nothing_happens_without_one(application, page, d
         for button in (page.side.choose, page.side.choose_out):
             with clicked(no):
                 button.click()
-    assert page.desk.card is None
+    assert page.controller.card is None
     assert page.messages == []
     with clicked(choose(data)):
         page.side.choose.click()
-    turn_until(application, lambda: page.desk.card is not None and not page._workspace.jobs())
+    turn_until(application, lambda: page.controller.card is not None and not page._workspace.jobs())
     with clicked(choose(tmp_path / "my model")):
         page.side.choose_out.click()
     turn_until(application, lambda: not page._workspace.jobs())
-    assert page.desk.out == tmp_path / "my model"
+    assert page.controller.out == tmp_path / "my model"
 
 
 def test_closing_asks_while_a_model_is_trained_and_lets_the_process_go(chosen):
@@ -411,19 +411,19 @@ def test_closing_asks_while_a_model_is_trained_and_lets_the_process_go(chosen):
 
 
 @pytest.mark.slow
-def test_as_a_user_trains_looks_around_and_stops(application, desk, data, tmp_path):
+def test_as_a_user_trains_looks_around_and_stops(application, controller, data, tmp_path):
     """With the real process; the window's thread is never held for long."""
     import time
 
-    desk.show()
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    desk.window.show_tab("reconstruct")
-    page = desk.window.tab("reconstruct")
-    page.desk.read(data)
-    turn_until(application, lambda: page.desk.card is not None and page.desk.cuda is not None)
-    page.desk.choose_out(tmp_path / "model")
+    controller.show()
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    controller.window.show_tab("reconstruct")
+    page = controller.window.tab("reconstruct")
+    page.controller.read(data)
+    turn_until(application, lambda: page.controller.card is not None and page.controller.cuda is not None)
+    page.controller.choose_out(tmp_path / "model")
     page.side.form.method.setCurrentIndex(page.side.form.method.findData("2dgs"))
-    page.desk.choose_out(tmp_path / "model")
+    page.controller.choose_out(tmp_path / "model")
     page.side.train.click()
     longest = 0.0
 
@@ -437,13 +437,13 @@ def test_as_a_user_trains_looks_around_and_stops(application, desk, data, tmp_pa
             time.sleep(0.002)
             assert time.monotonic() < end
 
-    turn(lambda: page.desk.training.stepped is not None and page.desk.training.stepped.step > 5)
+    turn(lambda: page.controller.training.stepped is not None and page.controller.training.stepped.step > 5)
     for _ in range(20):
         page.pane.view.orbited.emit(0.02, 0.01)
         turn(lambda: page.pane.looks._on_way == {} or True)
-    turn(lambda: page.pane.view.pictures()[0] is not None and len(page.desk.errors) == 6)
+    turn(lambda: page.pane.view.pictures()[0] is not None and len(page.controller.errors) == 6)
     page.side.stop.click()
-    turn(lambda: page.desk.phase.name == "IDLE")
+    turn(lambda: page.controller.phase.name == "IDLE")
     assert (tmp_path / "model" / "model.json").is_file()
     turn(page.pane.looks.is_at_rest)
     assert page.pane.view.note() == ""

@@ -35,7 +35,7 @@ from groundstation.gui.widgets.thumbnails import SIDE_PX, SmallPictures
 from groundstation.services.reconstruct.choices import TrainChoice
 from groundstation.services.reconstruct.curves import ThinCurve
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
-from reconstruction.training.names import LAYERS, PICTURE
+from reconstruction.training.layers import LAYERS, PICTURE
 from tests.gui.driving import turn_until
 
 

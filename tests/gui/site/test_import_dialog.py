@@ -18,11 +18,11 @@ class Dialog:
     """One import dialog on an empty document."""
 
     def __init__(self, application, path):
-        from groundstation.gui.application.context import Workspace
+        from groundstation.gui.application.context import ApplicationContext
         from groundstation.gui.site.import_dialog import ImportDialog
 
         self.application, self.runner = application, JobRunner()
-        self.workspace = Workspace(Session(Document()), self.runner)
+        self.workspace = ApplicationContext(Session(Document()), self.runner)
         self.messages, self.taken = [], []
         self.workspace.messageShown.connect(self.messages.append)
         self.dialog = ImportDialog(self.workspace, path)
@@ -207,11 +207,11 @@ def test_bad_files_are_told_in_the_dialog_and_nothing_can_be_imported(opened, tm
 
 def test_dialog_that_is_closed_while_it_reads_takes_nothing_over(application, shared_data):
     hands = Dialog.__new__(Dialog)
-    from groundstation.gui.application.context import Workspace
+    from groundstation.gui.application.context import ApplicationContext
     from groundstation.gui.site.import_dialog import ImportDialog
 
     hands.application, hands.runner = application, JobRunner()
-    hands.workspace = Workspace(Session(Document()), hands.runner)
+    hands.workspace = ApplicationContext(Session(Document()), hands.runner)
     dialog = ImportDialog(hands.workspace, shared_data / "buildings" / "ingolstadt_lod3" / "4018106.xml")
     taken = []
     dialog.imported.connect(taken.append)

@@ -24,12 +24,12 @@ class Window:
     """The window with its Site tab at the front, and hands to work it."""
 
     def __init__(self, application, scene_name):
-        from groundstation.gui.application.context import Workspace
+        from groundstation.gui.application.context import ApplicationContext
         from groundstation.gui.window.main_window import MainWindow
 
         self.application, self.runner = application, JobRunner()
         model = None if scene_name is None else bundled_site(scene_name)
-        self.workspace = Workspace(Session(Document(site=model)), self.runner)
+        self.workspace = ApplicationContext(Session(Document(site=model)), self.runner)
         self.messages = []
         self.workspace.messageShown.connect(self.messages.append)
         self.window = MainWindow(self.workspace)
@@ -400,11 +400,11 @@ def test_edits_of_a_large_site_do_not_hold_the_window_up(opened):
 
 
 def test_errors_of_checks_are_answers_for_the_form_and_no_failures(application):
-    from groundstation.gui.site.grid_form import GridWish
+    from groundstation.gui.site.grid_form import GridRequest
     from groundstation.gui.site.grid_maker import checked_grid
 
     office = bundled_site("office")
-    far = GridWish(((0.0, -40.0, 0.0), (10.0, -40.0, 0.0), (0.0, -40.0, 10.0)), 2, 2)
+    far = GridRequest(((0.0, -40.0, 0.0), (10.0, -40.0, 0.0), (0.0, -40.0, 10.0)), 2, 2)
     assert isinstance(checked_grid(office, far), InputError)
     with pytest.raises(ValueError, match="picked"):
-        checked_grid(office, GridWish())
+        checked_grid(office, GridRequest())

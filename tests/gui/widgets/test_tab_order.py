@@ -6,7 +6,7 @@ import pytest
 
 from groundstation.services.project.document import Document
 from planning.site.bundled import SCENES
-from tests.gui.driving import close_desk, turn_until
+from tests.gui.driving import close_controller, turn_until
 
 
 @pytest.fixture
@@ -82,17 +82,17 @@ def test_from_outside_all_regions_it_begins_anew_and_without_stops_there_is_none
 @pytest.fixture
 def window(application, worker, tmp_path, monkeypatch):
     """The window with a site."""
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    desk = Desk(application, worker=worker)
-    desk.show()
-    window = desk.window
+    controller = ProjectController(application, worker=worker)
+    controller.show()
+    window = controller.window
     window.setGeometry(0, 0, 1280, 720)
-    desk.workspace.session.open(Document(SCENES["single-panel"]()), None)
+    controller.workspace.session.open(Document(SCENES["single-panel"]()), None)
     turn_until(application, lambda: window.stage.scene() is not None)
     yield window
-    close_desk(desk)
+    close_controller(controller)
 
 
 @pytest.mark.parametrize("tab", ["site", "plan", "mission"])

@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from groundstation.gui.shared_view import StagePage
+from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.window import menus
 from groundstation.gui.window.shortcuts import VIEWS
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
 from planning.request import GreedyParameters, PlanRequest
-from tests.gui.driving import clicked, close_desk, press_in, trigger, turn_until, turn_until_idle
+from tests.gui.driving import clicked, close_controller, press_in, trigger, turn_until, turn_until_idle
 
 GUI = Path(menus.__file__).parents[1]
 
@@ -28,45 +28,45 @@ QUICK = PlanRequest(
 
 
 @pytest.fixture
-def desk(application, worker, tmp_path, monkeypatch):
+def controller(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
-    desk = Desk(application, worker=worker)
-    desk.show()
-    desk.window.setGeometry(0, 0, 1280, 720)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    yield desk
-    close_desk(desk)
-
-
-def opened(application, desk, scene):
-    desk.window.show_tab("site")
-    desk.window.tab("site").left.opener.open_bundled(scene)
-    turn_until_idle(application, desk)
+    controller = ProjectController(application, worker=worker)
+    controller.show()
+    controller.window.setGeometry(0, 0, 1280, 720)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    yield controller
+    close_controller(controller)
 
 
-def planned(application, desk, request):
-    desk.window.show_tab("plan")
-    page = desk.window.tab("plan")
-    page.desk.set_request(request)
-    page.desk.plan()
-    turn_until_idle(application, desk)
+def opened(application, controller, scene):
+    controller.window.show_tab("site")
+    controller.window.tab("site").left.opener.open_bundled(scene)
+    turn_until_idle(application, controller)
+
+
+def planned(application, controller, request):
+    controller.window.show_tab("plan")
+    page = controller.window.tab("plan")
+    page.controller.set_request(request)
+    page.controller.plan()
+    turn_until_idle(application, controller)
     return page
 
 
-def test_window_opens_a_site_plans_it_and_shows_both(application, desk):
-    opened(application, desk, "roof")
-    scene = desk.window.stage.scene()
-    desk.window.show_tab("plan")
-    turn_until_idle(application, desk)
+def test_window_opens_a_site_plans_it_and_shows_both(application, controller):
+    opened(application, controller, "roof")
+    scene = controller.window.stage.scene()
+    controller.window.show_tab("plan")
+    turn_until_idle(application, controller)
     empty = scene.screenshot()
-    page = planned(application, desk, PlanRequest(n_views=12, time_budget_s=1.0))
-    assert "roof: panels 32" in desk.window.messages.texts()
-    assert "Views: 12, sorties: 1" in desk.window.messages.texts()
+    page = planned(application, controller, PlanRequest(n_views=12, time_budget_s=1.0))
+    assert "roof: panels 32" in controller.window.messages.texts()
+    assert "Views: 12, sorties: 1" in controller.window.messages.texts()
     assert page.verdict().startswith("Ready to fly")
     page.right.setCurrentWidget(page.effects)
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
     assert page.effects.card("occlusion").text().splitlines()[1] == "is off"
     scene.look_at_all()
     shown = scene.screenshot()
@@ -74,71 +74,71 @@ def test_window_opens_a_site_plans_it_and_shows_both(application, desk):
     assert np.count_nonzero((empty != shown).any(axis=2)) > 500, "the plan is not drawn"
 
 
-def test_every_tab_can_be_shown_and_fits_a_small_screen(application, desk):
-    for name in desk.window.tab_names():
-        desk.window.show_tab(name)
+def test_every_tab_can_be_shown_and_fits_a_small_screen(application, controller):
+    for name in controller.window.tab_names():
+        controller.window.show_tab(name)
         application.processEvents()
-        assert desk.window.shown_tab() == name
-        size = desk.window.minimumSizeHint()
+        assert controller.window.shown_tab() == name
+        size = controller.window.minimumSizeHint()
         assert size.width() <= 1280, name
         assert size.height() <= 720, name
-    assert desk.window.tab_names() == ("site", "plan", "mission", "fly", "photos", "reconstruct", "model")
+    assert controller.window.tab_names() == ("site", "plan", "mission", "fly", "photos", "reconstruct", "model")
 
 
-def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application, desk):
-    opened(application, desk, "roof")
-    desk.window.show_tab("plan")
-    page = desk.window.tab("plan")
-    page.desk.set_request(PlanRequest(n_views=60, time_budget_s=60.0))
-    page.desk.plan()
-    turn_until(application, lambda: desk.workspace.jobs()[0].state.name == "RUNNING")
-    desk.window.job_bar.cancel_running()
-    turn_until_idle(application, desk)
-    assert "Plan: cancelled" in desk.window.messages.texts()
-    assert desk.workspace.document.plans == ()
-    assert not page.desk.is_planning
-    page.desk.plan()
+def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application, controller):
+    opened(application, controller, "roof")
+    controller.window.show_tab("plan")
+    page = controller.window.tab("plan")
+    page.controller.set_request(PlanRequest(n_views=60, time_budget_s=60.0))
+    page.controller.plan()
+    turn_until(application, lambda: controller.workspace.jobs()[0].state.name == "RUNNING")
+    controller.window.job_bar.cancel_running()
+    turn_until_idle(application, controller)
+    assert "Plan: cancelled" in controller.window.messages.texts()
+    assert controller.workspace.document.plans == ()
+    assert not page.controller.is_planning
+    page.controller.plan()
     turn_until(application, lambda: "sections" in page.chart.text())
     assert "any flight could cover" in page.chart.text(), "the bound is known while the plan runs"
     started = time.perf_counter()
-    page.desk.stop_here()
-    turn_until_idle(application, desk)
+    page.controller.stop_here()
+    turn_until_idle(application, controller)
     assert time.perf_counter() - started < 20.0
-    assert len(desk.workspace.document.current.plan.viewpoints) >= 1
+    assert len(controller.workspace.document.current.plan.viewpoints) >= 1
 
 
-def test_editing_by_hand_shows_at_once_and_can_be_undone(application, desk):
-    opened(application, desk, "roof")
-    page = planned(application, desk, QUICK)
-    before = desk.workspace.document.current.plan
+def test_editing_by_hand_shows_at_once_and_can_be_undone(application, controller):
+    opened(application, controller, "roof")
+    page = planned(application, controller, QUICK)
+    before = controller.workspace.document.current.plan
     viewpoint = before.viewpoints[3]
-    desk.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
-    page.desk.set_viewpoint(replace(viewpoint, position_enu_m=(0.0, 0.0, 14.0)))
+    controller.workspace.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
+    page.controller.set_viewpoint(replace(viewpoint, position_enu_m=(0.0, 0.0, 14.0)))
     assert page.verdict().startswith("NOT ready to fly"), "without a turn of the event loop"
-    assert viewpoint.id in {f.place for f in page.desk.in_hand.revision.findings if f.severity == "error"}
-    said = desk.window.messages.texts()
+    assert viewpoint.id in {f.place for f in page.controller.in_hand.revision.findings if f.severity == "error"}
+    said = controller.window.messages.texts()
     assert f"Move {viewpoint.id}: sections gained" in said
     assert "Error: smallest distance at a viewpoint" in said
-    desk.workspace.session.undo()
-    assert desk.workspace.document.current.plan is before
+    controller.workspace.session.undo()
+    assert controller.workspace.document.current.plan is before
     assert page.verdict().startswith("Ready to fly")
     page.viewpoint.toggle_lock()
-    locked = desk.workspace.document.current.viewpoint(viewpoint.id)
+    locked = controller.workspace.document.current.viewpoint(viewpoint.id)
     assert locked.locked
     page.viewpoint.delete_viewpoint()
-    assert "switch off “Keep when planning again”" in desk.window.messages.texts()
+    assert "switch off “Keep when planning again”" in controller.window.messages.texts()
     page.viewpoint.add_viewpoint()
-    assert len(desk.workspace.document.current.plan.viewpoints) == 9
-    again = planned(application, desk, replace(QUICK, n_views=6))
-    assert locked in again.desk.in_hand.plan.viewpoints
+    assert len(controller.workspace.document.current.plan.viewpoints) == 9
+    again = planned(application, controller, replace(QUICK, n_views=6))
+    assert locked in again.controller.in_hand.plan.viewpoints
 
 
-def test_plans_are_compared_side_by_side(application, desk):
-    opened(application, desk, "roof")
-    planned(application, desk, QUICK)
-    page = planned(application, desk, PlanRequest(method="noto", share=0.9, time_budget_s=1.0))
-    page.lists.compare(tuple(entry.id for entry in desk.workspace.document.plans))
-    turn_until_idle(application, desk)
+def test_plans_are_compared_side_by_side(application, controller):
+    opened(application, controller, "roof")
+    planned(application, controller, QUICK)
+    page = planned(application, controller, PlanRequest(method="noto", share=0.9, time_budget_s=1.0))
+    page.lists.compare(tuple(entry.id for entry in controller.workspace.document.plans))
+    turn_until_idle(application, controller)
     window = page.lists.compare_window
     table = window.table()
     assert table.columnCount() == 2
@@ -149,59 +149,59 @@ def test_plans_are_compared_side_by_side(application, desk):
     window.close()
 
 
-def test_a_row_that_is_clicked_to_compare_does_not_become_the_plan_that_is_flown(application, desk):
+def test_a_row_that_is_clicked_to_compare_does_not_become_the_plan_that_is_flown(application, controller):
     from PySide6.QtCore import Qt
     from PySide6.QtTest import QTest
 
-    opened(application, desk, "roof")
-    planned(application, desk, QUICK)
-    page = planned(application, desk, replace(QUICK, n_views=6))
-    first, second = (entry.id for entry in desk.workspace.document.plans)
+    opened(application, controller, "roof")
+    planned(application, controller, QUICK)
+    page = planned(application, controller, replace(QUICK, n_views=6))
+    first, second = (entry.id for entry in controller.workspace.document.plans)
     plans = page.lists.plans
     page.lists.setCurrentWidget(plans)
-    turn_until_idle(application, desk)
+    turn_until_idle(application, controller)
     table = plans._view
 
     def click(row, modifier=Qt.KeyboardModifier.NoModifier, click=QTest.mouseClick):
         place = table.visualRect(table.model().index(row, 1)).center()
         click(table.viewport(), Qt.MouseButton.LeftButton, modifier, place)
 
-    assert desk.workspace.document.current_plan_id == second
+    assert controller.workspace.document.current_plan_id == second
     click(0)
     assert plans.selected() == (first,)
-    assert desk.workspace.document.current_plan_id == second, "a click selects"
+    assert controller.workspace.document.current_plan_id == second, "a click selects"
     click(1, Qt.KeyboardModifier.ControlModifier)
     assert plans.selected() == (first, second)
-    assert desk.workspace.document.current_plan_id == second
+    assert controller.workspace.document.current_plan_id == second
     click(0)
-    press_in(desk.window, "Make current")
-    assert desk.workspace.document.current_plan_id == first
+    press_in(controller.window, "Make current")
+    assert controller.workspace.document.current_plan_id == first
     click(1)
     click(1, click=QTest.mouseDClick)
-    assert desk.workspace.document.current_plan_id == second
+    assert controller.workspace.document.current_plan_id == second
 
 
-def test_theme_units_and_language_change_at_once_and_are_kept(application, desk):
+def test_theme_units_and_language_change_at_once_and_are_kept(application, controller):
     from groundstation.services.settings import read_settings, settings_path
 
-    opened(application, desk, "roof")
-    light = desk.window.grab().toImage().pixelColor(5, 5).lightness()
-    desk.choose(theme=Theme.DARK)
+    opened(application, controller, "roof")
+    light = controller.window.grab().toImage().pixelColor(5, 5).lightness()
+    controller.choose(theme=Theme.DARK)
     application.processEvents()
-    assert desk.window.grab().toImage().pixelColor(5, 5).lightness() < light / 2
-    desk.window.show_tab("plan")
-    desk.choose(units=UnitSystem.IMPERIAL)
-    assert desk.window.tab("plan").form._distance.box().text() == "32.8 ft"
-    turn_until_idle(application, desk)
-    desk.choose(language=Language.GERMAN)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    assert desk.window.shown_tab() == "plan"
-    titles = [spec.shown_title() for spec in desk.window.specs()]
+    assert controller.window.grab().toImage().pixelColor(5, 5).lightness() < light / 2
+    controller.window.show_tab("plan")
+    controller.choose(units=UnitSystem.IMPERIAL)
+    assert controller.window.tab("plan").form._distance.box().text() == "32.8 ft"
+    turn_until_idle(application, controller)
+    controller.choose(language=Language.GERMAN)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    assert controller.window.shown_tab() == "plan"
+    titles = [spec.shown_title() for spec in controller.window.specs()]
     assert "Planung" in titles
-    assert "roof" in desk.window.messages.texts(), "what was said before is still there"
-    turn_until_idle(application, desk)
-    desk.choose(language=Language.ENGLISH, theme=Theme.LIGHT, units=UnitSystem.METRIC)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
+    assert "roof" in controller.window.messages.texts(), "what was said before is still there"
+    turn_until_idle(application, controller)
+    controller.choose(language=Language.ENGLISH, theme=Theme.LIGHT, units=UnitSystem.METRIC)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
     kept = read_settings(settings_path())
     assert (kept.theme, kept.units, kept.language) == (Theme.LIGHT, UnitSystem.METRIC, Language.ENGLISH)
 
@@ -220,26 +220,26 @@ def keys_in(module):
     return set(re.findall(r"Qt\.Key\.Key_(\w+)", (GUI / module).read_text()))
 
 
-def test_every_key_of_a_menu_tab_or_shortcut_is_in_the_list_and_none_twice(application, desk):
+def test_every_key_of_a_menu_tab_or_shortcut_is_in_the_list_and_none_twice(application, controller):
     from PySide6.QtGui import QAction, QKeySequence, QShortcut
 
     from groundstation.gui.window.shortcuts import ShortcutsDialog, sections
 
-    for page in StagePage:
-        desk.window.stage.show_page(page)
-    told = dict(sections(desk.window))
-    dialog = ShortcutsDialog(desk.window)
+    for page in SharedViewPage:
+        controller.window.stage.show_page(page)
+    told = dict(sections(controller.window))
+    dialog = ShortcutsDialog(controller.window)
     listed = [keys for title, rows in told.items() if title not in VIEWS for keys, _ in rows]
     assert len(listed) == len(set(listed))
     assert all(words for rows in told.values() for _, words in rows)
     everything = {key for rows in told.values() for keys, _ in rows for key in (keys, *keys.split(", "))}
     actions = [
-        *desk.window.findChildren(QAction),
-        *(a for n in desk.window.tab_names() for a in desk.window.tab(n).actions()),
+        *controller.window.findChildren(QAction),
+        *(a for n in controller.window.tab_names() for a in controller.window.tab(n).actions()),
     ]
     native = QKeySequence.SequenceFormat.NativeText
     keys = {key.toString(native) for action in actions for key in action.shortcuts()}
-    keys |= {shortcut.key().toString(native) for shortcut in desk.window.findChildren(QShortcut)}
+    keys |= {shortcut.key().toString(native) for shortcut in controller.window.findChildren(QShortcut)}
     assert len(keys) > 40
     assert keys - {""} <= everything
     assert {"Ctrl+S", "Ctrl+Z", "Ctrl+P", "F1", "Ctrl+1", "Ctrl+Shift+L"} <= set(listed)
@@ -267,21 +267,21 @@ def test_every_key_that_a_view_takes_by_itself_is_in_the_list(application):
             assert not missing, module
 
 
-def test_the_list_of_keys_is_shown_and_scrolls(application, desk):
+def test_the_list_of_keys_is_shown_and_scrolls(application, controller):
     with clicked("OK") as shown:
-        trigger(desk.window, "Shortcuts")
+        trigger(controller.window, "Shortcuts")
     assert shown[0].startswith("Shortcuts")
 
 
 @pytest.mark.alone
-def test_the_window_answers_within_50_ms_while_a_plan_runs(application, desk):
+def test_the_window_answers_within_50_ms_while_a_plan_runs(application, controller):
     """Other processes only ever make gaps longer, so the best of a few plans is what the window itself needs."""
     from PySide6.QtCore import Qt, QTimer
 
-    opened(application, desk, "office")
-    desk.window.show_tab("plan")
-    page = desk.window.tab("plan")
-    turn_until_idle(application, desk)
+    opened(application, controller, "office")
+    controller.window.show_tab("plan")
+    page = controller.window.tab("plan")
+    turn_until_idle(application, controller)
     ticks = []
     timer = QTimer()
     timer.setTimerType(Qt.TimerType.PreciseTimer)
@@ -289,52 +289,52 @@ def test_the_window_answers_within_50_ms_while_a_plan_runs(application, desk):
     timer.start(2)
     longest_ms = []
     for seed in range(6):
-        page.desk.set_request(PlanRequest(n_views=560, time_budget_s=4.0, seed=seed))
+        page.controller.set_request(PlanRequest(n_views=560, time_budget_s=4.0, seed=seed))
         ticks.clear()
-        page.desk.plan()
-        turn_until(application, lambda: not page.desk.is_planning)
+        page.controller.plan()
+        turn_until(application, lambda: not page.controller.is_planning)
         longest_ms.append(1e3 * float(np.diff(ticks[:-1]).max()))
         assert len(ticks) > 100
-        turn_until_idle(application, desk)
+        turn_until_idle(application, controller)
         if longest_ms[-1] < 50.0:
             return
     pytest.fail(f"longest gaps of {len(longest_ms)} plans: {longest_ms} ms")
 
 
 @pytest.mark.slow
-def test_the_language_waits_while_something_runs(application, desk):
-    opened(application, desk, "roof")
-    desk.window.show_tab("plan")
-    page, window = desk.window.tab("plan"), desk.window
-    page.desk.set_request(replace(QUICK, n_views=6))
-    page.desk.plan()
-    desk.choose(language=Language.GERMAN)
-    assert desk.window is window
-    assert "started next" in desk.window.messages.texts()
-    turn_until_idle(application, desk)
-    assert len(desk.workspace.document.plans) == 1
-    desk.choose(language=Language.ENGLISH)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
+def test_the_language_waits_while_something_runs(application, controller):
+    opened(application, controller, "roof")
+    controller.window.show_tab("plan")
+    page, window = controller.window.tab("plan"), controller.window
+    page.controller.set_request(replace(QUICK, n_views=6))
+    page.controller.plan()
+    controller.choose(language=Language.GERMAN)
+    assert controller.window is window
+    assert "started next" in controller.window.messages.texts()
+    turn_until_idle(application, controller)
+    assert len(controller.workspace.document.plans) == 1
+    controller.choose(language=Language.ENGLISH)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
 
 
 def test_the_language_can_be_chosen_before_the_first_tab_is_there(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
-    desk = Desk(application, worker=worker)
-    desk.show()
-    first = desk.window
+    controller = ProjectController(application, worker=worker)
+    controller.show()
+    first = controller.window
     assert first.shown_tab() == ""
-    desk.choose(language=Language.GERMAN)
-    desk.choose(language=Language.ENGLISH)
-    turn_until(application, lambda: desk.window.stage.scene() is not None)
-    assert desk.window is not first
-    assert desk.window.shown_tab() == "site"
-    close_desk(desk)
+    controller.choose(language=Language.GERMAN)
+    controller.choose(language=Language.ENGLISH)
+    turn_until(application, lambda: controller.window.stage.scene() is not None)
+    assert controller.window is not first
+    assert controller.window.shown_tab() == "site"
+    close_controller(controller)
 
 
-def test_a_window_that_was_replaced_fills_no_menu_any_more(application, desk, monkeypatch):
-    old = desk.window
+def test_a_window_that_was_replaced_fills_no_menu_any_more(application, controller, monkeypatch):
+    old = controller.window
     filled = []
     with monkeypatch.context() as patch:
         patch.setattr(old, "tab", filled.append)
@@ -347,7 +347,11 @@ def test_a_window_that_was_replaced_fills_no_menu_any_more(application, desk, mo
 def test_modules_that_are_half_imported_are_asked_for_nothing(tmp_path, is_left_alone):
     """As pydantic's, which come with Open3D: asked while they are imported, they fail."""
     (tmp_path / "half_imported.py").write_text("def __getattr__(name):\n    raise ImportError(f'asked for {name}')\n")
-    lines = ("import sys", f"sys.path.insert(0, {str(tmp_path)!r})", "from groundstation.gui import loading")
+    lines = (
+        "import sys",
+        f"sys.path.insert(0, {str(tmp_path)!r})",
+        "from groundstation.gui.application import loading",
+    )
     code = "\n".join((*lines, "loading.leave_modules_alone()" * is_left_alone, "import half_imported"))
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (made.returncode == 0) is is_left_alone, made.stderr

@@ -22,7 +22,7 @@ from tests.gui.driving import (
     choose,
     click_on,
     clicked,
-    close_desk,
+    close_controller,
     escape,
     press,
     shut,
@@ -36,27 +36,27 @@ from tests.services.project_cases import small_disk
 
 
 @pytest.fixture
-def make_desk(application, worker, tmp_path, monkeypatch):
+def make_controller(application, worker, tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
-    from groundstation.gui.window.project_controller import Desk
+    from groundstation.gui.window.project_controller import ProjectController
 
-    desks = []
+    controllers = []
 
     def make():
-        desk = Desk(application, worker=worker)
-        desk.show()
-        turn_until(application, lambda: desk.window.stage.scene() is not None)
-        desks.append(desk)
-        return desk
+        controller = ProjectController(application, worker=worker)
+        controller.show()
+        turn_until(application, lambda: controller.window.stage.scene() is not None)
+        controllers.append(controller)
+        return controller
 
-    def end(desk):
-        close_desk(desk)
-        desks.remove(desk)
+    def end(controller):
+        close_controller(controller)
+        controllers.remove(controller)
 
     make.end = end
     yield make
-    for desk in list(desks):
-        end(desk)
+    for controller in list(controllers):
+        end(controller)
 
 
 @pytest.fixture(scope="module")
@@ -64,88 +64,90 @@ def entry():
     return PlanEntry("plan-1", "First", plan_flight(roof(), PlanRequest(n_views=4, greedy=QUICK)).plan)
 
 
-def with_site(application, desk):
-    desk.window.tab("site").left.opener.open_bundled("roof")
-    turn_until_idle(application, desk)
+def with_site(application, controller):
+    controller.window.tab("site").left.opener.open_bundled("roof")
+    turn_until_idle(application, controller)
 
 
-def test_a_project_is_saved_and_opened_again(application, make_desk, entry, tmp_path):
-    desk = make_desk()
-    assert "Begin with a site" in desk.window.tab("site").left.start.findChild(QLabel).text()
-    with_site(application, desk)
-    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
-    assert desk.window.isWindowModified()
+def test_a_project_is_saved_and_opened_again(application, make_controller, entry, tmp_path):
+    controller = make_controller()
+    assert "Begin with a site" in controller.window.tab("site").left.start.findChild(QLabel).text()
+    with_site(application, controller)
+    controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+    assert controller.window.isWindowModified()
     with clicked(choose(tmp_path / "my roof")):
-        desk.save()
-    turn_until_idle(application, desk)
-    assert not desk.window.isWindowModified()
-    assert desk.window.windowTitle() == "my roof[*] - Reflight"
-    assert "Saved in" in desk.window.messages.texts()
-    desk.workspace.session.undo()
-    assert desk.window.isWindowModified()
+        controller.save()
+    turn_until_idle(application, controller)
+    assert not controller.window.isWindowModified()
+    assert controller.window.windowTitle() == "my roof[*] - Reflight"
+    assert "Saved in" in controller.window.messages.texts()
+    controller.workspace.session.undo()
+    assert controller.window.isWindowModified()
     with clicked(choose(tmp_path / "my roof"), "Discard"):
-        trigger(desk.window, "Open project ...")
-    turn_until_idle(application, desk)
-    assert [found.title for found in desk.workspace.document.plans] == ["First"], desk.window.messages.texts()
-    assert desk.workspace.document.current.plan == entry.plan
-    assert desk.settings().recent_projects == (str(tmp_path / "my roof"),)
+        trigger(controller.window, "Open project ...")
+    turn_until_idle(application, controller)
+    assert [found.title for found in controller.workspace.document.plans] == ["First"], (
+        controller.window.messages.texts()
+    )
+    assert controller.workspace.document.current.plan == entry.plan
+    assert controller.settings().recent_projects == (str(tmp_path / "my roof"),)
 
 
-def test_leaving_unsaved_work_asks_first(application, make_desk, tmp_path):
-    desk = make_desk()
-    with_site(application, desk)
+def test_leaving_unsaved_work_asks_first(application, make_controller, tmp_path):
+    controller = make_controller()
+    with_site(application, controller)
     for no in ("Cancel", escape, shut):
         with clicked(no) as asked:
-            trigger(desk.window, "New project")
+            trigger(controller.window, "New project")
         assert "This project has changes that are not saved" in asked[0]
-        assert desk.workspace.document.site is not None
+        assert controller.workspace.document.site is not None
         with clicked(no):
-            assert not desk.window.close()
+            assert not controller.window.close()
     with clicked("Save", escape):
-        trigger(desk.window, "New project")
-    assert desk.workspace.document.site is not None, "no folder was named: nothing is saved, nothing is lost"
+        trigger(controller.window, "New project")
+    assert controller.workspace.document.site is not None, "no folder was named: nothing is saved, nothing is lost"
     with clicked("Save", choose(tmp_path / "kept")):
-        trigger(desk.window, "New project")
-    turn_until_idle(application, desk)
-    assert desk.workspace.document.site is None
+        trigger(controller.window, "New project")
+    turn_until_idle(application, controller)
+    assert controller.workspace.document.site is None
     assert open_project(tmp_path / "kept").document.site.site.name == "roof"
 
 
-def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_desk, tmp_path):
-    desk = make_desk()
-    with_site(application, desk)
+def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_controller, tmp_path):
+    controller = make_controller()
+    with_site(application, controller)
     bad = tmp_path / "bad"
     bad.mkdir()
     (bad / "project.json").write_text('{"format": "reflight-project/2", "plans": [')
     with clicked("Discard"):
-        desk.open_folder(bad)
-    turn_until_idle(application, desk)
-    assert "project.json" in desk.window.messages.texts()
-    assert "Error" in desk.window.messages.texts()
-    assert desk.workspace.document.site.site.name == "roof"
-    desk.open_recent(str(tmp_path / "gone"))
-    assert "not there any more" in desk.window.messages.texts()
+        controller.open_folder(bad)
+    turn_until_idle(application, controller)
+    assert "project.json" in controller.window.messages.texts()
+    assert "Error" in controller.window.messages.texts()
+    assert controller.workspace.document.site.site.name == "roof"
+    controller.open_recent(str(tmp_path / "gone"))
+    assert "not there any more" in controller.window.messages.texts()
 
 
-def test_a_full_disk_leaves_the_work_in_the_window(application, make_desk, entry, tmp_path, monkeypatch):
-    desk = make_desk()
-    with_site(application, desk)
-    desk.save_in(tmp_path / "project")
-    turn_until_idle(application, desk)
-    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
+def test_a_full_disk_leaves_the_work_in_the_window(application, make_controller, entry, tmp_path, monkeypatch):
+    controller = make_controller()
+    with_site(application, controller)
+    controller.save_in(tmp_path / "project")
+    turn_until_idle(application, controller)
+    controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
 
     def full(_path, _content):
         raise InputError("plan-1.plan.json: cannot be written (No space left on device)")
 
     with monkeypatch.context() as patch:
         patch.setattr("groundstation.services.project.store.write_atomically", full)
-        desk.save()
-        turn_until_idle(application, desk)
-    assert "No space left on device" in desk.window.messages.texts()
-    assert desk.window.isWindowModified()
+        controller.save()
+        turn_until_idle(application, controller)
+    assert "No space left on device" in controller.window.messages.texts()
+    assert controller.window.isWindowModified()
     assert open_project(tmp_path / "project").document.plans == ()
-    desk.save()
-    turn_until_idle(application, desk)
+    controller.save()
+    turn_until_idle(application, controller)
     assert len(open_project(tmp_path / "project").document.plans) == 1
 
 
@@ -167,86 +169,86 @@ def not_writable(folder):
         yield
 
 
-def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_desk, entry, tmp_path):
-    desk = make_desk()
-    with_site(application, desk)
+def test_a_read_only_project_opens_and_is_saved_elsewhere(application, make_controller, entry, tmp_path):
+    controller = make_controller()
+    with_site(application, controller)
     folder = tmp_path / "project"
-    desk.save_in(folder)
-    turn_until_idle(application, desk)
-    desk.new_project()
+    controller.save_in(folder)
+    turn_until_idle(application, controller)
+    controller.new_project()
     with not_writable(folder):
-        desk.open_folder(folder)
-        turn_until_idle(application, desk)
-        assert "cannot be locked for editing" in desk.window.messages.texts()
-        assert desk.workspace.document.site.site.name == "roof"
-        desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
-        desk.autosave_now()
+        controller.open_folder(folder)
+        turn_until_idle(application, controller)
+        assert "cannot be locked for editing" in controller.window.messages.texts()
+        assert controller.workspace.document.site.site.name == "roof"
+        controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+        controller.autosave_now()
         with clicked(choose(tmp_path / "copy")):
-            desk.save()
-        turn_until_idle(application, desk)
-        assert not desk.window.isWindowModified()
+            controller.save()
+        turn_until_idle(application, controller)
+        assert not controller.window.isWindowModified()
     assert len(open_project(tmp_path / "copy").document.plans) == 1
 
 
-def test_unsaved_work_is_offered_after_a_crash(application, make_desk, entry, tmp_path):
-    desk = make_desk()
-    with_site(application, desk)
+def test_unsaved_work_is_offered_after_a_crash(application, make_controller, entry, tmp_path):
+    controller = make_controller()
+    with_site(application, controller)
     folder = tmp_path / "project"
-    desk.save_in(folder)
-    turn_until_idle(application, desk)
-    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
-    desk.autosave_now()
+    controller.save_in(folder)
+    turn_until_idle(application, controller)
+    controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+    controller.autosave_now()
     turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
     # What a crash leaves: the folder as it is now, and no process that has it open.
     shutil.copytree(folder, tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
     with clicked("Discard", "Restore") as asked:
-        desk.open_folder(tmp_path / "crashed")
-    turn_until_idle(application, desk)
+        controller.open_folder(tmp_path / "crashed")
+    turn_until_idle(application, controller)
     assert "plan 'First' is new" in asked[-1]
-    assert [found.title for found in desk.workspace.document.plans] == ["First"]
-    assert desk.window.isWindowModified(), "it is still not saved"
-    desk.save()
-    turn_until_idle(application, desk)
+    assert [found.title for found in controller.workspace.document.plans] == ["First"]
+    assert controller.window.isWindowModified(), "it is still not saved"
+    controller.save()
+    turn_until_idle(application, controller)
     assert not (tmp_path / "crashed" / ".autosave").exists()
     assert len(open_project(tmp_path / "crashed").document.plans) == 1
 
 
-def crashed(application, make_desk, tmp_path):
+def crashed(application, make_controller, tmp_path):
     """A folder of a project with a copy of unsaved work, and a window in which nothing is open."""
-    desk = make_desk()
-    with_site(application, desk)
-    desk.save_in(tmp_path / "project")
-    turn_until_idle(application, desk)
-    desk.workspace.change("Rename", replace(desk.workspace.document, request=PlanRequest(n_views=9)))
-    desk.autosave_now()
+    controller = make_controller()
+    with_site(application, controller)
+    controller.save_in(tmp_path / "project")
+    turn_until_idle(application, controller)
+    controller.workspace.change("Rename", replace(controller.workspace.document, request=PlanRequest(n_views=9)))
+    controller.autosave_now()
     turn_until(application, lambda: (tmp_path / "project" / ".autosave" / "autosave.json").exists())
     shutil.copytree(tmp_path / "project", tmp_path / "crashed", ignore=shutil.ignore_patterns(".lock*"))
-    make_desk.end(desk)
-    return tmp_path / "crashed", make_desk()
+    make_controller.end(controller)
+    return tmp_path / "crashed", make_controller()
 
 
-def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, make_desk, tmp_path):
-    folder, desk = crashed(application, make_desk, tmp_path)
+def test_unsaved_work_that_is_not_decided_about_is_offered_again(application, make_controller, tmp_path):
+    folder, controller = crashed(application, make_controller, tmp_path)
     for later in ("Decide later", escape, shut):
         with clicked(later):
-            desk.open_folder(folder)
-        turn_until_idle(application, desk)
-        assert desk.workspace.document.request.n_views is None
+            controller.open_folder(folder)
+        turn_until_idle(application, controller)
+        assert controller.workspace.document.request.n_views is None
         assert (folder / ".autosave").exists()
     with clicked("Delete the copy"):
-        desk.open_folder(folder)
-    turn_until_idle(application, desk)
+        controller.open_folder(folder)
+    turn_until_idle(application, controller)
     assert not (folder / ".autosave").exists()
-    desk.open_folder(folder)
-    turn_until_idle(application, desk)
-    assert desk.workspace.document.request.n_views is None
+    controller.open_folder(folder)
+    turn_until_idle(application, controller)
+    assert controller.workspace.document.request.n_views is None
 
 
-def test_save_as_proposes_a_name_that_is_free(application, make_desk, tmp_path, monkeypatch):
+def test_save_as_proposes_a_name_that_is_free(application, make_controller, tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "home", lambda: tmp_path)
     (tmp_path / "roof").mkdir()
-    desk = make_desk()
-    with_site(application, desk)
+    controller = make_controller()
+    with_site(application, controller)
     seen = []
 
     def accept(dialog):
@@ -255,20 +257,20 @@ def test_save_as_proposes_a_name_that_is_free(application, make_desk, tmp_path, 
         press("Save")(dialog)
 
     with clicked(accept):
-        trigger(desk.window, "Save as ...")
-    turn_until_idle(application, desk)
+        trigger(controller.window, "Save as ...")
+    turn_until_idle(application, controller)
     assert seen == [(str(tmp_path), "roof 2")]
     assert open_project(tmp_path / "roof 2").document.site.site.name == "roof"
     with clicked(accept):
-        trigger(desk.window, "Save as ...")
-    turn_until_idle(application, desk)
+        trigger(controller.window, "Save as ...")
+    turn_until_idle(application, controller)
     assert seen[-1] == (str(tmp_path), "roof 3")
 
 
-def test_a_folder_that_is_there_is_gone_into_and_the_name_stays(application, make_desk, tmp_path):
+def test_a_folder_that_is_there_is_gone_into_and_the_name_stays(application, make_controller, tmp_path):
     (tmp_path / "here").mkdir()
-    desk = make_desk()
-    with_site(application, desk)
+    controller = make_controller()
+    with_site(application, controller)
 
     def into(dialog):
         line, there = dialog.findChild(QLineEdit, "fileNameEdit"), tmp_path / "here"
@@ -288,8 +290,8 @@ def test_a_folder_that_is_there_is_gone_into_and_the_name_stays(application, mak
         click_on(dialog, accept_button(dialog))
 
     with clicked(into):
-        trigger(desk.window, "Save as ...")
-    turn_until_idle(application, desk)
+        trigger(controller.window, "Save as ...")
+    turn_until_idle(application, controller)
     assert open_project(tmp_path / "here" / "roof").document.site.site.name == "roof"
 
 
@@ -302,17 +304,17 @@ def test_names_of_sites_become_names_that_every_system_takes(text, name):
     assert file_name(text) == name
 
 
-def test_work_without_a_project_survives_a_crash_too(application, make_desk, tmp_path):
-    first = make_desk()
+def test_work_without_a_project_survives_a_crash_too(application, make_controller, tmp_path):
+    first = make_controller()
     with_site(application, first)
     first.autosave_now()
     place = first.keeper.place()
     turn_until(application, lambda: (place / ".autosave" / "autosave.json").exists())
     shutil.copytree(place, place.with_name("crashed"), ignore=shutil.ignore_patterns(".lock*"))
-    make_desk.end(first)
+    make_controller.end(first)
     assert not place.exists(), "an orderly end leaves nothing behind"
     with clicked("Restore") as asked:
-        second = make_desk()
+        second = make_controller()
     turn_until_idle(application, second)
     assert second.workspace.document.site.site.name == "roof"
     assert "Nothing is lost" in asked[0]
@@ -323,34 +325,34 @@ def test_work_without_a_project_survives_a_crash_too(application, make_desk, tmp
 
 
 @pytest.mark.slow
-def test_a_second_window_on_one_project_is_told(application, make_desk, tmp_path):
-    first = make_desk()
+def test_a_second_window_on_one_project_is_told(application, make_controller, tmp_path):
+    first = make_controller()
     with_site(application, first)
     first.save_in(tmp_path / "project")
     turn_until_idle(application, first)
-    second = make_desk()
+    second = make_controller()
     second.open_folder(tmp_path / "project")
     turn_until_idle(application, second)
     assert "open in another Reflight" in second.window.messages.texts()
     assert second.workspace.document.site is not None
 
 
-def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, make_desk, tmp_path):
-    desk = make_desk()
-    with_site(application, desk)
-    desk.save_in(tmp_path / "project")
-    turn_until_idle(application, desk)
-    desk.window.show_tab("plan")
-    desk.window.tab("plan").desk.set_request(PlanRequest(n_views=25, time_budget_s=60.0))
-    desk.window.tab("plan").desk.plan()
-    turn_until(application, lambda: any(job.state is JobState.RUNNING for job in desk.workspace.jobs()))
-    jobs = desk.workspace.jobs()
-    assert desk.window.close()
+def test_closing_while_a_plan_runs_cancels_it_and_loses_nothing(application, make_controller, tmp_path):
+    controller = make_controller()
+    with_site(application, controller)
+    controller.save_in(tmp_path / "project")
+    turn_until_idle(application, controller)
+    controller.window.show_tab("plan")
+    controller.window.tab("plan").controller.set_request(PlanRequest(n_views=25, time_budget_s=60.0))
+    controller.window.tab("plan").controller.plan()
+    turn_until(application, lambda: any(job.state is JobState.RUNNING for job in controller.workspace.jobs()))
+    jobs = controller.workspace.jobs()
+    assert controller.window.close()
     assert all(job.wait(120.0) for job in jobs)
     assert open_project(tmp_path / "project").document.site.site.name == "roof"
 
 
-def test_damaged_settings_are_told_kept_aside_and_the_window_opens_as_at_first(application, make_desk, tmp_path):
+def test_damaged_settings_are_told_kept_aside_and_the_window_opens_as_at_first(application, make_controller, tmp_path):
     config = tmp_path / "config"
     config.mkdir()
     damaged = {
@@ -358,43 +360,43 @@ def test_damaged_settings_are_told_kept_aside_and_the_window_opens_as_at_first(a
     }  # fmt: skip
     for name, content in damaged.items():
         (config / f"{name}.toml").write_bytes(content)
-    desk = make_desk()
-    desk.window.show_tab("fly")
-    turn_until_idle(application, desk)
-    turn_until(application, lambda: "connection.damaged.toml" in desk.window.messages.texts())
-    said = desk.window.messages.texts()
+    controller = make_controller()
+    controller.window.show_tab("fly")
+    turn_until_idle(application, controller)
+    turn_until(application, lambda: "connection.damaged.toml" in controller.window.messages.texts())
+    said = controller.window.messages.texts()
     assert "drak" in said
     for name, content in damaged.items():
         assert f"{name}.damaged.toml" in said
         assert (config / f"{name}.damaged.toml").read_bytes() == content
-    desk.choose(text_scale=1.15)
+    controller.choose(text_scale=1.15)
     assert "text_scale = 1.15" in (config / "settings.toml").read_text()
-    desk.choose(text_scale=1.0)
+    controller.choose(text_scale=1.0)
 
 
-def test_the_layout_is_remembered(application, make_desk):
-    first = make_desk()
+def test_the_layout_is_remembered(application, make_controller):
+    first = make_controller()
     first.window._around.setSizes([500, 700])
     turn_until_idle(application, first)
     width = first.window._around.sizes()[0]
-    make_desk.end(first)
-    second = make_desk()
+    make_controller.end(first)
+    second = make_controller()
     turn_until_idle(application, second)
     assert second.window._around.sizes()[0] == pytest.approx(width, abs=3)
 
 
-def test_work_that_was_thrown_away_is_not_offered_again(application, make_desk, entry, tmp_path):
-    desk = make_desk()
-    with_site(application, desk)
+def test_work_that_was_thrown_away_is_not_offered_again(application, make_controller, entry, tmp_path):
+    controller = make_controller()
+    with_site(application, controller)
     folder = tmp_path / "project"
-    desk.save_in(folder)
-    turn_until_idle(application, desk)
-    desk.workspace.change("Plan", desk.workspace.document.with_plan(entry))
-    desk.autosave_now()
+    controller.save_in(folder)
+    turn_until_idle(application, controller)
+    controller.workspace.change("Plan", controller.workspace.document.with_plan(entry))
+    controller.autosave_now()
     turn_until(application, lambda: (folder / ".autosave" / "autosave.json").exists())
     with clicked("Discard") as asked:
-        desk.open_folder(folder)
-    turn_until_idle(application, desk)
+        controller.open_folder(folder)
+    turn_until_idle(application, controller)
     assert asked[-1].startswith("Unsaved changes")
-    assert desk.workspace.document.plans == ()
-    assert not desk.window.isWindowModified()
+    assert controller.workspace.document.plans == ()
+    assert not controller.window.isWindowModified()

@@ -11,7 +11,8 @@ import pytest
 
 from groundstation.vehicle.orders import sortie_orders
 from groundstation.vehicle.sortie.conduct import conduct
-from groundstation.vehicle.sortie.flight_run import FlightRun, RunOptions
+from groundstation.vehicle.sortie.flight_run import FlightRun
+from groundstation.vehicle.sortie.run_records import RunOptions
 from missions.flight.flight_file import flight_of, flight_to_json, read_flight, write_flight
 from missions.flight.logs.read import read_log
 from missions.flight.report import report_flight

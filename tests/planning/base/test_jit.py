@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -11,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import planning.base.jit
 from planning.base.jit import chunks, inline, is_compiled, kernel, n_threads, run_chunks, run_parallel
 
 
@@ -113,3 +117,27 @@ def test_it_is_known_which_kernels_are_kept_on_disk(tmp_path: Path, monkeypatch:
     assert doubled(4) == 8
     assert is_compiled(doubled)
     assert not is_compiled(tripled)
+
+
+def test_what_was_compiled_for_another_layout_is_compiled_again_and_not_read(tmp_path):
+    # Compiled code names the modules of its types: where one has moved, it cannot even be opened.
+    def run(home, layout):
+        for old in tmp_path.glob("pair_*.py"):
+            old.unlink()
+        (tmp_path / f"pair_{home}.py").write_text(
+            "from typing import NamedTuple\nclass Pair(NamedTuple):\n    a: float\n    b: float\n"
+        )
+        (tmp_path / "summing.py").write_text(
+            f"from pair_{home} import Pair\nfrom planning.base.jit import kernel\n"
+            "@kernel\ndef total(pair):\n    return pair.a + pair.b\n"
+            "print(total(Pair(1.0, 2.0)), sum(total.stats.cache_hits.values()))\n"
+        )
+        code = f"import planning.base.jit as jit; jit.LAYOUT = {layout}; import summing"
+        places = os.pathsep.join((str(tmp_path), str(Path(planning.base.jit.__file__).parents[2])))
+        env = {**os.environ, "PYTHONPATH": places}
+        return subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=False)
+
+    assert run("here", 1).stdout.split() == ["3.0", "0"]
+    assert run("here", 1).stdout.split()[0] == "3.0"
+    assert "No module named 'pair_here'" in run("there", 1).stderr, "Numba does so by itself now: LAYOUT can go"
+    assert run("there", 2).stdout.split() == ["3.0", "0"]

@@ -13,10 +13,10 @@ from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.light.glass_learned import GlassLearned
 from reconstruction.training import start as start_module
 from reconstruction.training import train
-from reconstruction.training.callbacks import Watching
+from reconstruction.training.callbacks import Callbacks
 from reconstruction.training.checkpoints import read_checkpoint, write_checkpoint
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 from reconstruction.training.train import resume_model, train_model
 
 TINY = ReflectionConfig(
@@ -44,7 +44,7 @@ class Cancelling:
 
 def cancelled(data_set, checkpoint, config, stage="learning reflections", n=4, **more):
     with pytest.raises(OperationCancelled):
-        train_model(data_set, config, Watching(Cancelling(stage, n)), checkpoint, **more)
+        train_model(data_set, config, Callbacks(Cancelling(stage, n)), checkpoint, **more)
 
 
 def config_of(light, **more):
@@ -99,15 +99,15 @@ def test_another_data_set_method_or_a_damaged_file_is_refused(data_set, tmp_path
 def test_light_has_its_share_of_the_time_that_is_left_and_what_went_before_counts(data_set, tmp_path):
     now = [100.0]
     config, checkpoint = config_of("mlp", time_limit_s=60.0, light_share=0.5), tmp_path / "c"
-    cancelled(data_set, checkpoint, config, watch=Stopwatch(lambda: now[0], 80.0))
+    cancelled(data_set, checkpoint, config, watch=Timer(lambda: now[0], 80.0))
     content = read_checkpoint(checkpoint)
     assert content["light stage"]["time_limit_s"] == 20.0
     assert content["spent_s"] == 20.0
     now[0] = 200.0
-    again = resume_model(data_set, checkpoint, watch=Stopwatch(lambda: now[0], 197.0))
+    again = resume_model(data_set, checkpoint, watch=Timer(lambda: now[0], 197.0))
     assert again.seconds == 23.0
     # Of a time that has run out already, light has a little, and the model is what it is then.
-    late = train_model(data_set, config, watch=Stopwatch(lambda: now[0], 100.0))
+    late = train_model(data_set, config, watch=Timer(lambda: now[0], 100.0))
     assert late.n_steps == 0
 
 
@@ -122,7 +122,7 @@ def test_its_time_is_that_of_the_training_s_own_clock(data_set, tmp_path):
                 reports.append(done)
 
     # Every look at this clock takes a second: 30 of them are up after a few steps, and none of the world's.
-    train_model(data_set, config, Watching(Counting()), watch=Stopwatch(lambda: float(next(ticks))))
+    train_model(data_set, config, Callbacks(Counting()), watch=Timer(lambda: float(next(ticks))))
     assert 5 < max(reports) < 40
 
 

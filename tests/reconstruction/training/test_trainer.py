@@ -14,13 +14,13 @@ from reconstruction.light.directions.reflection_mlp import MlpShape
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.training import trainer as trainer_module
 from reconstruction.training import training_state
-from reconstruction.training.callbacks import HeldOut, Watching
+from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.checkpoints import read_checkpoint
 from reconstruction.training.config import LossWeights, TrainConfig
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.start import start_model
 from reconstruction.training.strategies import strategy_of
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 from reconstruction.training.trainer import Trainer
 from reconstruction.training.training_state import MOST_HALVINGS
 
@@ -111,7 +111,7 @@ def assert_same(one, other):
 def test_pictures_of_unseen_views_get_better(make):
     trainer = make(replace(CONFIG, iterations=30, densification="none"))
     trace, previews = Trace(), []
-    trainer.run(Watching(trace=trace, preview=previews.append))
+    trainer.run(Callbacks(trace=trace, preview=previews.append))
     assert trainer.at.step == 30
     first, last = trace.points[0].value, trace.points[-1].value
     assert last > first + 1.0
@@ -123,13 +123,13 @@ def test_pictures_of_unseen_views_get_better(make):
 def test_splats_are_added_and_stay_below_their_number(make):
     trainer = make(replace(CONFIG, iterations=105, densify_from=0.0, densify_until=1.0, densification="mcmc"))
     n_before = len(trainer.model.splats)
-    trainer.run(Watching())
+    trainer.run(Callbacks())
     assert n_before < len(trainer.model.splats) <= 220
 
 
 def test_a_time_limit_is_gone_through_from_the_joint_training_s_own_beginning(make):
     now = [40.0]
-    watch = Stopwatch(lambda: now[0], 0.0)
+    watch = Timer(lambda: now[0], 0.0)
     trainer = make(replace(CONFIG, iterations=100, time_limit_s=100.0), watch=watch)
     found = []
     for seconds in (40.0, 70.0, 97.0, 200.0):
@@ -141,7 +141,7 @@ def test_a_time_limit_is_gone_through_from_the_joint_training_s_own_beginning(ma
 
 
 def test_where_learning_light_took_all_the_time_there_is_no_step(make):
-    trainer = make(replace(CONFIG, time_limit_s=30.0), watch=Stopwatch(lambda: 40.0, 0.0))
+    trainer = make(replace(CONFIG, time_limit_s=30.0), watch=Timer(lambda: 40.0, 0.0))
     assert trainer.progress == 1.0
 
 
@@ -149,7 +149,7 @@ def test_where_learning_light_took_all_the_time_there_is_no_step(make):
 def test_splats_are_added_only_between_the_shares_that_are_told(make):
     config = replace(CONFIG, iterations=220, densify_from=0.7, densify_until=0.95, densification="mcmc", max_splats=400)
     trainer, numbers = make(config), []
-    trainer.run(Watching(visit=lambda at: numbers.append((at.step, len(at.model.splats)))))
+    trainer.run(Callbacks(visit=lambda at: numbers.append((at.step, len(at.model.splats)))))
     changes = [step for (step, n), (_, before) in zip(numbers[1:], numbers, strict=False) if n != before]
     assert changes
     assert all(0.7 * 220 < step <= 0.95 * 220 + 1 for step in changes)
@@ -159,15 +159,15 @@ def test_splats_are_added_only_between_the_shares_that_are_told(make):
 def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):
     config = CONFIG if light is None else replace(CONFIG, method="refglass-gs", light=light, reflections=TINY)
     whole = make(config)
-    whole.run(Watching())
+    whole.run(Callbacks())
     first = make(config, checkpoint="c")
     with pytest.raises(OperationCancelled):
-        first.run(Watching(Cancelling(6)))
+        first.run(Callbacks(Cancelling(6)))
     assert 0 < first.at.step < 12
     second = make(config, checkpoint="c")
     second.restore(read_checkpoint(tmp_path / "c")["training"])
     assert second.at.step == first.at.step
-    second.run(Watching())
+    second.run(Callbacks())
     assert second.at.step == 12
     assert_same(whole, second)
 
@@ -183,8 +183,8 @@ def test_an_mlp_s_weights_decay_in_the_joint_training_and_nothing_else_does(make
 
 def test_with_other_seeds_trainings_differ(make):
     one, other = make(), make(replace(CONFIG, seed=1))
-    one.run(Watching())
-    other.run(Watching())
+    one.run(Callbacks())
+    other.run(Callbacks())
     assert not torch.equal(one.model.splats.sh, other.model.splats.sh)
 
 
@@ -200,7 +200,7 @@ def test_a_step_without_numbers_is_undone_and_rates_are_halved(make, monkeypatch
     assert (trainer.at.step, trainer.at.factor) == (1, 0.5)
     assert "undone" in trainer.at.notes[0]
     monkeypatch.setattr(trainer_module, "objective", true_objective)
-    trainer.run(Watching())
+    trainer.run(Callbacks())
     assert trainer.at.step == 12
     assert trainer.at.factor == 0.5
 
@@ -225,13 +225,13 @@ def test_a_training_that_gives_no_numbers_ends_and_leaves_the_last_good_checkpoi
     trainer.save()
     monkeypatch.setattr(trainer_module, "objective", lambda picture, *_: (picture.display.sum() * math.nan, {}))
     with pytest.raises(ReconstructionError, match=r"step 2: .*last checkpoint, .* is good"):
-        trainer.run(Watching())
+        trainer.run(Callbacks())
     assert trainer.at.n_undone == MOST_HALVINGS + 1
     monkeypatch.undo()
     again = make(checkpoint="c")
     again.restore(read_checkpoint(tmp_path / "c")["training"])
     assert again.at.step == 1
-    again.run(Watching())
+    again.run(Callbacks())
 
 
 def test_spoiled_splats_are_taken_from_the_last_checkpoint(make):
@@ -247,7 +247,7 @@ def test_spoiled_splats_are_taken_from_the_last_checkpoint(make):
     assert "went back to step 1" in trainer.at.notes[-1]
     assert bool(torch.isfinite(trainer.model.splats.sh).all())
     assert trainer.at.factor == 0.5
-    trainer.run(Watching())
+    trainer.run(Callbacks())
     assert trainer.at.step == 12
 
 
@@ -273,7 +273,7 @@ def test_when_memory_runs_out_windows_are_halved_and_nothing_is_lost(make, monke
     trainer._survived_step()
     assert trainer.photos.window_px == 40 * 30 // 2
     assert all(torch.equal(value, before[name]) for name, value in everything(trainer).items())
-    trainer.run(Watching())
+    trainer.run(Callbacks())
     assert trainer.at.step == 12
     assert trainer.photos.window_px <= 20 * 15
     assert all("memory ran out at step 1:" in note for note in trainer.at.notes)
@@ -296,9 +296,7 @@ def test_other_errors_are_not_swallowed(make, monkeypatch):
 def timed(make, monkeypatch, limit_s, step_s=1.0, look_s=0.0, save_s=0.0, before_s=0.0):
     """A training whose parts take known times, and its clock, which began at 100 s."""
     clock = FakeClock()
-    trainer = make(
-        replace(CONFIG, iterations=10_000, time_limit_s=limit_s), "c", watch=Stopwatch(clock, 100.0 - before_s)
-    )
+    trainer = make(replace(CONFIG, iterations=10_000, time_limit_s=limit_s), "c", watch=Timer(clock, 100.0 - before_s))
     monkeypatch.setattr(trainer, "step", clock.lasting(step_s, trainer.step))
     monkeypatch.setattr(trainer_module, "quality_db", clock.lasting(look_s, lambda *_: 20.0))
     monkeypatch.setattr(trainer_module, "write_checkpoint", clock.lasting(save_s))
@@ -307,7 +305,7 @@ def timed(make, monkeypatch, limit_s, step_s=1.0, look_s=0.0, save_s=0.0, before
 
 def test_time_limits_end_it_with_rates_at_their_last(make, monkeypatch):
     trainer, _ = timed(make, monkeypatch, 8.0)
-    trainer.run(Watching())
+    trainer.run(Callbacks())
     assert trainer.at.step == 8
     full = {group["name"]: group["full"] for group in trainer.optimiser.param_groups}
     lr = {group["name"]: group["lr"] for group in trainer.optimiser.param_groups}
@@ -316,14 +314,14 @@ def test_time_limits_end_it_with_rates_at_their_last(make, monkeypatch):
 
 def test_what_went_before_counts_for_the_time_limit(make, monkeypatch):
     trainer, _ = timed(make, monkeypatch, 8.0, before_s=5.0)
-    trainer.run(Watching())
+    trainer.run(Callbacks())
     assert trainer.at.step == 3
 
 
 def test_looks_and_files_count_for_the_time_limit_and_have_time_in_the_end(make, monkeypatch):
     trainer, clock = timed(make, monkeypatch, 60.0, look_s=4.0, save_s=3.0)
     trainer.save()
-    trainer.run(Watching())
+    trainer.run(Callbacks())
     # The model is written now, for up to twice as long as a checkpoint.
     assert clock.now == 160.0 - 2 * 3.0
     assert trainer.at.spent_s == 54.0
@@ -334,7 +332,7 @@ def test_pauses_do_not_count(make, monkeypatch):
     trainer, clock = timed(make, monkeypatch, 8.0)
     monkeypatch.setattr(trainer_module.time, "sleep", lambda _: clock.lasting(50.0)())
     answers = iter([True, True, False] + [False] * 99)
-    trainer.run(Watching(pause=lambda: next(answers)))
+    trainer.run(Callbacks(pause=lambda: next(answers)))
     assert trainer.at.step == 8
     assert trainer.at.spent_s == 8.0
 
@@ -344,7 +342,7 @@ def test_paused_it_waits_and_can_be_looked_at(make, monkeypatch):
     monkeypatch.setattr(trainer_module.time, "sleep", waits.append)
     trainer = make()
     answers = iter([True, True, False] + [False] * 99)
-    trainer.run(Watching(pause=lambda: next(answers), visit=visits.append))
+    trainer.run(Callbacks(pause=lambda: next(answers), visit=visits.append))
     assert trainer.at.step == 12
     assert len(waits) == 2
     assert [visit.state for visit in visits] == ["training", "paused", "paused", *["training"] * 13]
@@ -368,7 +366,7 @@ def stopped(make, monkeypatch, after_s, stop_at, **more):
         rates.append(rates_of(trainer))
 
     monkeypatch.setattr(trainer, "step", noted)
-    trainer.run(Watching(stop=lambda: trainer.at.step >= stop_at, **more))
+    trainer.run(Callbacks(stop=lambda: trainer.at.step >= stop_at, **more))
     return trainer, rates
 
 
@@ -392,7 +390,7 @@ def test_settling_takes_a_minute_at_most(make, monkeypatch):
 
 def test_a_training_that_is_nearly_over_settles_no_longer_than_it_would_have_lasted(make, monkeypatch):
     trainer, _ = timed(make, monkeypatch, 1000.0, before_s=990.0)
-    trainer.run(Watching(stop=lambda: trainer.at.step >= 4))
+    trainer.run(Callbacks(stop=lambda: trainer.at.step >= 4))
     assert trainer.at.step == 10
 
 
@@ -401,10 +399,10 @@ def test_while_it_settles_no_splats_are_added_and_the_losses_stay_what_they_were
     losses = LossWeights(consistent_from=0.5, high_frequency_from=0.5)
     config = replace(CONFIG, iterations=400, densify_from=0.0, densify_until=1.0, densification="mcmc", losses=losses)
     clock = FakeClock()
-    trainer = make(config, watch=Stopwatch(clock, -700.0))
+    trainer = make(config, watch=Timer(clock, -700.0))
     monkeypatch.setattr(trainer, "step", clock.lasting(1.0, trainer.step))
     visits = []
-    trainer.run(Watching(stop=lambda: trainer.at.step >= 90, visit=lambda v: visits.append((v, len(v.model.splats)))))
+    trainer.run(Callbacks(stop=lambda: trainer.at.step >= 90, visit=lambda v: visits.append((v, len(v.model.splats)))))
     settling = [(visit, n_splats) for visit, n_splats in visits if visit.state == "settling"]
     assert len(settling) > 30
     assert len({n_splats for _, n_splats in settling}) == 1
@@ -419,7 +417,7 @@ def test_what_is_held_out_chooses_nothing_when_it_is_stopped(make, monkeypatch):
             shown = trainer.shown[0]
             noise = torch.randint(0, 256, shown.sample.display.shape, dtype=torch.uint8)
             trainer.shown = (replace(shown, sample=replace(shown.sample, display=noise)),)
-        trainer.run(Watching(stop=lambda trainer=trainer: trainer.at.step >= 3))
+        trainer.run(Callbacks(stop=lambda trainer=trainer: trainer.at.step >= 3))
         ends.append(trainer)
     assert ends[0].at.step > 3
     assert_same(*ends)
@@ -432,14 +430,14 @@ def test_broken_off_while_it_settles_it_goes_on_as_if_nobody_had_stopped_it(make
                 raise OperationCancelled("enough")
 
     clock = FakeClock()
-    trainer = make(checkpoint="c", watch=Stopwatch(clock, -700.0))
+    trainer = make(checkpoint="c", watch=Timer(clock, -700.0))
     monkeypatch.setattr(trainer, "step", clock.lasting(1.0, trainer.step))
     with pytest.raises(OperationCancelled):
-        trainer.run(Watching(Cancel(), stop=lambda: trainer.at.step >= 4))
+        trainer.run(Callbacks(Cancel(), stop=lambda: trainer.at.step >= 4))
     assert trainer.at.step == 5
     again = make(checkpoint="c")
     again.restore(read_checkpoint(tmp_path / "c")["training"])
-    again.run(Watching())
+    again.run(Callbacks())
     assert again.at.step == 12
 
 
@@ -453,7 +451,7 @@ def test_every_term_of_the_objective_is_there_when_its_time_has_come(make):
 
 def test_gains_of_photos_stay_one_on_average(make):
     trainer = make(replace(CONFIG, rates=replace(CONFIG.rates, exposures=0.05)))
-    trainer.run(Watching())
+    trainer.run(Callbacks())
     gains = trainer.exposures.log_gains.detach()
     assert gains.abs().max() > 1e-3
     assert gains.mean().item() == pytest.approx(0.0, abs=1e-6)

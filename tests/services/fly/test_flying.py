@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from groundstation.services.fly.flying import FlightWish, check_site, fly_files, fly_plan
+from groundstation.services.fly.flying import FlightRequest, check_site, fly_files, fly_plan
 from groundstation.vehicle.sortie.run_records import Phase
 from groundstation.vehicle.state import LINK_LOST_S, Landed
 from missions.flight.flight_file import read_flight
@@ -72,7 +72,7 @@ def assert_kept(flown, plan):
 
 @BOTH
 def test_the_office_is_flown_as_planned(model, plan, autopilot):
-    flown = fly_plan(plan, model, FlightWish(autopilot=autopilot))
+    flown = fly_plan(plan, model, FlightRequest(autopilot=autopilot))
     assert_kept(flown, plan)
     assert {photo.source for photo in flown.flight.sorties[0].photos} == {"simulation"}
     assert not [f for f in flown.flight.report.findings if f.severity == "error"]
@@ -89,14 +89,14 @@ def test_the_office_is_flown_as_planned(model, plan, autopilot):
 )
 def test_the_office_is_flown_as_planned_by_self_built_aircraft(model, autopilot, profile):
     plan = self_built(profile)
-    assert_kept(fly_plan(plan, model, FlightWish(autopilot=autopilot)), plan)
+    assert_kept(fly_plan(plan, model, FlightRequest(autopilot=autopilot)), plan)
 
 
 @pytest.mark.slow
 @BOTH
 def test_the_whole_office_is_flown_as_planned_in_several_sorties(model, autopilot):
     plan = plan_flight(model, PlanRequest(n_views=560, time_budget_s=10.0)).plan
-    flown = fly_plan(plan, model, FlightWish(autopilot=autopilot))
+    flown = fly_plan(plan, model, FlightRequest(autopilot=autopilot))
     assert len(flown.sorties) > 1
     assert_kept(flown, plan)
 
@@ -105,7 +105,7 @@ def test_the_whole_office_is_flown_as_planned_in_several_sorties(model, autopilo
 @BOTH
 def test_the_same_seed_gives_the_same_flight_and_another_one_another(small, autopilot):
     site, plan = small
-    wish = FlightWish(autopilot=autopilot, conditions=Conditions(wind_m_s=5.0, fix="single"), seed=3)
+    wish = FlightRequest(autopilot=autopilot, conditions=Conditions(wind_m_s=5.0, fix="single"), seed=3)
     first, again, other = (fly_plan(plan, site, w).flight.sorties[0] for w in (wish, wish, replace(wish, seed=4)))
     assert first.photos == again.photos
     assert (first.track.position_enu_m == again.track.position_enu_m).all()
@@ -118,11 +118,11 @@ def errors_m(flown):
 
 def test_effects_are_off_in_good_conditions_and_turning_one_on_changes_less_than_its_tolerance(small):
     site, plan = small
-    calm = fly_plan(plan, site, FlightWish())
+    calm = fly_plan(plan, site, FlightRequest())
     states = {decision.effect: decision.on for decision in calm.sorties[0].effects}
     assert set(states) == {effect.name for effect in EFFECTS}
     assert not states["GNSS noise"]
-    noisy = fly_plan(plan, site, FlightWish(effects={"GNSS noise": "on"}))
+    noisy = fly_plan(plan, site, FlightRequest(effects={"GNSS noise": "on"}))
     (decision,) = [d for d in noisy.sorties[0].effects if d.effect == "GNSS noise"]
     assert (decision.on, decision.decided_by) == (True, "user")
     rms = [math.sqrt(sum(e**2 for e in errors_m(flown)) / len(errors_m(flown))) for flown in (calm, noisy)]
@@ -131,7 +131,7 @@ def test_effects_are_off_in_good_conditions_and_turning_one_on_changes_less_than
 
 def test_effects_are_on_where_conditions_call_for_them_and_turning_one_off_changes_more(small):
     site, plan = small
-    wish = FlightWish(conditions=Conditions(fix="single"))
+    wish = FlightRequest(conditions=Conditions(fix="single"))
     bad = fly_plan(plan, site, wish)
     (decision,) = [d for d in bad.sorties[0].effects if d.effect == "GNSS noise"]
     assert (decision.on, decision.decided_by) == (True, "scene")
@@ -142,7 +142,7 @@ def test_effects_are_on_where_conditions_call_for_them_and_turning_one_off_chang
 
 def test_a_radio_that_loses_messages_delays_and_loses_nothing_else(small):
     site, plan = small
-    lossy = fly_plan(plan, site, FlightWish(conditions=Conditions(message_loss=0.2), seed=1))
+    lossy = fly_plan(plan, site, FlightRequest(conditions=Conditions(message_loss=0.2), seed=1))
     assert len(lossy.flight.sorties[0].photos) == len(plan.viewpoints)
 
 
@@ -150,7 +150,7 @@ def test_an_outage_in_flight_is_shown_and_survived(small):
     site, plan = small
     outage = (30.0, 30.0 + 3.0 * LINK_LOST_S)
     shown = []
-    wish = FlightWish(conditions=Conditions(outages_s=(outage,)))
+    wish = FlightRequest(conditions=Conditions(outages_s=(outage,)))
     flown = fly_plan(plan, site, wish, show=shown.append)
     # Counted from take-off, not from power-up, which is more than 40 s earlier.
     up_s = min(view.time_s for view in shown if view.state.landed and view.state.landed.value is not Landed.ON_GROUND)
@@ -165,7 +165,7 @@ def test_a_flight_is_written_whole(tmp_path):
     site_path = write_scene("single-panel", tmp_path)
     plan_path, out = tmp_path / "p.plan.json", tmp_path / "f.flight.json"
     write_plan(plan_path, plan_flight(read_site(site_path), PlanRequest(n_views=3, greedy=QUICK)).plan)
-    flown = fly_files(plan_path, site_path, out, FlightWish())
+    flown = fly_files(plan_path, site_path, out, FlightRequest())
     again = read_flight(out)
     assert again.sorties[0].photos == flown.flight.sorties[0].photos
     assert again.report.summary == flown.flight.report.summary
@@ -178,20 +178,20 @@ def test_a_plan_of_another_site_is_refused(small):
     with pytest.raises(InputError, match="a changed site 'single-panel'"):
         check_site(plan, moved)
     with pytest.raises(InputError, match="another site 'office'"):
-        fly_plan(replace(plan, site_sha256="ab"), replace(office(), sha256="cd"), FlightWish())
+        fly_plan(replace(plan, site_sha256="ab"), replace(office(), sha256="cd"), FlightRequest())
 
 
 def test_what_cannot_be_flown_says_why_and_writes_nothing(small, tmp_path):
     site, plan = small
     with pytest.raises(InfeasibleError, match="wind"):
-        fly_plan(plan, site, FlightWish(conditions=Conditions(wind_m_s=40.0)))
+        fly_plan(plan, site, FlightRequest(conditions=Conditions(wind_m_s=40.0)))
     with pytest.raises(InputError, match="no effect 'rain'"):
-        fly_plan(plan, site, FlightWish(effects={"rain": "on"}))
+        fly_plan(plan, site, FlightRequest(effects={"rain": "on"}))
     with pytest.raises(MissionError, match="no sorties"):
-        fly_plan(replace(plan, sorties=()), site, FlightWish())
+        fly_plan(replace(plan, sorties=()), site, FlightRequest())
     tired = replace(plan, aircraft=replace(plan.aircraft, endurance_s=60.0))
     with pytest.raises((MissionError, LinkRejected), match="battery"):
-        fly_plan(tired, site, FlightWish())
+        fly_plan(tired, site, FlightRequest())
 
 
 def test_sorties_flown_at_a_link_are_kept_when_a_later_one_fails(tmp_path, monkeypatch):
@@ -204,7 +204,7 @@ def test_sorties_flown_at_a_link_are_kept_when_a_later_one_fails(tmp_path, monke
     plan = replace(plan, sorties=(own, replace(own, viewpoint_ids=())))
     plan_path, out = tmp_path / "p.plan.json", tmp_path / "f.flight.json"
     write_plan(plan_path, plan)
-    simulated = FlightWish()
+    simulated = FlightRequest()
 
     def at_link(case, orders):
         if orders.number == 2:
@@ -214,7 +214,7 @@ def test_sorties_flown_at_a_link_are_kept_when_a_later_one_fails(tmp_path, monke
     monkeypatch.setattr(flying._Case, "_fly_link", at_link)
     asked = []
     with pytest.raises(LinkRejected, match=r"battery holds 40%; what was flown before is in .*f\.flight\.json"):
-        fly_files(plan_path, site_path, out, FlightWish(link="tcp:here:1"), between=asked.append)
+        fly_files(plan_path, site_path, out, FlightRequest(link="tcp:here:1"), between=asked.append)
     assert asked == [2]
     assert len(read_flight(out).sorties) == 1
 
@@ -229,13 +229,13 @@ def test_what_a_vehicle_at_a_link_flew_before_it_vanished_is_kept(tmp_path, monk
     write_plan(plan_path, plan)
 
     def vanishing(case, orders):
-        outcome, record, sortie = flying._Case._simulate(replace(case, wish=FlightWish()), orders)
+        outcome, record, sortie = flying._Case._simulate(replace(case, wish=FlightRequest()), orders)
         error = LinkTimeout("the vehicle was not heard for 300 s in flight")
         return replace(outcome, error=error), replace(record, photos=record.photos[:2], duration_s=None), sortie
 
     monkeypatch.setattr(flying._Case, "_fly_link", vanishing)
     with pytest.raises(LinkTimeout, match=r"not heard for 300 s.*flown before is in .*f\.flight\.json"):
-        fly_files(plan_path, site_path, out, FlightWish(link="tcp:here:1"))
+        fly_files(plan_path, site_path, out, FlightRequest(link="tcp:here:1"))
     (record,) = read_flight(out).sorties
     assert len(record.photos) == 2
 
@@ -249,4 +249,4 @@ def test_a_cancelled_flight_is_cancelled(small):
                 raise OperationCancelled("by the test")
 
     with pytest.raises(OperationCancelled):
-        fly_plan(plan, site, FlightWish(), monitor=Cancelling())
+        fly_plan(plan, site, FlightRequest(), monitor=Cancelling())

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import pytest
 
-from groundstation.services.fly.flying import FlightWish, fly_link, fly_plan
+from groundstation.services.fly.flying import FlightRequest, fly_link, fly_plan
 from groundstation.vehicle.duration import items_duration_s
 from groundstation.vehicle.orders import fence_messages, sortie_orders
 from groundstation.vehicle.sortie.run_records import Phase, PilotOrder, RunOptions
@@ -97,7 +97,7 @@ def flown(orders, url, folder, pilot):
 
 def test_a_plan_is_flown_as_it_was_planned_and_timed(planned, url, tmp_path):
     model, plan, orders = planned
-    wish = FlightWish(link=url, autopilot=ARDUPILOT, sets_parameters=True, log_folder=tmp_path)
+    wish = FlightRequest(link=url, autopilot=ARDUPILOT, sets_parameters=True, log_folder=tmp_path)
     done = fly_plan(plan, model, wish)
     check(done.flight.report)
     (sortie,), (outcome,) = done.sorties, done.flight.report.sorties

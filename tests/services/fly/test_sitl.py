@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.services.fly.flying import FlightWish, fly_plan
+from groundstation.services.fly.flying import FlightRequest, fly_plan
 from groundstation.services.fly.sitl import sitl
 from missions.flight.logs.read import read_log
 from missions.flight.report import report_flight
@@ -93,7 +93,7 @@ def test_a_real_autopilot_flies_as_planned(autopilot, tmp_path):
     model = single_panel()
     plan = plan_flight(model, PlanRequest(n_views=8, time_budget_s=2.0, profile_id=autopilot.value)).plan
     flown = fly_plan(
-        plan, model, FlightWish(link=url, autopilot=autopilot, sets_parameters=True, log_folder=Path(tmp_path))
+        plan, model, FlightRequest(link=url, autopilot=autopilot, sets_parameters=True, log_folder=Path(tmp_path))
     )
     report = flown.flight.report
     assert report.summary.n_taken == len(plan.viewpoints)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from groundstation.services.photos.intake import take_in_photos, with_poses
-from groundstation.services.photos.poses import LENS_UNKNOWN, BetterPoses, RefineWish, better_poses, still_true
+from groundstation.services.photos.poses import LENS_UNKNOWN, BetterPoses, RefineRequest, better_poses, still_true
 from groundstation.services.photos.repose import repose
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
@@ -67,7 +67,7 @@ def test_photos_keep_their_own_poses_where_nothing_else_is_wished_for(flight):
 def test_refined_poses_that_were_kept_are_taken_without_colmap(flight, kept, monkeypatch):
     monkeypatch.setitem(sys.modules, "pycolmap", None)
     folder, posed = flight
-    found = better_poses(posed, folder, refine=RefineWish(kept))
+    found = better_poses(posed, folder, refine=RefineRequest(kept))
     assert [photo.name for photo in found.photos] == [photo.name for photo in posed.photos]
     assert found.photos[2] is posed.photos[2]
     np.testing.assert_allclose(found.photos[0].pose.covariance, GOOD)
@@ -85,7 +85,7 @@ def test_refined_poses_that_were_kept_are_taken_without_colmap(flight, kept, mon
 def test_a_colmap_model_that_was_kept_counts_as_refined(flight, kept):
     folder, posed = flight
     by_model = better_poses(posed, folder, kept)
-    by_wish = better_poses(posed, folder, refine=RefineWish(kept))
+    by_wish = better_poses(posed, folder, refine=RefineRequest(kept))
     for one, other in zip(by_model.photos, by_wish.photos, strict=True):
         np.testing.assert_array_equal(one.pose.position_enu_m, other.pose.position_enu_m)
 
@@ -105,40 +105,40 @@ def test_of_any_other_model_photos_that_are_not_in_it_are_left_out(flight, tmp_p
 @pytest.mark.parametrize("size", [None, 1600])
 def test_a_kept_refinement_of_the_size_wished_for_is_taken(flight, kept, size):
     folder, posed = flight
-    assert better_poses(posed, folder, refine=RefineWish(kept, size)).refined.was_kept
+    assert better_poses(posed, folder, refine=RefineRequest(kept, size)).refined.was_kept
 
 
 def test_another_size_or_other_photos_are_computed_and_pycolmap_missing_is_said(flight, kept, monkeypatch):
     monkeypatch.setitem(sys.modules, "pycolmap", None)
     folder, posed = flight
     with pytest.raises(InputError, match=r"pip install 'reflight\[colmap\]'"):
-        better_poses(posed, folder, refine=RefineWish(kept, 800))
+        better_poses(posed, folder, refine=RefineRequest(kept, 800))
     fewer = replace(posed, photos=posed.photos[:2])
     with pytest.raises(InputError, match=r"pip install 'reflight\[colmap\]'"):
-        better_poses(fewer, folder, refine=RefineWish(kept))
+        better_poses(fewer, folder, refine=RefineRequest(kept))
 
 
 def test_a_damaged_folder_says_what_to_remove(flight, kept):
     folder, posed = flight
     (kept / "images.bin").write_bytes(b"\x01")
     with pytest.raises(InputError, match="remove the folder"):
-        better_poses(posed, folder, refine=RefineWish(kept))
+        better_poses(posed, folder, refine=RefineRequest(kept))
 
 
 def test_refined_poses_lie_beside_the_photos_unless_a_folder_is_named(tmp_path):
-    assert RefineWish().kept_in(tmp_path / "DCIM") == tmp_path / "DCIM.refined"
-    assert RefineWish(tmp_path / "x").kept_in(tmp_path / "DCIM") == tmp_path / "x"
+    assert RefineRequest().kept_in(tmp_path / "DCIM") == tmp_path / "DCIM.refined"
+    assert RefineRequest(tmp_path / "x").kept_in(tmp_path / "DCIM") == tmp_path / "x"
     with pytest.raises(InputError, match="a whole drive"):
-        RefineWish().kept_in(Path(tmp_path.anchor))
+        RefineRequest().kept_in(Path(tmp_path.anchor))
     with pytest.raises(ValueError, match="at least 1"):
-        RefineWish(max_image_size_px=0)
+        RefineRequest(max_image_size_px=0)
 
 
 def test_other_poses_change_coverage_and_findings_and_the_way_back_leads_where_it_began(flight, kept):
     folder, posed = flight
     model = site_model()
     before = take_in_photos(folder, model)
-    refined = with_poses(before, better_poses(posed, folder, refine=RefineWish(kept)), model, None)
+    refined = with_poses(before, better_poses(posed, folder, refine=RefineRequest(kept)), model, None)
     assert refined.photos[0].pose.heading_deg != before.photos[0].pose.heading_deg
     assert "poses-refined" in {finding.code for finding in refined.findings}
     assert refined.quality is before.quality  # no picture is looked at again
@@ -157,7 +157,7 @@ def test_lenses_that_were_refined_are_no_longer_called_unknown(flight, tmp_path)
     for left_out, left in ((0, said[1:]), (1, said)):
         where = tmp_path / f"kept-{left_out}"
         write_refined(where, refinement(posed.photos, left_out), posed.photos, RefineParameters())
-        assert still_true(said, better_poses(posed, folder, refine=RefineWish(where))) == left
+        assert still_true(said, better_poses(posed, folder, refine=RefineRequest(where))) == left
 
 
 def test_panels_that_were_found_are_solved_with_the_new_poses_and_keep_their_corrections(flight):

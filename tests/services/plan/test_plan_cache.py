@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from groundstation.services.plan.plan_cache import Groundwork, PlanInHand, insight_of
+from groundstation.services.plan.plan_cache import ActivePlan, PreparedSite, insight_of
 from planning.insight.reasons import section_reasons
 from planning.insight.sampling import PanelSampling
 from planning.revision import Revision, add, delete, lock, move
@@ -15,11 +15,11 @@ from tests.planning.revision.cases import planned
 
 
 @pytest.fixture(scope="module")
-def in_hand() -> PlanInHand:
+def in_hand() -> ActivePlan:
     revision = planned("kiosk")
     prepared = revision.prepared
     reasons = section_reasons(prepared.site_model, prepared)
-    return PlanInHand(Groundwork(prepared, reasons), revision, insight_of(revision, reasons))
+    return ActivePlan(PreparedSite(prepared, reasons), revision, insight_of(revision, reasons))
 
 
 def edits(revision: Revision) -> list[Revision]:
@@ -35,7 +35,7 @@ def edits(revision: Revision) -> list[Revision]:
     ]
 
 
-def test_pixel_sizes_after_an_edit_are_those_of_the_whole_plan(in_hand: PlanInHand) -> None:
+def test_pixel_sizes_after_an_edit_are_those_of_the_whole_plan(in_hand: ActivePlan) -> None:
     changed = 0
     for revision in edits(in_hand.revision):
         found = in_hand.with_revision(revision).insight.sampling
@@ -46,7 +46,7 @@ def test_pixel_sizes_after_an_edit_are_those_of_the_whole_plan(in_hand: PlanInHa
     assert changed >= 3, "edits that change nothing test nothing"
 
 
-def test_edits_one_after_another_end_where_all_at_once_do(in_hand: PlanInHand) -> None:
+def test_edits_one_after_another_end_where_all_at_once_do(in_hand: ActivePlan) -> None:
     found = in_hand
     for revision in edits(in_hand.revision):
         found = found.with_revision(revision)
@@ -55,7 +55,7 @@ def test_edits_one_after_another_end_where_all_at_once_do(in_hand: PlanInHand) -
     np.testing.assert_array_equal(found.insight.counts, anew.counts)
 
 
-def test_views_at_one_pose_and_a_plan_without_views_are_measured_like_others(in_hand: PlanInHand) -> None:
+def test_views_at_one_pose_and_a_plan_without_views_are_measured_like_others(in_hand: ActivePlan) -> None:
     first = in_hand.revision.plan.viewpoints[0]
     twice = add(in_hand.revision, first.position_enu_m, first.heading_deg, first.gimbal_pitch_deg)
     none = delete(twice, [viewpoint.id for viewpoint in twice.plan.viewpoints])

@@ -5,7 +5,7 @@ import pytest
 from groundstation.services.project.document import Document
 from groundstation.services.project.folder import create_project
 from groundstation.services.project.lock import lock_holder
-from groundstation.services.project.project_session import Keeper
+from groundstation.services.project.project_session import ProjectSession
 from groundstation.services.project.session import Session
 from planning.base.errors import InputError
 from tests.services.project_cases import document
@@ -15,7 +15,7 @@ from tests.services.project_cases import document
 def keeper(tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     told = []
-    keeper = Keeper(told.append)
+    keeper = ProjectSession(told.append)
     yield keeper
     keeper.close()
     assert told == []
@@ -52,7 +52,7 @@ def test_a_project_that_cannot_be_read_is_not_left_locked(keeper, tmp_path):
 
 def test_a_project_of_another_window_is_read_without_a_lock(keeper, tmp_path):
     create_project(tmp_path / "a", document())
-    other = Keeper(pytest.fail)
+    other = ProjectSession(pytest.fail)
     other.hold(other.taking(tmp_path / "a")().lock)
     taken = keeper.taking(tmp_path / "a")()
     assert taken.lock is None

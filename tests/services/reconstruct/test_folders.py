@@ -32,7 +32,7 @@ from groundstation.services.reconstruct.folders import (
     standing,
     usual_data_set,
 )
-from groundstation.services.reconstruct.request import TrainWish
+from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.errors import InputError
 from tests.reconstruction.training.made_data_set import write_data_set
 
@@ -96,7 +96,7 @@ def test_a_training_is_noted_with_its_data_set_which_may_move_with_it(tmp_path, 
     there.mkdir(parents=True)
     (there / DATA_SET).write_text("{}")
     out = project / "models" / "one"
-    note_training(out, there, TrainWish("1h", "2dgs", time_limit_s=90.0))
+    note_training(out, there, TrainRequest("1h", "2dgs", time_limit_s=90.0))
     note = noted_training(out)
     assert (note.preset, note.method, note.light, note.time_limit_s) == ("1h", "2dgs", None, 90.0)
     project.rename(tmp_path / "moved")
@@ -114,7 +114,7 @@ def test_a_note_that_is_none_is_no_note(tmp_path, content):
 def test_a_folder_that_cannot_be_made_is_told(tmp_path, data):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="cannot be made"):
-        note_training(tmp_path / "file" / "model", data, TrainWish())
+        note_training(tmp_path / "file" / "model", data, TrainRequest())
 
 
 def test_models_go_among_those_of_the_project_where_nothing_stands(tmp_path, data):
@@ -135,7 +135,7 @@ def test_the_usual_data_set_is_that_of_the_last_training_else_the_newest(tmp_pat
         (tmp_path / name / DATA_SET).write_text("{}")
         os.utime(tmp_path / name / DATA_SET, (1000 + number, 1000 + number))
     assert usual_data_set(tmp_path) == tmp_path / "new"
-    note_training(tmp_path / "models" / "m", tmp_path / "old", TrainWish())
+    note_training(tmp_path / "models" / "m", tmp_path / "old", TrainRequest())
     assert usual_data_set(tmp_path) == tmp_path / "old"
 
 

@@ -36,7 +36,7 @@ from groundstation.services.reconstruct.messages import (
     WatchErrors,
 )
 from groundstation.services.reconstruct.process import ModelProcess
-from groundstation.services.reconstruct.request import TrainWish
+from groundstation.services.reconstruct.request import TrainRequest
 from planning.base.errors import InputError
 from tests.reconstruction.training.made_data_set import write_data_set
 
@@ -97,7 +97,7 @@ def settings(tmp_path_factory):
 
 @pytest.fixture
 def wish(settings):
-    return TrainWish(method="2dgs", iterations=100_000, settings=settings)
+    return TrainRequest(method="2dgs", iterations=100_000, settings=settings)
 
 
 def test_it_is_looked_at_while_it_trains_and_waits_and_its_end_is_a_model(heard, card, wish, tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from groundstation.services.reconstruct.render_queue import NOTHING, coloured
-from reconstruction.training.names import LAYERS, PICTURE
+from reconstruction.training.layers import LAYERS, PICTURE
 
 
 @pytest.mark.parametrize("layer", [PICTURE, *LAYERS])

@@ -10,7 +10,7 @@ import torch
 
 from groundstation.services.model.objects import organise_files
 from groundstation.services.reconstruct.messages import Look, Probe, Section, Subject
-from groundstation.services.reconstruct.render_queue import Darkroom
+from groundstation.services.reconstruct.render_queue import RenderQueue
 from groundstation.services.reconstruct.shown_models import TINT_SHARE, ShownModels
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
@@ -43,7 +43,7 @@ def folders(tmp_path_factory):
 
 @pytest.fixture
 def darkroom():
-    return Darkroom(lambda _message: None)
+    return RenderQueue(lambda _message: None)
 
 
 def look(folder, camera, **more):

@@ -3,10 +3,10 @@
 import pytest
 
 from groundstation.services.reconstruct import training as model_training
-from groundstation.services.reconstruct.request import TrainWish
+from groundstation.services.reconstruct.request import TrainRequest
 from groundstation.services.reconstruct.training import config_of_wish, light_of_scene
 from planning.base.errors import InputError, OperationCancelled
-from reconstruction.training.timer import Stopwatch
+from reconstruction.training.timer import Timer
 from tests.reconstruction.training.made_data_set import write_data_set
 
 
@@ -18,11 +18,11 @@ def data(tmp_path_factory):
 
 
 def test_device_and_memory_are_those_of_the_wish():
-    config = config_of_wish(TrainWish("smoke", memory_bytes=1 << 28, device="cuda"))
+    config = config_of_wish(TrainRequest("smoke", memory_bytes=1 << 28, device="cuda"))
     assert (config.memory_bytes, config.device) == (1 << 28, "cuda")
-    assert config_of_wish(TrainWish("smoke")).device == "cpu"
+    assert config_of_wish(TrainRequest("smoke")).device == "cpu"
     with pytest.raises(ValueError, match="memory_bytes: expected 1 or more"):
-        config_of_wish(TrainWish("smoke", memory_bytes=0))
+        config_of_wish(TrainRequest("smoke", memory_bytes=0))
 
 
 class Heard:
@@ -36,7 +36,7 @@ class Heard:
 def test_what_comes_before_the_joint_training_waits_and_that_time_does_not_count(monkeypatch):
     now = [100.0]
     monkeypatch.setattr(model_training.time, "sleep", lambda seconds: now.__setitem__(0, now[0] + 50.0))
-    watch, heard = Stopwatch(lambda: now[0]), Heard()
+    watch, heard = Timer(lambda: now[0]), Heard()
     answers = iter([True, True, True, False])
     waiting = model_training._Waiting(heard, lambda: next(answers, False), watch)
     waiting.report("learning reflections", 3, 80)
@@ -57,12 +57,12 @@ def test_a_pause_is_broken_off_by_a_cancel(monkeypatch):
 
     monkeypatch.setattr(model_training.time, "sleep", lambda _: None)
     with pytest.raises(OperationCancelled):
-        model_training._Waiting(Cancel(), lambda: True, Stopwatch()).report("reading rays", 0, 1)
+        model_training._Waiting(Cancel(), lambda: True, Timer()).report("reading rays", 0, 1)
 
 
 def test_a_scene_says_which_light_it_calls_for_and_why(data):
     heard = Heard()
-    light, decisions = light_of_scene(data, TrainWish("smoke"), heard)
+    light, decisions = light_of_scene(data, TrainRequest("smoke"), heard)
     assert light in ("harmonics", "environment-map", "radiance-grid")
     assert [decision.effect for decision in decisions] == ["mirrored surroundings", "near-field light"]
     assert "choosing a model of mirrored light" in heard.stages
@@ -70,4 +70,4 @@ def test_a_scene_says_which_light_it_calls_for_and_why(data):
 
 def test_a_scene_that_is_none_is_told(tmp_path):
     with pytest.raises(InputError, match=r"has no dataset\.json"):
-        light_of_scene(tmp_path, TrainWish("smoke"))
+        light_of_scene(tmp_path, TrainRequest("smoke"))

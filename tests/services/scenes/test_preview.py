@@ -11,7 +11,7 @@ from groundstation.services.scenes.preview import (
     MAX_WIDTH_PX,
     OF_FILES,
     QUICK_S,
-    PhotoWish,
+    PhotoRequest,
     kept_photo,
     quick_width_px,
     site_key,
@@ -37,7 +37,7 @@ VIEW = Viewpoint("photo", (0.0, -20.0, 20.0), 0.0, 0.0)
 
 
 def wish_for(model, **changes):
-    return replace(PhotoWish(site_key(model), ALONE, 0, VIEW, CAMERA, 96), **changes)
+    return replace(PhotoRequest(site_key(model), ALONE, 0, VIEW, CAMERA, 96), **changes)
 
 
 class _Cancelling:

@@ -168,14 +168,14 @@ def test_panels_are_named_by_facade_and_number_and_keep_their_source() -> None:
 def test_progress_is_reported_and_cancelling_stops() -> None:
     stages: list[str] = []
 
-    class Watching:
+    class Callbacks:
         def report(self, stage: str, done: float, total: float) -> None:
             stages.append(stage)
             if stage == "grouping facades":
                 raise OperationCancelled
 
     with pytest.raises(OperationCancelled):
-        assemble(Path("house.ifc"), source(), ImportOptions(), Watching())
+        assemble(Path("house.ifc"), source(), ImportOptions(), Callbacks())
     assert stages == ["fitting panels", "looking outdoors", "grouping facades"]
 
 

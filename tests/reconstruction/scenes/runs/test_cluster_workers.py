@@ -15,7 +15,7 @@ from planning.base.errors import InputError, OperationCancelled, ReconstructionE
 from planning.site.bundled import single_panel
 from reconstruction.scenes.runs.cluster_workers import TOKEN_FILE, Studio, program_sha256
 from reconstruction.scenes.runs.photo_folder import photograph
-from reconstruction.scenes.runs.photo_job import Photographer
+from reconstruction.scenes.runs.photo_job import RenderWorker
 from reconstruction.scenes.world.build import build_scene
 from reconstruction.scenes.world.look import Look
 from tests.reconstruction.scenes.runs.test_photo_folder import StopsAfter, job_for, record_of
@@ -84,7 +84,7 @@ def test_only_a_worker_that_reads_the_token_writes_by_itself(scene, alone, tmp_p
     if found is not None:
         (tmp_path / TOKEN_FILE).write_bytes(found)
     job = job_for(scene, tmp_path)
-    studio = Studio(partial(Photographer, job, tmp_path, 1.0), tmp_path, b"mine", program_sha256())
+    studio = Studio(partial(RenderWorker, job, tmp_path, 1.0), tmp_path, b"mine", program_sha256())
     studio.setup(type("Worker", (), {"address": "here"}))
     sums, contents = studio.take(0)
     assert (len(sums), len(contents)) == ((8, 0) if found == b"mine" else (0, 8))
@@ -115,7 +115,7 @@ def test_a_photo_that_fails_by_itself_is_named(scene, client, tmp_path):
 
 def test_a_worker_with_another_program_takes_no_photos(scene, tmp_path):
     job = job_for(scene, tmp_path)
-    studio = Studio(partial(Photographer, job, tmp_path, 1.0), tmp_path, b"", "another")
+    studio = Studio(partial(RenderWorker, job, tmp_path, 1.0), tmp_path, b"", "another")
     studio.setup(type("Worker", (), {"address": "tcp://10.0.0.7:4000"}))
     with pytest.raises(InputError, match=r"tcp://10\.0\.0\.7:4000 runs another version of it"):
         studio.take(0)

@@ -19,9 +19,9 @@ from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import FEATURES, NO_PANEL, SHAPES, Splats, logit
 from reconstruction.splats.start_data import known_scene, model_origin
+from reconstruction.training.layers import LAYERS
 from reconstruction.training.model.joint_model import LEAST_REFLECTIVITY, SceneModel
 from reconstruction.training.model.render import OF_PICTURE, render_view
-from reconstruction.training.names import LAYERS
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.start import hand_over
 from tests.reconstruction.light.made_folder import DIFFUSE, F0, REFLECTIVITY, far
