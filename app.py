@@ -1,27 +1,10 @@
-"""Reflight: the command line, or without a command the window."""
+"""Reflight from its sources: `python app.py` is the same as the installed command `reflight`."""
 
 from __future__ import annotations
 
 import sys
 
-from groundstation.cli.main import WindowOptions, main
-
-
-def open_window(wish: WindowOptions) -> int:
-    """Open the window, or take pictures of it; Qt is imported here and not before."""
-    if wish.screenshots is not None:
-        from groundstation.gui.start import take_pictures
-
-        return take_pictures(wish.screenshots, wish.site)
-    from groundstation.gui.start import run_window
-
-    return run_window(wish.open)
-
-
-def run() -> int:
-    """The installed command `reflight`."""
-    return main(sys.argv[1:], open_window)
-
+from groundstation.__main__ import run
 
 if __name__ == "__main__":
     sys.exit(run())

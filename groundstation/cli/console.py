@@ -24,9 +24,11 @@ MAX_SHOWN = 5
 
 
 def program_name() -> str:
-    """What to type: the installed command where that was typed."""
-    typed = Path(sys.argv[0]).stem
-    return typed if typed == "reflight" else "app.py"
+    """What to type: what was typed, for it works where the user is."""
+    typed = Path(sys.argv[0])
+    if typed.stem == "reflight":
+        return "reflight"
+    return "python -m groundstation" if typed.parts[-2:] == ("groundstation", "__main__.py") else "app.py"
 
 
 def run_job(name: str, work: Callable[[JobContext], Result]) -> Result:
@@ -121,7 +123,7 @@ def flight_status(report: FlightReport) -> int:
 
 def print_next(*arguments: object) -> None:
     """The command to type next, on stderr."""
-    print(f"next: {shlex.join([program_name(), *map(str, arguments)])}", file=sys.stderr)
+    print(f"next: {program_name()} {shlex.join(map(str, arguments))}", file=sys.stderr)
 
 
 def named_like(path: Path, ending: str) -> Path:

@@ -14,8 +14,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
+from groundstation import __version__
 from groundstation.cli import commands
 from groundstation.cli.console import program_name
 from groundstation.cli.options import new_folder
@@ -28,16 +29,6 @@ class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         self.print_usage(sys.stderr)
         self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")
-
-
-class _Version(argparse.Action):
-    """Looks the version up only when asked, which takes as long as all of `-h`."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from importlib.metadata import version
-
-        print(f"Reflight {version('reflight')}")
-        parser.exit()
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +65,9 @@ def build_parser() -> argparse.ArgumentParser:
         description="Reflight plans, checks and exports the second flight over a reflective glass facade. "
         "Without a command the window opens.",
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    parser.add_argument(
+        "--version", action="version", version=f"Reflight {__version__}", help="show the version and exit"
+    )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     window = parser.add_argument_group("the window")
     window.add_argument("--open", type=Path, metavar="PATH", help="project folder or site file to begin with")

@@ -25,7 +25,7 @@ def run_window(path: Path | None = None) -> int:
     if not has_screen():
         raise InputError(
             "there is no screen for the window (DISPLAY and WAYLAND_DISPLAY are not set); run it on a desktop, or use "
-            "the commands (app.py -h)"
+            "the commands (-h lists them)"
         )
     if path is not None and not path.exists():
         raise InputError(f"{path}: there is no such project folder or site file")

@@ -42,8 +42,15 @@ class Installed:
 
     def run(self, *arguments: object, status: int = 0) -> subprocess.CompletedProcess[str]:
         """Run a command, which must end as expected; a refusal is one clear line."""
+        return self._ended([self.program], arguments, status)
+
+    def run_module(self, *arguments: object) -> subprocess.CompletedProcess[str]:
+        """The same, as `python -m groundstation`."""
+        return self._ended([self.program.with_name("python"), "-m", "groundstation"], arguments, 0)
+
+    def _ended(self, program, arguments, status):
         done = subprocess.run(
-            [self.program, *map(str, arguments)], cwd=self.folder, env=self._environment, capture_output=True,
+            [*program, *map(str, arguments)], cwd=self.folder, env=self._environment, capture_output=True,
             text=True, timeout=COMMAND_S, check=False,
         )  # fmt: skip
         assert done.returncode == status, f"{arguments}: {done.returncode}\n{done.stdout}\n{done.stderr}"
@@ -91,7 +98,9 @@ def installed(tmp_path_factory):
 def test_the_program_runs_from_the_wheel_alone(installed):
     assert installed.run("--version").stdout.startswith("Reflight ")
     assert installed.run("-h").stdout.startswith("usage: reflight")
-    code = "import app, planning, groundstation; print(app.__file__, planning.__file__, groundstation.__file__)"
+    assert installed.run_module("--version").stdout == installed.run("--version").stdout
+    assert installed.run_module("-h").stdout.startswith("usage: python -m groundstation")
+    code = "import missions, planning, groundstation as g; print(missions.__file__, planning.__file__, g.__file__)"
     python = installed.program.with_name("python")
     found = subprocess.run(
         [python, "-I", "-c", code], cwd=installed.folder, capture_output=True, text=True, check=True

@@ -32,6 +32,21 @@ def test_the_next_command_can_be_pasted_into_a_shell(capsys):
 
 
 @pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        ("app.py", "app.py"),
+        ("/opt/ground station/bin/reflight", "reflight"),
+        ("reflight.exe", "reflight"),
+        ("/opt/groundstation/__main__.py", "python -m groundstation"),
+    ],
+)
+def test_the_next_command_begins_as_this_one_did(capsys, monkeypatch, typed, told):
+    monkeypatch.setattr("sys.argv", [typed, "demo"])
+    print_next("check", "b.json")
+    assert capsys.readouterr().err == f"next: {told} check b.json\n"
+
+
+@pytest.mark.parametrize(
     ("name", "made"),
     [
         ("office.site.json", "office.kmz"),

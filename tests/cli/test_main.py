@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from groundstation import __version__
 from groundstation.cli.main import WindowOptions, build_parser, main
 from groundstation.cli.options import new_folder
 from missions.flight.flight_file import flight_of, write_flight
@@ -24,7 +25,7 @@ from tests.reconstruction.training.made_data_set import write_data_set
 def test_version_is_told(reflight):
     done = reflight("--version")
     assert done.status == 0
-    assert done.out == "Reflight 0.1.0\n"
+    assert done.out == f"Reflight {__version__}\n"
 
 
 def test_without_a_command_the_window_opens():

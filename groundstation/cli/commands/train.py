@@ -44,7 +44,7 @@ examples:
   train later.dataset -o later.model --start tower.model/splats.ply
 
 Several processes of one machine train together, each looking at other photos, when they are started by
-  torchrun --nproc-per-node 4 app.py train tower.dataset -o tower.model
+  torchrun --nproc-per-node 4 -m groundstation train tower.dataset -o tower.model
 """
 
 SETTINGS = ("preset", "light", "iterations", "time_budget", "seed", "settings", "start")

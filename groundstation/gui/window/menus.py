@@ -9,6 +9,7 @@ from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QMenu, QMessageBox
 
+from groundstation import __version__
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.window.main_window import MainWindow
@@ -193,11 +194,7 @@ class Menus(QObject):
         dialog.open()
 
     def _show_about(self) -> None:
-        from importlib.metadata import version
-
-        text = self.tr("Reflight {0}: ground station for the second flight over a glass facade.").format(
-            version("reflight")
-        )
+        text = self.tr("Reflight {0}: ground station for the second flight over a glass facade.").format(__version__)
         self._box(self.tr("About Reflight"), text)
 
     def _box(self, title: str, text: str) -> None:
