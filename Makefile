@@ -1,4 +1,4 @@
-# make setup | demo | test | test-all | check | benchmark | tables | translations | pictures: each does all the set-up it needs.
+# make setup | demo | test | test-all | check | docs | benchmark | tables | translations | pictures: each does all the set-up it needs.
 PYTHON ?= python3
 VENV := .venv
 ifeq ($(OS),Windows_NT)
@@ -20,7 +20,7 @@ TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test test-all check check-style check-types check-imports ready-to-test compiled-tests alone benchmark tables format
+.PHONY: setup demo test test-all check check-style check-types check-imports check-docs docs ready-to-test compiled-tests alone benchmark tables format
 .PHONY: translations pictures foreign clean
 
 setup: $(VENV)/.ready $(WARM)
@@ -50,7 +50,7 @@ $(WARM): $(VENV)/.warm-%: $(VENV)/.ready
 demo: setup
 	$(PY) app.py demo --out demo-out
 
-check: check-style check-types check-imports
+check: check-style check-types check-imports check-docs
 
 check-style: $(VENV)/.ready
 	$(PY) -m ruff check .
@@ -61,6 +61,14 @@ check-types: $(VENV)/.ready
 
 check-imports: $(VENV)/.ready
 	$(VENV)/bin/lint-imports
+
+# The site of the docs, with warnings as errors, and its generated pages as the code has them.
+check-docs: $(VENV)/.ready
+	$(PY) -m tests.docs --check
+
+# Writes the pages that are generated from the code, and the site to docs/_build/html.
+docs: setup
+	$(PY) -m tests.docs
 
 # Compiling the kernels of planning takes one core as long as all the rest takes another: it has to start first.
 ready-to-test: $(WARM) check compiled-tests
@@ -106,15 +114,15 @@ tables: setup
 # Every tab and state of the window, and from them those that the documents show.
 pictures: setup
 	$(PY) app.py --screenshots pictures
-	cp pictures/1280x720/plan-hemispheres.png docs/window.png
-	cp pictures/1280x720/plan-photo.png docs/window-camera.png
-	cp pictures/1280x720/site.png docs/window-site.png
-	cp pictures/1280x720/mission-2.png docs/window-mission.png
-	cp pictures/1280x720/fly-paused.png docs/window-fly.png
-	cp pictures/1280x720/photos-grid.png docs/window-photos.png
-	cp pictures/1280x720/photos-coverage.png docs/window-photos-coverage.png
-	cp pictures/1280x720/reconstruct-compare.png docs/window-reconstruct.png
-	cp pictures/1280x720/model-inspections.png docs/window-model.png
+	cp pictures/1280x720/plan-hemispheres.png docs/pictures/window.png
+	cp pictures/1280x720/plan-photo.png docs/pictures/window-camera.png
+	cp pictures/1280x720/site.png docs/pictures/window-site.png
+	cp pictures/1280x720/mission-2.png docs/pictures/window-mission.png
+	cp pictures/1280x720/fly-paused.png docs/pictures/window-fly.png
+	cp pictures/1280x720/photos-grid.png docs/pictures/window-photos.png
+	cp pictures/1280x720/photos-coverage.png docs/pictures/window-photos-coverage.png
+	cp pictures/1280x720/reconstruct-compare.png docs/pictures/window-reconstruct.png
+	cp pictures/1280x720/model-inspections.png docs/pictures/window-model.png
 
 format: setup
 	$(PY) -m ruff format .
@@ -126,4 +134,4 @@ translations: setup
 	$(VENV)/bin/pyside6-lrelease $(TEXTS)
 
 clean:
-	rm -rf $(VENV) demo-out benchmark-out tables-out pictures
+	rm -rf $(VENV) demo-out benchmark-out tables-out pictures docs/_build

@@ -141,7 +141,7 @@ class Constraints:
 USUAL_GSD_M = 0.020
 """Largest pixel with which a panel-by-panel model shows what it is for: the finest thing on a facade is the profile
 between two panes, some 50 mm wide, which has to be two pixels to be seen at all (sampling theorem); half a pixel is
-left for what demosaicing blurs. Profiles of 1 to 3 pixels are still measured (docs/segmentation.md)."""
+left for what demosaicing blurs. Profiles of 1 to 3 pixels are still measured (docs/concepts/segmentation.md)."""
 
 NEAREST_REACH = 2.5
 """Views from so many times the minimum distance always count as sharp: from as near as is allowed, a facade is seen up
@@ -336,7 +336,7 @@ def viewpoint_arrays(viewpoints: tuple[Viewpoint, ...]) -> ViewpointArrays:
     )
 
 
-# Reading and writing `plan.json` (format reflight-plan/1, docs/file-formats.md).
+# Reading and writing `plan.json` (format reflight-plan/1, docs/reference/file-formats.md).
 
 
 def read_plan(path: Path) -> Plan:

@@ -26,7 +26,7 @@ CONFIG_VARIABLE = "REFLIGHT_CONFIG_DIR"
 MAX_RECENT_PROJECTS = 10
 
 HEADER = """\
-# Settings of Reflight. Edit them while no window is open; what they mean is in docs/projects.md.
+# Settings of Reflight. Edit them while no window is open; what they mean is in docs/guide/projects.md.
 # theme: system, light, dark, sunlight; language: system, en, de; units: metric, imperial
 # text_scale: 0.8 to 2.0; autosave_s: 5 to 3600, or 0 for never; map_tiles: an MBTiles file, or empty
 

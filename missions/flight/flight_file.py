@@ -1,4 +1,4 @@
-"""Reading and writing `flight.json` (format reflight-flight/1, docs/file-formats.md)."""
+"""Reading and writing `flight.json` (format reflight-flight/1, docs/reference/file-formats.md)."""
 
 from __future__ import annotations
 

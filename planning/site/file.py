@@ -1,4 +1,4 @@
-"""Reading and writing `site.json` (format reflight-site/1, docs/file-formats.md)."""
+"""Reading and writing `site.json` (format reflight-site/1, docs/reference/file-formats.md)."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ class RefineParameters:
     Parameters
     ----------
     max_image_size_px
-        Photos are reduced to this for features: what costs most. docs/photos.md has the poses' errors against it.
+        Photos are reduced to this for features: what costs most. docs/benchmarks.md has the poses' errors against it.
     max_features
         Of each photo.
     n_neighbours

@@ -1,7 +1,7 @@
 """The complete data set of paper 3.3.1 from photos, panels and a coarse model, in a folder that others read, too.
 
 images/, sparse/0 and points.ply are what COLMAP, gsplat and 2DGS start from; transforms.json is nerfstudio's; panels/,
-masks/ and normals/ are ours (docs/file-formats.md).
+masks/ and normals/ are ours (docs/reference/file-formats.md).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What panels show, mirrored light and all, put into their Gaussians' own colours: for programs that mirror nothing.
 
 Colours by direction are harmonics of degree 3, so what is mirrored becomes a blur of some tens of degrees that stays on
-the pane. The model itself keeps its sharp mirror images; `docs/exports.md` says how much is lost.
+the pane. The model itself keeps its sharp mirror images; `docs/reference/exports.md` says how much is lost.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`reflight-panels/1`: the panels found in one photo, as JSON, written and read; docs/file-formats.md describes it."""
+"""`reflight-panels/1`: the panels found in one photo, as JSON, written and read; docs/reference describes it."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ class QualityLimits:
         Part of the picture that is black, or white. The sky takes that much in good photos now and then; panels are
         small parts of a picture.
     scale
-        At which photos are decoded. docs/photos.md has the verdicts that change with it.
+        At which photos are decoded. docs/concepts/photos.md has the verdicts that change with it.
     """
 
     sigma_px: float = 1.5

@@ -70,7 +70,7 @@ def _ablation(what: str, changes: Mapping[str, Any]) -> Method:
 METHODS: dict[str, Method] = {
     "reflight": Method(
         "Reflight",
-        "this program, docs/reflections.md",
+        "this program, docs/concepts/reflections.md",
         "splats and the light that panels mirror, by the model that the scene calls for: near things are a scene that "
         "mirrored rays march through",
         settings={

@@ -1,4 +1,4 @@
-"""Settings by how long one can wait; measured, see docs/modelling.md."""
+"""Settings by how long one can wait; measured, see docs/concepts/training.md."""
 
 from __future__ import annotations
 

@@ -62,9 +62,10 @@ def _page(name: str, folder: Path) -> Iterator[Row]:
 BENCHMARK = Benchmark(
     "model-exports",
     "Large models in other programs' formats",
-    "The scene of [objects](#objects) with all its harmonics, written by a process for each format: processor time of "
-    "writing, size of all files, and the process' largest memory less that of one that only reads the model. The web "
-    "page has harmonics of degree 2; it is opened in headless Chromium. Drawing is not measured: without a graphics "
+    "The scene of [objects](#models-as-objects) with all its harmonics, written by a process for each format: "
+    "processor time of writing, size of all files, and the process' largest memory less that of one "
+    "that only reads the model. The web page has harmonics of degree 2; it is opened in headless Chromium. "
+    "Drawing is not measured: without a graphics "
     "card the processor would do it.",
     measure,
 )

@@ -45,6 +45,7 @@ BENCHMARK = Benchmark(
     "preset-hour",
     "The preset of an hour",
     f"The preset `{presets.HIGHER}` in its own hour of processor time, one thread, on the photos of "
-    "[presets](#presets). Its rates fall until the hour ends: on the way it has less than a shorter one in the end.",
+    "[presets](#presets-and-settings-against-time). Its rates fall until the hour ends: on the way it has less than a "
+    "shorter one in the end.",
     measure,
 )

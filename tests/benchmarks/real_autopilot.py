@@ -71,6 +71,6 @@ BENCHMARK = Benchmark(
     "A real ArduCopter",
     "Plans flown by ArduCopter 4.7.0-dev (git 2598e9d4b2) in its own simulation, at ten times real time and without "
     "wind, and by the simulated vehicle with what the scene calls for; both by the same client over MAVLink. It needs "
-    "ArduPilot's binary; [flying](flying.md) says how it is built.",
+    "ArduPilot's binary; [autopilots](concepts/flying.md) says how it is built.",
     measure,
 )

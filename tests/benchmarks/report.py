@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -52,6 +53,11 @@ def write_page(path: Path, benchmarks: Sequence[Benchmark], folder: Path) -> Non
     path.write_text("\n".join(part for part in parts if part), "utf-8")
 
 
+def anchor(title: str) -> str:
+    """What a heading is linked by, on GitHub and in the site of the docs alike."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
 def _machines(runs: Iterable[Mapping[str, str]]) -> str:
     machines = sorted({run["machine"] for run in runs})
     return "Machine: " + "; ".join(machines) + ".\n"
@@ -64,7 +70,7 @@ def _targets(benchmarks: Sequence[Benchmark], tables: Mapping[str, Sequence[Mapp
             if row["met"]:
                 measured = f"{_measured(row)} ({_ratio(row)})" if row["ratio"] else _measured(row)
                 met = "met" if row["met"] == "True" else "**missed**"
-                link = f"[{benchmark.name}](#{benchmark.name})"
+                link = f"[{benchmark.name}](#{anchor(benchmark.title)})"
                 lines.append(f"| {link} | {row['scene']} | {row['what']} | {measured} | {row['target']} | {met} |")
     return "\n".join(lines) + "\n" if len(lines) > 3 else ""
 
@@ -77,7 +83,7 @@ def _not_done(runs: Iterable[Mapping[str, str]]) -> str:
 def _section(benchmark: Benchmark, run: Mapping[str, str], rows: Sequence[Mapping[str, str]], folder: Path) -> str:
     command = f"python -m tests.benchmarks --only {benchmark.name}"
     quick = " --quick" if run["is_quick"] == "True" else ""
-    lines = [f'<a id="{benchmark.name}"></a>', f"## {benchmark.title}\n", benchmark.about.strip() + "\n"]
+    lines = [f"## {benchmark.title}\n", benchmark.about.strip() + "\n"]
     lines.append(f"`{command}{quick}`: {run['seconds']} s, load {run['load']}.\n")
     lines += [f"![{benchmark.title}]({folder.name}/{path.name})\n" for path in _pictures(benchmark.name, folder)]
     if rows:

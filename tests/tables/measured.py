@@ -46,7 +46,8 @@ def gap_section(folder: Path) -> Iterator[str]:
     yield "### How the gap grows\n"
     yield (
         "The same of mirrored light alone, in photos of different sizes and with things at different distances. The "
-        "paper has 13.15 dB, in photos 5280 pixels wide. [benchmarks.md](benchmarks.md#plan-gap), "
+        "paper has 13.15 dB, in photos 5280 pixels wide. "
+        "[benchmarks.md](benchmarks.md#our-plan-against-noto-by-resolution-and-depth), "
         "`python -m tests.benchmarks --only plan-gap`\n"
     )
     yield "| photos, before the facade, model of light | our plan above NOTO, dB | |"
@@ -70,7 +71,8 @@ def _panels(rows: Rows) -> Iterator[str]:
     yield (
         "Photos of made facades whose every panel is known. The networks that the paper compares with were not run: "
         "what the best of them reaches on the paper's photos stands in the last column. More detectors, sizes and real "
-        "photos: [benchmarks.md](benchmarks.md#segmentation), `python -m tests.benchmarks --only segmentation`\n"
+        "photos: [benchmarks.md](benchmarks.md#glass-panels-in-photos), "
+        "`python -m tests.benchmarks --only segmentation`\n"
     )
     for scene, made in MADE.items():
         paper, others = PAPER_1[scene]
@@ -106,7 +108,8 @@ def _views(rows: Rows, folder: Path) -> Iterator[str]:
     yield (
         "Sections that are covered, of those that can be at all, by views of the paper's optimiser (PSO) and of ours; "
         "means of three seeds. The paper's curves level off at 560 views (ST) and 600 (UST). "
-        "[benchmarks.md](benchmarks.md#fig14), `python -m tests.benchmarks --only fig14`\n"
+        "[benchmarks.md](benchmarks.md#coverage-against-number-of-views-fig-14), "
+        "`python -m tests.benchmarks --only fig14`\n"
     )
     shares: dict[tuple[str, int, str], str] = {}
     for (site, what), row in rows.items():

@@ -10,7 +10,7 @@ from groundstation.cli.options import new_folder
 from groundstation.cli.pose_options import add_pose_arguments, refine_wish
 
 EPILOG = """Writes images/, sparse/0 and points.ply as COLMAP and splatting programs read them, transforms.json for
-nerfstudio, and panels/, masks/ and normals/ (docs/file-formats.md, reflight-dataset/1).
+nerfstudio, and panels/, masks/ and normals/ (docs/reference/file-formats.md, reflight-dataset/1).
 
 examples:
   prepare photos/ tower.site.json -o tower.dataset

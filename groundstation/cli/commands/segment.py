@@ -8,7 +8,7 @@ from typing import Any
 
 from groundstation.cli.options import json_file
 
-EPILOG = """Writes reflight-panels/1 (docs/file-formats.md): corners of every panel in pixels of the photo, by
+EPILOG = """Writes reflight-panels/1 (docs/reference/file-formats.md): corners of every panel in pixels of the photo, by
 facade, row and column, and how sure each is.
 
 examples:
@@ -37,7 +37,12 @@ def add_parser(subparsers: Any) -> None:
 def add_parameter_arguments(parser: Any) -> None:
     """How panels are looked for; shared with other commands that look for them."""
     how = parser.add_argument_group("how").add_argument
-    how("--parameters", type=Path, metavar="FILE", help="TOML file with settings of the search (docs/segmentation.md)")
+    how(
+        "--parameters",
+        type=Path,
+        metavar="FILE",
+        help="TOML file with settings of the search (docs/reference/settings.md)",
+    )
     how("--long-side", type=int, metavar="PX", help="shrink photos to this size before lines are looked for")
     how("--samples", type=int, metavar="N", help="pixels of a row or column that are compared; 0 for all")
     how("--detector", metavar="NAME", help="what finds lines: gradient, hough, lsd, edlines or fld")

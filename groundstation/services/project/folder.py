@@ -1,4 +1,4 @@
-"""Projects: a folder with a site, the plans made for it and what belongs to them (docs/projects.md)."""
+"""Projects: a folder with a site, the plans made for it and what belongs to them (docs/guide/projects.md)."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 0  a loose folder as the command line leaves it: one site file, plans beside it, no project.json
 1  {"format": "reflight-project/1", "site": "site.json", "plans": ["a.plan.json", ...]}
-2  docs/projects.md
+2  docs/guide/projects.md
 """
 
 from __future__ import annotations

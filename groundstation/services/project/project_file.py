@@ -1,4 +1,4 @@
-"""`project.json` (docs/projects.md): which files of a folder are the project's, and what only the project knows."""
+"""`project.json` (docs/guide/projects.md): which files of a folder are the project's, and what only it knows."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ Every row of the edges is taken from another view in turn, of those that show th
 of its rows, so that a frame, which all views have in the same place, keeps its support, and a mirror image, which lies
 elsewhere in each, is left with the share of one view. The median of the pictures themselves does less: where mirror
 images of several views cross, it makes edges that no view has, and faint frames do not come out any clearer
-(docs/segmentation.md has the figures).
+(docs/concepts/segmentation.md has the figures).
 """
 
 from __future__ import annotations

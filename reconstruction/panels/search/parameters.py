@@ -47,7 +47,7 @@ class SegmentationParameters:
         Take remaining rotation and perspective out of the rectified view, up to `max_tilt_deg`.
     use_posterior
         Let lines borrow evidence from lines that look alike (Eqs. 5 and 6). Off: it takes as long as everything else
-        and changes no result for the better (docs/segmentation.md).
+        and changes no result for the better (docs/concepts/segmentation.md).
     use_spacing
         Prefer spacings that repeat, infer lines that are missing from them and drop those that do not fit.
     use_stillness

@@ -1,4 +1,4 @@
-"""How good found panels are, as a facades file says it (`reflight-facades/1`, docs/file-formats.md)."""
+"""How good found panels are, as a facades file says it (`reflight-facades/1`, docs/reference/file-formats.md)."""
 
 from __future__ import annotations
 

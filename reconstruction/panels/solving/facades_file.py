@@ -1,4 +1,4 @@
-"""`reflight-facades/1`: what is known of found facades beyond the corners of their panels (docs/file-formats.md)."""
+"""`reflight-facades/1`: what is known of found facades beyond the corners of their panels (docs/reference)."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def layer_file(folder: Path, layer: str, name: str) -> Path:
 
 
 def layer_contents(taken: Photograph, facade: NDArray[np.bool_]) -> dict[str, bytes]:
-    """Content of each layer's file; docs/file-formats.md says how they are coded.
+    """Content of each layer's file; docs/reference/file-formats.md says how they are coded.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """A folder of rendered photos with their truth: begun, gone on with after an interruption, and finished.
 
-It is a data set as `reconstruction.dataset` writes it, with more layers (docs/file-formats.md). `scene.json` says which
+It is a data set as `reconstruction.dataset` writes it, with more layers (docs/reference). `scene.json` says which
 photos are complete; a photo counts only from then on, when all of its files are there.
 """
 
