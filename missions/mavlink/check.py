@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MavlinkFile, MissionItem

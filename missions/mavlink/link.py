@@ -405,7 +405,7 @@ class ChannelLink:
             self._show(frame, True, self.clock())
 
     def receive(self, timeout_s: float) -> Received | None:
-        """The next message of those in `messages.py`, or None; from one thread only.
+        """The next message of those in `records.py`, or None; from one thread only.
 
         Raises
         ------

@@ -1,6 +1,6 @@
 """MAVLink 2 on the wire: messages to bytes and back.
 
-pymavlink's ardupilotmega dialect packs and unpacks; fields that our records do not name are sent as zero. Frames are
+pymavlink's ardupilotmega dialect packs and unpacks. Frames are
 found here, not by pymavlink: its parser throws away the whole length that a false start announces, and with it the good
 frames behind it, and notes the time stamp of a forged signature before it has checked it.
 """
@@ -15,8 +15,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from missions.mavlink import messages
-from missions.mavlink.messages import Address, Message, Received
+from missions.mavlink.records import MESSAGES, Address, Field, Message, Received, layout, number
 from missions.mavlink.signing import SIGNATURE_BYTES, Signer
 
 MARKER_V1, MARKER_V2 = 0xFE, 0xFD
@@ -30,108 +29,7 @@ _MARKER = re.compile(b"[\xfd\xfe]")
 FILL = {"voltages": 0xFFFF}
 """What fills an array that is shorter than the message's: no such cell. Others are filled with 0."""
 
-
-def _with_fields(
-    name: str, number: int, crc_extra: int, layout: str, fields: tuple[tuple[str, str], ...]
-) -> type[dialect.MAVLink_message]:
-    """A message's class as pymavlink makes them, of single numbers in the order of the wire."""
-    names = [field_name for field_name, _ in fields]
-    unpacker = struct.Struct(layout)
-
-    def init(self: Any, *values: float) -> None:
-        dialect.MAVLink_message.__init__(self, number, name)
-        self._fieldnames = names
-        self._instance_field, self._instance_offset = None, -1
-        for field_name, value in zip(names, values, strict=True):
-            setattr(self, field_name, value)
-
-    def pack(self: Any, mav: Any, force_mavlink1: bool = False) -> Any:
-        content = unpacker.pack(*(getattr(self, field_name) for field_name in names))
-        return self._pack(mav, crc_extra, content, force_mavlink1=force_mavlink1)
-
-    members = {
-        "id": number,
-        "msgname": name,
-        "fieldnames": names,
-        "ordered_fieldnames": names,
-        "fieldtypes": [kind for _, kind in fields],
-        "fielddisplays_by_name": {},
-        "fieldenums_by_name": {},
-        "fieldunits_by_name": {},
-        "native_format": bytearray(layout, "ascii"),
-        "orders": list(range(len(names))),
-        "lengths": [1] * len(names),
-        "array_lengths": [0] * len(names),
-        "crc_extra": crc_extra,
-        "unpacker": unpacker,
-        "instance_field": None,
-        "instance_offset": -1,
-        "__init__": init,
-        "pack": pack,
-    }
-    return type(f"MAVLink_{name.lower()}_message", (dialect.MAVLink_message,), members)
-
-
-_LISTS = (("mission_id", "uint32_t"), ("fence_id", "uint32_t"), ("rally_points_id", "uint32_t"))
-_CURRENT = (("seq", "uint16_t"), ("total", "uint16_t"), ("mission_state", "uint8_t"), ("mission_mode", "uint8_t"))
-_CHANGED = (
-    *(("start_index", "int16_t"), ("end_index", "int16_t")),
-    *(("origin_sysid", "uint8_t"), ("origin_compid", "uint8_t"), ("mission_type", "uint8_t")),
-)
-# What pymavlink 2.4.50 leaves out: the numbers of the lists in MISSION_CURRENT, which PX4 sends, and MISSION_CHANGED.
-for _packet in (
-    _with_fields("MISSION_CURRENT", 42, 28, "<HHBBIII", (*_CURRENT, *_LISTS)),
-    _with_fields("MISSION_CHANGED", 52, 132, "<hhBBB", _CHANGED),
-):
-    dialect.mavlink_map[_packet.id] = _packet
-    setattr(dialect, f"MAVLINK_MSG_ID_{_packet.msgname}", _packet.id)
-    setattr(dialect, _packet.__name__, _packet)
-
-
-@dataclass(frozen=True, slots=True)
-class _Field:
-    """One field of a message as pymavlink wants it; `zero` is what stands there if we do not name it."""
-
-    name: str
-    is_named: bool
-    is_text: bool
-    length: int
-    zero: Any
-
-
-@dataclass(frozen=True, slots=True)
-class _Layout:
-    record: type[Message]
-    packet: type[Any]
-    fields: tuple[_Field, ...]
-
-
-def _layout(record: type[Message]) -> _Layout:
-    name = re.sub(r"(?<!^)(?=[A-Z])", "_", record.__name__).upper()
-    packet = dialect.mavlink_map[getattr(dialect, f"MAVLINK_MSG_ID_{name}")]
-    ours = set(record.__dataclass_fields__)
-    array_lengths = dict(zip(packet.ordered_fieldnames, packet.array_lengths, strict=True))
-    fields = []
-    for field_name, kind in zip(packet.fieldnames, packet.fieldtypes, strict=True):
-        length = array_lengths[field_name]
-        zero: Any = 0.0 if kind == "float" else 0
-        if kind == "char":
-            zero = b""
-        elif length:
-            zero = [zero] * length
-        fields.append(_Field(field_name, field_name in ours, kind == "char", length, zero))
-    if unknown := ours - {each.name for each in fields}:
-        raise ValueError(f"{name} has no field {', '.join(sorted(unknown))}")
-    return _Layout(record, packet, tuple(fields))
-
-
-_RECORDS = [
-    kind
-    for kind in vars(messages).values()
-    if isinstance(kind, type) and issubclass(kind, Message) and kind is not Message
-]
-_BY_RECORD = {record: _layout(record) for record in _RECORDS}
-_BY_ID = {layout.packet.id: layout for layout in _BY_RECORD.values()}
+_NAMES = {number(name): name for name in MESSAGES}
 
 
 class Encoder:
@@ -153,21 +51,21 @@ class Encoder:
         ValueError
             A value does not fit into its field.
         """
-        layout = _BY_RECORD[type(message)]
-        values = [_to_wire(message, each) if each.is_named else each.zero for each in layout.fields]
+        told = layout(type(message).__name__)
+        values = {each.name: _to_wire(message, each) for each in told.fields}
         if self._signer is not None:
             self._mav.signing.timestamp = self._signer.next_timestamp()
         try:
-            frame: bytes = layout.packet(*values).pack(self._mav)
+            frame: bytes = told.packet(**values).pack(self._mav)
         except (struct.error, OverflowError, TypeError) as error:
             raise ValueError(f"{message} does not fit into its MAVLink message: {error}") from error
         self._mav.seq = (self._mav.seq + 1) % 256
         return frame
 
 
-def _to_wire(message: Message, field_: _Field) -> Any:
+def _to_wire(message: Message, field_: Field) -> Any:
     value = getattr(message, field_.name)
-    if field_.is_text:
+    if field_.kind is str:
         text: bytes = value.encode("ascii", errors="replace")
         if len(text) > field_.length:
             raise ValueError(f"{field_.name}: expected at most {field_.length} letters, got '{value}'")
@@ -188,7 +86,7 @@ class Counts:
     frames
         Whole and right, of messages known to us or not.
     unknown
-        Of these, those that are not in `messages.py`.
+        Of these, those that are not in `records.MESSAGES`.
     skipped_bytes
         Part of no frame: noise, and frames that came in broken.
     refused
@@ -324,16 +222,16 @@ def _header(raw: bytes) -> tuple[int, Address, int]:
 
 def message_of(packet: Any) -> Message | None:
     """Our record of a message that pymavlink has decoded; None where it is none of ours."""
-    layout = _BY_ID.get(packet.get_msgId())
-    if layout is None:
+    name = _NAMES.get(packet.get_msgId())
+    if name is None:
         return None
-    values = {each.name: _from_wire(getattr(packet, each.name)) for each in layout.fields if each.is_named}
-    return layout.record(**values)
+    told = layout(name)
+    return told.record(**{each.name: _from_wire(getattr(packet, each.name)) for each in told.fields})
 
 
 def message_id(record: type[Message]) -> int:
     """Number of a message of ours."""
-    return int(_BY_RECORD[record].packet.id)
+    return number(record.__name__)
 
 
 def _from_wire(value: Any) -> Any:

@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from missions.mavlink import messages
 from missions.mavlink.messages import (
     Address,
     AutopilotVersion,
@@ -24,14 +23,11 @@ from missions.mavlink.messages import (
     SetupSigning,
     Statustext,
 )
+from missions.mavlink.records import MESSAGES, layout
 from missions.mavlink.wire import Decoder, Encoder
 
 OWN = Address(255, 190)
-RECORDS = [
-    kind
-    for kind in vars(messages).values()
-    if isinstance(kind, type) and issubclass(kind, Message) and kind is not Message
-]
+RECORDS = [layout(name).record for name in MESSAGES]
 HEARTBEAT = Heartbeat(2, 3, 81, 4, 4)
 ITEM = MissionItemInt(1, 1, 3, 3, 16, 0, 1, 2.0, 0.0, 0.0, math.nan, 223372000, 1142636000, 20.5)
 
