@@ -19,7 +19,8 @@ from planning.base.effects import Decision
 from planning.base.files import read_given
 from planning.base.json_file import JSON_FILE, expect_format, parse_json, to_record, write_atomically
 from planning.geo.frames import Origin, Vec3
-from planning.site.records import check_min_height, check_point
+from planning.parameters import Constraints, FlightRules
+from planning.site.records import check_point
 
 PLAN_FORMAT = "reflight-plan/1"
 
@@ -104,40 +105,6 @@ class Aircraft:
                 raise ValueError(f"{field}: expected a positive number, got {value}")
 
 
-@dataclass(frozen=True, slots=True)
-class Constraints:
-    """What every viewpoint and leg must keep, and which views count."""
-
-    min_distance_m: float = 10.0
-    section_step_deg: float = 30.0
-    occlusion: str = "auto"
-    whole_panel: bool = False
-    """A view counts only when all four corners are in the picture, not just the centroid."""
-    max_distance_m: float | None = None
-    """Views from further away do not count (a wanted GSD is turned into this)."""
-    min_height_above_ground_m: float | None = None
-    """To be kept by viewpoints and paths, but for the column above home. None: the site's, or else the usual. Plans
-    hold the height that was kept."""
-    wanted_gsd_mm: float | None = None
-    """Largest pixel on a panel with which a view counts as sharp. None: `usual_gsd_m`; 0: any. Plans hold the one that
-    held. Coarser views still cover (`max_distance_m` is what makes them count for nothing)."""
-
-    def __post_init__(self) -> None:
-        check_min_height(self.min_height_above_ground_m)
-        if not (math.isfinite(self.min_distance_m) and self.min_distance_m >= 0):
-            raise ValueError(f"min_distance_m: expected 0 or more, got {self.min_distance_m}")
-        check_section_step(self.section_step_deg)
-        if self.occlusion not in ("auto", "on", "off"):
-            raise ValueError(f"occlusion: expected auto, on or off, got '{self.occlusion}'")
-        if self.wanted_gsd_mm is not None and not (math.isfinite(self.wanted_gsd_mm) and self.wanted_gsd_mm >= 0.0):
-            raise ValueError(f"wanted_gsd_mm: expected 0 mm or more, got {self.wanted_gsd_mm}")
-        if self.max_distance_m is not None and not self.max_distance_m > self.min_distance_m:
-            raise ValueError(
-                f"max_distance_m: expected more than the minimum distance {self.min_distance_m}, "
-                f"got {self.max_distance_m}"
-            )
-
-
 USUAL_GSD_M = 0.020
 """Largest pixel with which a panel-by-panel model shows what it is for: the finest thing on a facade is the profile
 between two panes, some 50 mm wide, which has to be two pixels to be seen at all (sampling theorem); half a pixel is
@@ -158,44 +125,6 @@ def sharp_distance_m(camera: Camera, constraints: Constraints) -> float | None:
     wanted_mm = constraints.wanted_gsd_mm
     gsd_m = usual_gsd_m(camera, constraints.min_distance_m) if wanted_mm is None else wanted_mm / 1000.0
     return camera.distance_for_gsd_m(gsd_m) if gsd_m > 0.0 else None
-
-
-def check_section_step(step_deg: float) -> None:
-    """Raise `ValueError` unless `step_deg` divides 90 and leaves at most 90 rings."""
-    if not (
-        math.isfinite(step_deg) and 1.0 <= step_deg <= 90.0 and abs(90.0 / step_deg - round(90.0 / step_deg)) < 1e-9
-    ):
-        raise ValueError(f"section_step_deg: expected a divisor of 90 from 1 to 90 degrees, got {step_deg}")
-
-
-@dataclass(frozen=True, slots=True)
-class FlightRules:
-    """How a sortie is flown; all of it enters durations and battery use."""
-
-    battery_reserve: float = 0.25
-    """Part of the endurance that must be left at landing."""
-    settle_s: float = 2.0
-    """Hover between the end of all turning and the shutter."""
-    photo_s: float = 1.0
-    """Hover from the shutter until the aircraft may move."""
-    max_speed_m_s: float | None = None
-    """Lower than the aircraft's own maximum where wanted."""
-    wind_m_s: float = 0.0
-    """Steady wind, from the worst direction."""
-    takeoff_landing_s: float = 30.0
-    """Motors running on the ground, take-off check hover and landing together."""
-    turn_in_flight: bool = False
-    """Turn heading and gimbal while flying the leg instead of at the waypoint."""
-
-    def __post_init__(self) -> None:
-        if not 0.0 <= self.battery_reserve < 1.0:
-            raise ValueError(f"battery_reserve: expected 0 to below 1, got {self.battery_reserve}")
-        for field in ("settle_s", "photo_s", "wind_m_s", "takeoff_landing_s"):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"{field}: expected 0 or more, got {value}")
-        if self.max_speed_m_s is not None and not self.max_speed_m_s > 0:
-            raise ValueError(f"max_speed_m_s: expected a positive speed, got {self.max_speed_m_s}")
 
 
 @dataclass(frozen=True, slots=True)

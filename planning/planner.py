@@ -19,8 +19,9 @@ from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_o
 from planning.coverage.evaluate import DepthCount, coverage, depth
 from planning.coverage.model import exact_coverage
 from planning.motion.timing import motion_limits, round_trip_metric
+from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS
 from planning.plan import HistoryPoint, Plan, ViewpointArrays, viewpoint_arrays
-from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, PlanRequest
+from planning.request import PlanRequest
 from planning.routing.flights import Flight, flight_times, plan_flights
 from planning.routing.legs import n_stops_within
 from planning.routing.roadmap import build_roadmap

@@ -7,15 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from planning.aircraft.catalogue import DEFAULT_PROFILE, profile
+from planning.aircraft.catalogue import profile
 from planning.checks import check_plan
 from planning.coverage.model import CoverageModel
 from planning.coverage.sections import PanelFrames, SectionGrid, panel_frames
 from planning.insight import warm_up as insight
 from planning.motion import smooth_path
-from planning.plan import Constraints, ViewpointArrays
+from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters, Precision
+from planning.plan import ViewpointArrays
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest, Precision
+from planning.request import PlanRequest
 from planning.routing import lower_bound, orienteering, sorties, tour
 from planning.site.bundled import SCENES
 from planning.site.records import panel_corners

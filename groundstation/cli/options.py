@@ -11,26 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from planning.base.errors import InputError
 from planning.base.folders import PLAIN_ENDINGS, check_ending, check_folder_name
+from planning.base.parameters import Declared, declared
+from planning.parameters import DEFAULT_PROFILE, LARGEST_SEED, PlanParameters
 
 if TYPE_CHECKING:
     from groundstation.services.mission.readiness import FlightDay
     from planning.base.effects import Wish
 
 OPTIONS = {
-    "views": "--views",
-    "coverage": "--coverage",
-    "batteries": "--batteries",
-    "time budget": "--time-budget",
-    "seed": "--seed",
-    "min_distance_m": "--min-distance",
-    "min_height_above_ground_m": "--min-height",
-    "max_distance_m": "--max-distance",
-    "wanted_gsd_mm": "--wanted-gsd",
-    "section_step_deg": "--step",
-    "battery_reserve": "--reserve",
-    "settle_s": "--settle",
-    "max_speed_m_s": "--speed",
-    "wind_m_s": "--wind",
     "photos_per_facade": "--photos-per-facade",
     "normal_step": "--normal-step",
     "n_points": "--points",
@@ -38,17 +26,76 @@ OPTIONS = {
     "width_px": "--width",
     "n_square": "--square",
 }
-"""Options by the name that the records' own checks give a value."""
+"""Options by the name that the records' own checks give a value, but for parameters that declare theirs."""
 
 
 @contextmanager
-def in_words_of_options() -> Iterator[None]:
-    """Turn a record's refusal of a value (`ValueError`) into an `InputError` that names the option typed."""
+def in_words_of_options(record: type[Any] = PlanParameters) -> Iterator[None]:
+    """Turn a record's refusal of a value (`ValueError`) into an `InputError` that names the option typed.
+
+    Parameters
+    ----------
+    record
+        Whose parameters were typed.
+    """
     try:
         yield
     except ValueError as error:
         name, colon, rest = str(error).partition(":")
-        raise InputError(f"{OPTIONS.get(name, name)}{colon}{rest}") from error
+        own = {each.parameter.name or each.path[-1]: each.parameter.option for each in declared(record).values()}
+        raise InputError(f"{own.get(name) or OPTIONS.get(name, name)}{colon}{rest}") from error
+
+
+def add_parameter(place: Any, each: Declared, *, has_default: bool = False) -> None:
+    """Add the option of a parameter to a parser or a group of one.
+
+    Parameters
+    ----------
+    has_default
+        Whether the default stands in the options where nothing was typed; without, only what was typed stands there.
+    """
+    known = each.parameter
+    words = tuple(choice.typed for choice in known.choices)
+    if each.kind is str and not words:
+        words = known.suggested
+    told = f"{known.help} ({_default_text(each)})" if _default_text(each) else known.help
+    facts: dict[str, Any] = {"help": told.replace("%", "%%")}
+    if has_default or known.option == "":
+        facts["default"] = each.default
+    else:
+        facts["default"] = argparse.SUPPRESS
+    if each.kind is bool and not words:
+        place.add_argument(known.option, action="store_true", **facts)
+        return
+    if words:
+        facts["choices"] = words
+    elif known.metavar:
+        facts["metavar"] = known.metavar
+    place.add_argument(known.option, type={int: int, float: number}.get(each.kind, str), **facts)
+
+
+def _default_text(each: Declared) -> str:
+    """What counts where nothing is typed; "" where that goes without saying."""
+    known = each.parameter
+    if each.default is None:
+        return f"default: {known.unset}" if known.unset else ""
+    if each.kind is bool and not known.choices:
+        return ""
+    typed = next((choice.typed for choice in known.choices if choice.value == each.default), None)
+    unit = f" {known.unit}" if known.unit not in ("", "share") else ""
+    return f"default {f'{each.default:g}{unit}' if each.kind is float else typed or each.default}"
+
+
+def typed_values(options: argparse.Namespace, record: type[Any]) -> dict[tuple[str, ...], Any]:
+    """What was typed of a record's parameters, by their paths; see `with_values`."""
+    found: dict[tuple[str, ...], Any] = {}
+    for each in declared(record).values():
+        name = each.parameter.option.removeprefix("--").replace("-", "_")
+        if name and hasattr(options, name):
+            typed = getattr(options, name)
+            values = {choice.typed: choice.value for choice in each.parameter.choices}
+            found[each.path] = values.get(typed, typed)
+    return found
 
 
 def number(text: str) -> float:
@@ -88,14 +135,15 @@ def new_folder(text: str) -> Path:
     return path
 
 
-def add_profile_argument(parser: Any) -> None:
+def add_profile_argument(parser: Any, *, has_default: bool = True) -> None:
     """Add `--profile`, to a parser or a group of one."""
+    each = declared(PlanParameters)["profile_id"]
     parser.add_argument(
-        "--profile",
-        default="m3e",
-        metavar="ID",
+        each.parameter.option,
+        default=DEFAULT_PROFILE if has_default else argparse.SUPPRESS,
+        metavar=each.parameter.metavar,
         action=_Profile,
-        help="aircraft and camera (default m3e), or a .toml file with your own; '--profile list' shows all",
+        help=f"{each.parameter.help} (default {DEFAULT_PROFILE})",
     )
 
 
@@ -161,8 +209,6 @@ def checked_seed(seed: int) -> int:
     InputError
         It is negative or too large.
     """
-    from planning.request import LARGEST_SEED  # not at the top: describing a command needs no numerics
-
     if not 0 <= seed <= LARGEST_SEED:
         raise InputError(f"--seed: expected 0 to {LARGEST_SEED}, got {seed}")
     return seed

@@ -15,10 +15,10 @@ import msgspec
 
 from groundstation.services.preferences import Tell, or_first
 from groundstation.services.units import UnitSystem
-from planning.aircraft.catalogue import DEFAULT_PROFILE
 from planning.base.errors import InputError
 from planning.base.files import real_path
 from planning.base.json_file import read_toml, to_record, write_atomically
+from planning.parameters import DEFAULT_PROFILE
 
 CONFIG_VARIABLE = "REFLIGHT_CONFIG_DIR"
 """Environment variable that names the folder for settings and data, for tests and for a program on a stick."""

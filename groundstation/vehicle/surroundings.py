@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.geo.frames import Vec3
-from planning.plan import Aircraft, FlightRules, Plan
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, Plan
 from planning.site.free_space import FreeSpace, unchecked_space
 from planning.site.records import SiteModel
 

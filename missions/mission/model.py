@@ -20,7 +20,8 @@ from pathlib import Path
 
 from planning.base.findings import Finding, Severity
 from planning.geo.frames import Origin
-from planning.plan import Aircraft, Camera, FlightRules
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, Camera
 
 
 class HeightReference(StrEnum):

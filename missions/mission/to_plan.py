@@ -19,14 +19,15 @@ from numpy.typing import NDArray
 from missions.mission.build import COLUMN_RADIUS_M
 from missions.mission.legs import distance_m
 from missions.mission.model import Finish, HeightReference, ReadMission, ReadPhoto, Stay
-from planning.aircraft.catalogue import DEFAULT_PROFILE, profile
+from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.geo.frames import Origin, Vec3
 from planning.geo.mesh import MAX_COORDINATE_M
 from planning.motion.sortie_timing import SAME_PLACE_M, sortie_flight_path, stopping_duration_s
 from planning.motion.timing import MotionLimits, motion_limits, rest_to_rest_s, speed_limits_m_s
-from planning.plan import Aircraft, FlightRules, Sortie, Viewpoint
+from planning.parameters import DEFAULT_PROFILE, FlightRules
+from planning.plan import Aircraft, Sortie, Viewpoint
 from planning.site.records import MAX_DISTANCE_M
 
 Array = NDArray[np.float64]

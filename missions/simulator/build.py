@@ -35,7 +35,8 @@ from planning.base.effects import Decision, Effect, Wish, decide
 from planning.base.errors import InputError
 from planning.geo.frames import Vec3
 from planning.motion.timing import motion_limits
-from planning.plan import FlightRules, Plan, Sortie
+from planning.parameters import FlightRules
+from planning.plan import Plan, Sortie
 from planning.site.records import SiteModel
 
 EFFECTS: tuple[Effect[FlightScene], ...] = (

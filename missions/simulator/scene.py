@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from planning.geo.bvh import build_bvh, nearest_d2
 from planning.geo.frames import Vec3
 from planning.motion.timing import photo_stop_s
-from planning.plan import Aircraft, Camera, FlightRules, Plan, Sortie, viewpoint_arrays
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, Camera, Plan, Sortie, viewpoint_arrays
 from planning.site.records import SiteModel, panel_corners, panel_triangles, require_panels
 
 Floats = NDArray[np.float64]

@@ -12,8 +12,6 @@ from planning.plan import Aircraft, Camera
 
 PROFILES_PATH = Path(__file__).parent / "data" / "profiles.toml"
 
-DEFAULT_PROFILE = "m3e"
-
 
 @dataclass(frozen=True, slots=True)
 class Profile:

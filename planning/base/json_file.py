@@ -10,12 +10,13 @@ import shutil
 import sys
 import tempfile
 import tomllib
+import types
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import fields
+from dataclasses import asdict, fields, is_dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar, get_args, get_type_hints
 
 import msgspec
 import msgspec.inspect
@@ -267,7 +268,7 @@ def parse_toml(written: bytes, path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: nested too deeply for a file of ours") from error
 
 
-def check_settings(content: dict[str, Any], record: type[Any], path: Path, place: str = "") -> None:
+def check_settings(content: Mapping[str, Any], record: type[Any], path: Path, place: str = "") -> None:
     """Refuse keys that are no fields of a record.
 
     Parameters
@@ -286,6 +287,44 @@ def check_settings(content: dict[str, Any], record: type[Any], path: Path, place
     unknown = sorted(set(content) - set(known))
     if unknown:
         raise InputError(f"{path}: {place}{unknown[0]}: no such setting; known are: {', '.join(known)}")
+
+
+def settings_over(base: Record, content: Mapping[str, Any], path: Path) -> Record:
+    """A record of parameters, changed by what a settings file says; tables of it are records within.
+
+    Raises
+    ------
+    InputError
+        A key is no parameter, or a value is of the wrong type or out of range; the message names file and key.
+    """
+    _check_keys(content, type(base), path, "")
+    try:
+        return to_record(_merged(asdict(base), content), type(base), path)  # type: ignore[call-overload]
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _check_keys(content: Mapping[str, Any], record: type[Any], path: Path, place: str) -> None:
+    check_settings(content, record, path, place)
+    hints = get_type_hints(record)
+    for key, value in content.items():
+        inner = _record_in(hints[key])
+        if inner is not None and isinstance(value, dict):
+            _check_keys(value, inner, path, f"{place}{key}.")
+
+
+def _record_in(hint: Any) -> type[Any] | None:
+    """The dataclass that a field is, or may be."""
+    options = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
+    return next((option for option in options if is_dataclass(option) and isinstance(option, type)), None)
+
+
+def _merged(base: dict[str, Any], content: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in content.items():
+        both = isinstance(value, dict) and isinstance(base.get(key), dict)
+        merged[key] = _merged(base[key], value) if both else value
+    return merged
 
 
 def check_output(path: Path, sources: Iterable[Path] = ()) -> None:

@@ -13,8 +13,8 @@ from planning.coverage import kernel
 from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid, in_picture, sections_of, sections_seen
 from planning.geo.frames import camera_axes
 from planning.geo.line_of_sight import OCCLUSION_OFFSET_M, LineOfSight
+from planning.parameters import Precision
 from planning.plan import Camera, ViewpointArrays
-from planning.request import Precision
 
 VIEWS_PER_CHUNK = 2048
 PAIRS_PER_CHUNK = 4_000_000

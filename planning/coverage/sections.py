@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.geo.frames import camera_axes
-from planning.plan import Camera, ViewpointArrays, check_section_step
+from planning.parameters import check_section_step
+from planning.plan import Camera, ViewpointArrays
 
 Array = NDArray[np.float64]
 

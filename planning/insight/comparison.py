@@ -25,7 +25,8 @@ from planning.insight.clearance import route_clearance
 from planning.insight.sampling import PanelSampling, panel_sampling
 from planning.insight.sections import section_counts
 from planning.insight.things import things_of
-from planning.plan import Constraints, Plan, viewpoint_arrays
+from planning.parameters import Constraints
+from planning.plan import Plan, viewpoint_arrays
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared
 

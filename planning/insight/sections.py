@@ -14,7 +14,8 @@ from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.sections import NOT_SEEN, PanelFrames, SectionGrid
 from planning.insight.reasons import SectionReasons
 from planning.insight.sampling import PanelSampling, panel_sampling
-from planning.plan import Camera, Constraints, Plan, viewpoint_arrays
+from planning.parameters import Constraints
+from planning.plan import Camera, Plan, viewpoint_arrays
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from planning.aircraft.catalogue import DEFAULT_PROFILE, profile
+from planning.aircraft.catalogue import profile
 from planning.insight.clearance import route_clearance
 from planning.insight.reasons import section_reasons
 from planning.insight.sampling import panel_sampling
 from planning.insight.things import first_things_hit, things_of
-from planning.plan import Constraints, Sortie
+from planning.parameters import DEFAULT_PROFILE, Constraints
+from planning.plan import Sortie
 from planning.site.bundled import SCENES
 from planning.viewpoints.prepare import prepare
 

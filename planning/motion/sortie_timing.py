@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.motion.timing import FlightPath, flight_path, motion_limits, stopping_times_s
-from planning.plan import Aircraft, FlightRules, Plan, Sortie, Viewpoint, viewpoint_arrays
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, Plan, Sortie, Viewpoint, viewpoint_arrays
 
 SAME_PLACE_M = 1e-3
 """Vertices and viewpoints this close together are one place: coordinates in files are rounded to 0.1 mm."""

@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from planning.base.errors import InfeasibleError
 from planning.geo.frames import heading_difference_rad
-from planning.plan import Aircraft, FlightRules
+from planning.parameters import FlightRules
+from planning.plan import Aircraft
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

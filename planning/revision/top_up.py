@@ -22,8 +22,8 @@ from planning.coverage.model import exact_coverage
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.reachability import MAX_CELLS
 from planning.motion.timing import usable_battery_s
+from planning.parameters import LARGEST_SEED
 from planning.plan import HistoryPoint, Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
-from planning.request import LARGEST_SEED
 from planning.site.records import SiteModel
 from planning.viewpoints.closing_candidates import Wanted
 from planning.viewpoints.closing_flights import Batteries, ClosingFlights, closing_flights

@@ -17,7 +17,8 @@ from scipy.sparse.csgraph import dijkstra
 from planning.base.errors import InfeasibleError
 from planning.geo.frames import Vec3
 from planning.motion.timing import motion_limits, round_trip_metric
-from planning.plan import POSITION_DECIMALS, Aircraft, FlightRules
+from planning.parameters import FlightRules
+from planning.plan import POSITION_DECIMALS, Aircraft
 from planning.routing.legs import joined_nodes, pull_tight
 from planning.routing.roadmap import LegMetric, Roadmap, leg_length
 from planning.site.free_space import LEG_MARGIN_M

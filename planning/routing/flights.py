@@ -19,7 +19,8 @@ from planning.motion.timing import (
     usable_battery_s,
     with_turns_s,
 )
-from planning.plan import Aircraft, FlightRules, ViewpointArrays
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, ViewpointArrays
 from planning.routing.legs import LegTable, build_leg_table
 from planning.routing.roadmap import Roadmap
 from planning.routing.sorties import Sorties, plan_sorties

@@ -19,9 +19,10 @@ from typing import get_args
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.progress import QUIET, Monitor, QualityPoint, Trace
 from planning.coverage.evaluate import coverage_counts
-from planning.plan import Constraints, HistoryPoint
+from planning.parameters import LARGEST_SEED, Constraints, GreedyParameters, Precision
+from planning.plan import HistoryPoint
 from planning.planner import Planned, plan_flight
-from planning.request import LARGEST_SEED, GreedyParameters, PlanRequest, Precision
+from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from planning.site.free_space import free_space
 from planning.site.records import SiteModel

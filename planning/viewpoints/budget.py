@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from planning.base.errors import InfeasibleError
 from planning.base.progress import Monitor, Stop, Trace
 from planning.coverage.model import CoverageModel, Elements
-from planning.plan import Aircraft, FlightRules, ViewpointArrays
-from planning.request import GreedyParameters
+from planning.parameters import FlightRules, GreedyParameters
+from planning.plan import Aircraft, ViewpointArrays
 from planning.routing.flights import Flight, FlightTimes, flight_times
 from planning.routing.orienteering import solve_orienteering
 from planning.routing.sorties import Sorties, plan_sorties

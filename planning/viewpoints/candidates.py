@@ -14,8 +14,8 @@ from planning.coverage.positions import aimed_views, rounded, spread_positions
 from planning.coverage.reach_kernel import REACHABLE
 from planning.coverage.reachability import keeps_margins
 from planning.coverage.sections import PanelFrames
+from planning.parameters import N_CANDIDATES
 from planning.plan import ViewpointArrays
-from planning.request import N_CANDIDATES
 from planning.viewpoints.problem import ViewProblem, concatenate, nothing_to_see, take
 
 Array = NDArray[np.float64]

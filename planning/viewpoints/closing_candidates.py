@@ -15,7 +15,8 @@ from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import Elements, codes_all_around
 from planning.coverage.positions import aimed_views, spread_positions
 from planning.coverage.reach_kernel import REACHABLE
-from planning.plan import Aircraft, FlightRules, ViewpointArrays
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, ViewpointArrays
 from planning.routing.flights import FlightTimes, flight_times
 from planning.viewpoints.budget import shortlist
 from planning.viewpoints.candidates import Pool, join_pools, keep

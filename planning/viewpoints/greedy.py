@@ -18,8 +18,8 @@ from scipy.spatial.distance import cdist
 from planning.base.progress import QUIET, Monitor, Stop, Trace
 from planning.coverage.model import CoverageModel, Elements
 from planning.coverage.sections import SectionGrid
+from planning.parameters import GreedyParameters
 from planning.plan import ViewpointArrays
-from planning.request import GreedyParameters
 from planning.viewpoints import cover_kernel as kernel
 from planning.viewpoints.bounds import dual_bound
 from planning.viewpoints.candidates import Pool, candidate_pool, join_pools, keep

@@ -17,8 +17,8 @@ from planning.coverage.reach_kernel import UNREACHABLE
 from planning.coverage.reachability import MAX_CELLS, MAX_POSITIONS, find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.geo.line_of_sight import line_of_sight
-from planning.plan import Camera, Constraints, sharp_distance_m, usual_gsd_m
-from planning.request import Precision
+from planning.parameters import Constraints, Precision
+from planning.plan import Camera, sharp_distance_m, usual_gsd_m
 from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import FreeSpace, free_space
 from planning.site.records import SiteModel, panel_corners, require_panels

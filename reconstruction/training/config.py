@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import types
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Literal, get_args, get_type_hints
+from typing import Any, Literal
 
 from planning.base.errors import InputError
-from planning.base.json_file import check_settings, to_record
+from planning.base.json_file import settings_over
 from reconstruction.light.config import PAPER_STAGES, HighFrequencyStage, ReflectionConfig
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.training.method_registry import DEFAULT_METHOD, Method, method_named
@@ -260,35 +258,11 @@ def config_of(content: dict[str, Any], base: TrainConfig, path: Path) -> TrainCo
     InputError
         A key is not known, a value of the wrong type or out of range; the message names file and key.
     """
-    _check_keys(content, TrainConfig, path, "")
     try:
         of_method = method_named(content["method"]).settings if isinstance(content.get("method"), str) else {}
-        return to_record(_merged(_merged(asdict(base), of_method), content), TrainConfig, path)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
-
-
-def _check_keys(content: dict[str, Any], record: type[Any], path: Path, place: str) -> None:
-    check_settings(content, record, path, place)
-    hints = get_type_hints(record)
-    for key, value in content.items():
-        inner = _record_in(hints[key])
-        if inner is not None and isinstance(value, dict):
-            _check_keys(value, inner, path, f"{place}{key}.")
-
-
-def _record_in(hint: Any) -> type[Any] | None:
-    """The dataclass that a field is, or may be."""
-    options = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
-    return next((option for option in options if is_dataclass(option) and isinstance(option, type)), None)
-
-
-def _merged(base: dict[str, Any], content: Mapping[str, Any]) -> dict[str, Any]:
-    merged = dict(base)
-    for key, value in content.items():
-        both = isinstance(value, dict) and isinstance(base.get(key), dict)
-        merged[key] = _merged(base[key], value) if both else value
-    return merged
+    return settings_over(settings_over(base, of_method, path), content, path)
 
 
 def _require(name: str, value: float, expected: str, is_met: bool) -> None:

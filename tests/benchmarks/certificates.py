@@ -9,7 +9,7 @@ import numpy as np
 
 from planning.aircraft.catalogue import profile
 from planning.base.progress import never
-from planning.plan import Constraints
+from planning.parameters import Constraints
 from planning.site.bundled import SCENES, panel_grid
 from planning.site.records import SiteModel
 from planning.viewpoints import cover_kernel as kernel

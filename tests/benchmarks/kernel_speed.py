@@ -10,8 +10,8 @@ import numpy as np
 from planning.base.jit import chunks, n_threads, run_chunks
 from planning.coverage.model import CoverageModel, exact_coverage
 from planning.coverage.sections import sections_seen
+from planning.parameters import Precision
 from planning.plan import ViewpointArrays
-from planning.request import Precision
 from planning.viewpoints.candidates import spread_candidates
 from planning.viewpoints.problem import take
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch

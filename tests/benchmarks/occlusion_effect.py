@@ -10,7 +10,8 @@ import numpy as np
 
 from planning.coverage.model import exact_coverage
 from planning.coverage.reach_kernel import UNREACHABLE
-from planning.plan import Constraints, viewpoint_arrays
+from planning.parameters import Constraints
+from planning.plan import viewpoint_arrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES

@@ -9,7 +9,7 @@ import numpy as np
 
 from planning.aircraft.catalogue import profile
 from planning.base.progress import TimeLimit
-from planning.plan import FlightRules
+from planning.parameters import FlightRules
 from planning.routing import vrp
 from planning.routing.flights import flight_times
 from planning.routing.sorties import SortieProblem, Sorties, plan_sorties, solve_sorties, sortie_durations_s

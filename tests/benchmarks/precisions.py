@@ -6,9 +6,10 @@ import time
 from collections.abc import Iterator
 
 from planning.coverage.evaluate import coverage_counts
+from planning.parameters import Precision
 from planning.plan import viewpoint_arrays
 from planning.planner import Planned, plan_flight
-from planning.request import PlanRequest, Precision
+from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import prepared

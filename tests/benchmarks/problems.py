@@ -9,7 +9,8 @@ import numpy as np
 from planning.aircraft.catalogue import profile
 from planning.base.progress import QUIET, Stop, Trace, never
 from planning.coverage.model import exact_coverage
-from planning.plan import Constraints, ViewpointArrays
+from planning.parameters import Constraints
+from planning.plan import ViewpointArrays
 from planning.site.bundled import SCENES
 from planning.viewpoints.prepare import Prepared, prepare
 from planning.viewpoints.problem import Goal, Optimiser, ViewProblem

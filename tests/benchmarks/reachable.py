@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from planning.aircraft.catalogue import profile
 from planning.coverage.reachability import MAX_CELLS, find_reachable
-from planning.plan import Constraints
+from planning.parameters import Constraints
 from planning.site.bundled import SCENES
 from planning.viewpoints.prepare import prepare
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch

@@ -10,7 +10,7 @@ import numpy as np
 from planning.aircraft.catalogue import profile
 from planning.motion.speed_profile import fastest_profile
 from planning.motion.timing import FlightPath, flight_path, motion_limits, stopping_times_s
-from planning.plan import FlightRules
+from planning.parameters import FlightRules
 from tests.benchmarks.harness import Benchmark, Context, Row, stopwatch
 
 RADIUS_M, HEIGHT_M, SPACING_M = 45.0, 25.0, 8.0

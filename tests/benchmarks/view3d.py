@@ -12,7 +12,8 @@ import numpy as np
 
 from planning.aircraft.catalogue import profiles
 from planning.geo.mesh import box_mesh
-from planning.plan import Camera, Constraints, Coverage, Plan, Sortie, Viewpoint
+from planning.parameters import Constraints
+from planning.plan import Camera, Coverage, Plan, Sortie, Viewpoint
 from planning.site.bundled import ORIGIN, panel_grid
 from planning.site.records import Airspace, Site, SiteModel
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped

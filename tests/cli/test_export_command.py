@@ -11,7 +11,8 @@ from missions.dji.container import parts_of_kmz
 from missions.formats.registry import read_missions
 from planning.aircraft.catalogue import profiles
 from planning.base.findings import is_flyable
-from planning.plan import FlightRules, read_plan
+from planning.parameters import FlightRules
+from planning.plan import read_plan
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene
 from tests.planning.revision.cases import QUICK

@@ -14,8 +14,8 @@ from groundstation.cli.main import WindowOptions, build_parser, main
 from groundstation.cli.options import new_folder
 from missions.flight.flight_file import flight_of, write_flight
 from planning.base.errors import InputError, OperationCancelled
+from planning.parameters import LARGEST_SEED
 from planning.plan import read_plan
-from planning.request import LARGEST_SEED
 from planning.site.bundled import write_scene
 from planning.site.file import read_site
 from tests.cli.conftest import ROOT

@@ -6,9 +6,10 @@ import json
 import pytest
 
 from groundstation.cli.main import main
+from planning.parameters import GreedyParameters
 from planning.plan import read_plan, write_plan
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.site.bundled import write_scene
 from planning.site.file import read_site
 

@@ -14,7 +14,13 @@ TOPS = {"planning", "missions", "reconstruction", "groundstation"}
 WRONG_CALLS = {"ValueError", "TypeError", "KeyError", "RuntimeError", "NotImplementedError"}
 """Their messages are for programmers, except in the records that files are read into."""
 
-RECORDS = {"planning/geo/frames.py", "planning/site/records.py", "planning/plan.py", "planning/request.py"}
+RECORDS = {
+    *("planning/geo/frames.py", "planning/site/records.py", "planning/plan.py", "planning/request.py"),
+    *("planning/parameters.py", "planning/base/parameters.py"),
+}
+
+PARAMETERS = {"parameter", "like", "Parameter", "Choice"}
+"""Calls that declare a parameter: its label and help have a context of their own."""
 
 STAGES = {"report", "_Report"}
 """Calls that name the stage of a job first; also a stage of one word is shown."""
@@ -98,6 +104,8 @@ def _texts(node, is_record):
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return  # a docstring
     if isinstance(node, ast.Raise) and not is_record and _name(node.exc) in WRONG_CALLS:
+        return
+    if isinstance(node, ast.Call) and _name(node) in PARAMETERS:
         return
     if isinstance(node, ast.Call) and _name(node) in STAGES and node.args:
         yield from ((node.lineno, template(parts)) for parts in _variants(node.args[0]) if any(parts))

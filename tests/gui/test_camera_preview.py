@@ -20,7 +20,8 @@ from planning.aircraft.catalogue import profiles
 from planning.coverage.model import exact_sections
 from planning.coverage.sections import NOT_SEEN
 from planning.geo.frames import camera_axes, heading_difference_rad
-from planning.plan import Constraints, Coverage, FlightRules, Plan, Sortie, Viewpoint, viewpoint_arrays
+from planning.parameters import Constraints, FlightRules
+from planning.plan import Coverage, Plan, Sortie, Viewpoint, viewpoint_arrays
 from planning.site.bundled import canyon, office
 from planning.site.free_space import free_space
 from planning.viewpoints.prepare import coverage_model

@@ -9,7 +9,8 @@ from PySide6.QtWidgets import QLineEdit, QPushButton
 
 from groundstation.services.project.document import Document, PlanEntry
 from missions.formats.registry import read_missions
-from planning.plan import FlightRules, write_plan
+from planning.parameters import FlightRules
+from planning.plan import write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from tests.gui.driving import (

@@ -19,8 +19,9 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mission.model import FileFormat, HeightReference
 from missions.simulator.scene import Conditions
 from planning.geo.frames import Origin
-from planning.plan import Camera, Constraints, FlightRules, Viewpoint
-from planning.request import LARGEST_SEED, GreedyParameters, PlanRequest
+from planning.parameters import LARGEST_SEED, Constraints, FlightRules, GreedyParameters
+from planning.plan import Camera, Viewpoint
+from planning.request import PlanRequest
 from planning.site.importing.options import ImportOptions
 from reconstruction.records.entries import Attribute, Defect, Maintenance
 from reconstruction.scenes.world.look import Look

@@ -14,7 +14,8 @@ from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.progress import QualityPoint
 from planning.insight.sections import SectionState
-from planning.plan import Constraints, FlightRules, Viewpoint, usual_gsd_m
+from planning.parameters import Constraints, FlightRules
+from planning.plan import Viewpoint, usual_gsd_m
 from planning.request import PlanRequest
 
 

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from planning.aircraft.catalogue import profile
 from planning.geo.frames import Origin, Vec3
-from planning.plan import Constraints, Coverage, FlightRules, Plan, Sortie, Viewpoint
+from planning.parameters import Constraints, FlightRules
+from planning.plan import Coverage, Plan, Sortie, Viewpoint
 
 HOME: Vec3 = (3.0, -40.0, 1.5)
 HONG_KONG = Origin(22.3372, 114.2636, 62.0)

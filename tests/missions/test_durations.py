@@ -22,7 +22,8 @@ from planning.aircraft.catalogue import profile
 from planning.checks import check_plan
 from planning.geo.frames import Origin
 from planning.motion.timing import MotionLimits, leg_times_s
-from planning.plan import FlightRules, Plan, read_plan, write_plan
+from planning.parameters import FlightRules
+from planning.plan import Plan, read_plan, write_plan
 from planning.site.bundled import SCENES
 from tests.missions.mavlink.test_fly import EAST_100_M, FIRST, HOME, NORTH_100_M, SECOND, TAKEOFF, at, read
 from tests.missions.plans import make_plan

@@ -13,9 +13,10 @@ import pytest
 from planning.base.errors import OperationCancelled
 from planning.base.findings import Finding, Severity, is_flyable
 from planning.checks import RULES, check_plan
-from planning.plan import Constraints, FlightRules, Plan, Sortie, Viewpoint, usual_gsd_m
+from planning.parameters import Constraints, FlightRules, GreedyParameters
+from planning.plan import Plan, Sortie, Viewpoint, usual_gsd_m
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.site.records import Airspace, NoFlyZone, Obstacle, SiteModel
 from tests.planning.plan_cases import kiosk, seen_by_contract
 

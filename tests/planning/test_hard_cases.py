@@ -22,9 +22,10 @@ from planning.coverage.model import CoverageModel, codes_all_around, exact_cover
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.geo.frames import Vec3
 from planning.geo.mesh import TriangleMesh, empty_mesh
-from planning.plan import Constraints, Plan, ViewpointArrays, viewpoint_arrays
+from planning.parameters import Constraints, GreedyParameters
+from planning.plan import Plan, ViewpointArrays, viewpoint_arrays
 from planning.planner import Planned, plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from planning.site.records import Airspace, Facade, NoFlyZone, Panel, SiteModel, panel_corners
 from tests.planning.plan_cases import kiosk, seen_by_contract

@@ -18,10 +18,9 @@ from hypothesis import strategies as st
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InputError
 from planning.geo.frames import Origin
+from planning.parameters import Constraints, FlightRules
 from planning.plan import (
-    Constraints,
     Coverage,
-    FlightRules,
     HistoryPoint,
     Plan,
     Sortie,

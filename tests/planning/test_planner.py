@@ -19,9 +19,10 @@ from planning.base.errors import InfeasibleError, InputError, OperationCancelled
 from planning.base.findings import Severity, is_flyable
 from planning.base.progress import StopRequest, Trace
 from planning.checks import check_plan
-from planning.plan import Constraints, FlightRules, Plan, plan_to_json, read_plan, write_plan
+from planning.parameters import LARGEST_SEED, Constraints, FlightRules, GreedyParameters, Precision
+from planning.plan import Plan, plan_to_json, read_plan, write_plan
 from planning.planner import Planned, plan_flight, share_out_anew
-from planning.request import LARGEST_SEED, GreedyParameters, PlanRequest, Precision
+from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared, prepare

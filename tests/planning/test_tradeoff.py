@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.progress import QualityPoint
 from planning.coverage.evaluate import coverage_counts
-from planning.plan import Constraints
+from planning.parameters import Constraints, GreedyParameters
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.routing.tour import tour_length
 from planning.site.bundled import SCENES
 from planning.site.free_space import free_space

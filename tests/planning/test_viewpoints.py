@@ -14,7 +14,7 @@ from planning.base.progress import QUIET, TimeLimit, Trace, never
 from planning.coverage.model import CoverageModel, Elements, exact_coverage
 from planning.coverage.reachability import find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
-from planning.request import GreedyParameters
+from planning.parameters import GreedyParameters
 from planning.routing.roadmap import build_roadmap
 from planning.site.bundled import SCENES
 from planning.site.free_space import free_space

@@ -16,9 +16,10 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 PLANS = """
 from planning.checks import check_plan
-from planning.plan import Constraints, FlightRules
+from planning.parameters import Constraints, FlightRules
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
+from planning.parameters import GreedyParameters
 from planning.site.bundled import SCENES
 
 fine, coarse = Constraints(section_step_deg=15.0), Constraints(whole_panel=True, max_distance_m=40.0)

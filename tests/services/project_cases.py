@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.project.site import same_site
 from planning.aircraft.catalogue import profile
-from planning.plan import Constraints, Coverage, FlightRules, HistoryPoint, Plan, Sortie, Viewpoint
+from planning.parameters import Constraints, FlightRules
+from planning.plan import Coverage, HistoryPoint, Plan, Sortie, Viewpoint
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from tests.planning.plan_cases import kiosk

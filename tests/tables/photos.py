@@ -14,9 +14,10 @@ from groundstation.services.plan.planning import plan_site
 from groundstation.services.scenes.photos import photograph_files
 from groundstation.services.scenes.views import SITE_FILE, SceneRequest
 from groundstation.services.scenes.views import as_written as site_as_written
-from planning.plan import Constraints, Plan, write_plan
+from planning.parameters import Constraints, GreedyParameters
+from planning.plan import Plan, write_plan
 from planning.planner import Planned
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.viewpoints.candidates import spread_candidates
 from planning.viewpoints.plan_records import as_written, viewpoints_of
 from planning.viewpoints.problem import take

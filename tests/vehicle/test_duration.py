@@ -12,7 +12,7 @@ from groundstation.vehicle.setup import leg_late_s
 from missions.mavlink.autopilots import Autopilot
 from planning.aircraft.catalogue import profile
 from planning.motion.timing import leg_times_s, motion_limits
-from planning.plan import FlightRules
+from planning.parameters import FlightRules
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import single_panel

@@ -25,7 +25,8 @@ from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
 from planning.base.findings import Severity
-from planning.plan import Aircraft, FlightRules
+from planning.parameters import FlightRules
+from planning.plan import Aircraft
 from planning.site.bundled import single_panel
 from planning.site.free_space import unchecked_space
 

@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     from groundstation.cli.console import counted, print_findings, print_json, print_next, run_job
     from groundstation.services.mission.export import import_missions
     from groundstation.services.plan.planning import finding_summary
-    from planning.plan import Constraints
+    from planning.parameters import Constraints
 
     with in_words_of_options():
         constraints = Constraints(

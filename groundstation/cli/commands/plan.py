@@ -6,12 +6,21 @@ import argparse
 import math
 import sys
 import time
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import add_profile_argument, in_words_of_options, json_file, number
+from groundstation.cli.options import (
+    add_parameter,
+    add_profile_argument,
+    in_words_of_options,
+    json_file,
+    number,
+    typed_values,
+)
 from planning.base.errors import InputError
+from planning.base.parameters import declared, with_values
+from planning.parameters import FLIGHT, GOAL, HOW, WHICH, PlanParameters
 
 if TYPE_CHECKING:
     from planning.planner import Planned
@@ -29,8 +38,8 @@ examples:
   plan office.site.json -o new.plan.json --views 560 --keep office.plan.json
 """
 
-MAX_CANDIDATES = 1_000_000
-"""Takes 24 s and finds nothing that a tenth of it does not."""
+GOALS = ("n_views", "share", "n_batteries")
+"""At most one of them is asked for."""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -54,109 +63,63 @@ def add_parser(subparsers: Any) -> None:
 
 def add_request_arguments(parser: argparse.ArgumentParser) -> None:
     """What is wanted of a plan; shared with other commands that plan."""
-    goal = parser.add_argument_group("how much (one of the first three)")
-    one_of = goal.add_mutually_exclusive_group().add_argument
-    one_of("--views", type=int, metavar="N", help="number of views")
-    one_of("--coverage", type=number, metavar="SHARE", help="share of what can be covered, 0 to 1 (default 0.99)")
-    one_of("--batteries", type=int, metavar="N", help="number of sorties")
-    goal.add_argument(
-        "--weights", choices=("equal", "solid-angle"), default="equal", help="worth of hemisphere sections"
+    groups = {title: parser.add_argument_group(title) for title in (GOAL, HOW, WHICH, FLIGHT)}
+    one_of = groups[GOAL].add_mutually_exclusive_group()
+    for name, each in declared(PlanParameters).items():
+        if name == "profile_id":
+            add_profile_argument(groups[FLIGHT], has_default=False)
+        elif each.parameter.option:
+            add_parameter(one_of if name in GOALS else groups[each.parameter.group], each)
+    groups[WHICH].add_argument(
+        "--max-gsd", type=number, metavar="MM", help="views with larger pixels on the panel do not count at all"
     )
-    search = parser.add_argument_group("how").add_argument
-    search("--method", choices=("greedy", "pso", "noto", "orbit"), default="greedy", help="default: greedy")
-    search("--time-budget", type=number, default=60.0, metavar="S", help="longest wall time (default 60 s)")
-    search("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")
-    search("--precision", choices=("f32", "f64"), default="f32", help="of the coverage kernel (default f32)")
-    search("--candidates", type=int, metavar="N", help="well-spread viewpoints to choose from (default 20000)")
-    rules = parser.add_argument_group("which views count").add_argument
-    rules("--min-distance", type=number, default=10.0, metavar="M", help="to everything solid (default 10 m)")
-    rules(
-        "--min-height",
-        type=number,
-        metavar="M",
-        help="lowest flight above the ground, but for take-off and landing (default: the site's, else 5 m)",
+    groups[HOW].add_argument(
+        "--settings",
+        type=Path,
+        metavar="FILE",
+        help="TOML file with any setting of docs/reference/settings.md",
     )
-    rules("--step", type=number, default=30.0, metavar="DEG", help="of the hemisphere sections (default 30)")
-    rules("--occlusion", choices=("auto", "on", "off"), default="auto", help="default: as the scene calls for")
-    rules("--max-distance", type=number, metavar="M", help="views from further away do not count")
-    rules("--max-gsd", type=number, metavar="MM", help="views with larger pixels on the panel do not count at all")
-    rules(
-        "--wanted-gsd",
-        type=number,
-        metavar="MM",
-        help="each direction is wanted with pixels up to this size (default: 20 mm, or the camera's at 2.5 times the "
-        "minimum distance if that is more; 0: any)",
-    )
-    rules("--whole-panel", action="store_true", help="all four corners must be in the picture")
-    flight_group = parser.add_argument_group("flight")
-    add_profile_argument(flight_group)
-    flight = flight_group.add_argument
-    flight("--reserve", type=number, default=0.25, metavar="SHARE", help="battery left at landing (default 0.25)")
-    flight("--settle", type=number, default=2.0, metavar="S", help="hover before each photo (default 2 s)")
-    flight("--speed", type=number, metavar="M_S", help="highest speed, if lower than the aircraft's")
-    flight("--wind", type=number, default=0.0, metavar="M_S", help="wind expected (default 0)")
-    flight("--turn-in-flight", action="store_true", help="turn heading and gimbal on the way, not at the waypoint")
 
 
 def request_of(options: argparse.Namespace) -> PlanRequest:
-    """What the options ask for.
+    """What the options ask for: what was typed, else the settings file's, else the default.
 
     Raises
     ------
     InputError
-        A value is out of range.
+        A value is out of range, or the settings file cannot be used.
     """
-    from planning.plan import Constraints, FlightRules
-    from planning.request import N_CANDIDATES, GreedyParameters, PlanRequest
+    from planning.base.json_file import read_toml, settings_over
+    from planning.request import PlanRequest
 
-    n_candidates = N_CANDIDATES if options.candidates is None else options.candidates
-    if not 1 <= n_candidates <= MAX_CANDIDATES:
-        raise InputError(f"--candidates: expected 1 to {MAX_CANDIDATES}, got {n_candidates}")
+    base = PlanParameters()
+    if options.settings is not None:
+        base = settings_over(base, read_toml(options.settings, dict[str, Any]), options.settings)
+    typed = typed_values(options, PlanParameters)
+    if any((name,) in typed for name in GOALS):
+        base = replace(base, n_views=None, share=None, n_batteries=None)
     with in_words_of_options():
-        return PlanRequest(
-            method=options.method,
-            n_views=options.views,
-            share=options.coverage,
-            n_batteries=options.batteries,
-            profile_id=options.profile,
-            constraints=Constraints(
-                options.min_distance,
-                options.step,
-                options.occlusion,
-                options.whole_panel,
-                _max_distance_m(options),
-                options.min_height,
-                options.wanted_gsd,
-            ),
-            rules=FlightRules(
-                battery_reserve=options.reserve,
-                settle_s=options.settle,
-                max_speed_m_s=options.speed,
-                wind_m_s=options.wind,
-                turn_in_flight=options.turn_in_flight,
-            ),
-            greedy=GreedyParameters(n_candidates, solid_angle_weights=options.weights == "solid-angle"),
-            precision=options.precision,
-            seed=options.seed,
-            time_budget_s=options.time_budget,
-        )
+        wanted = with_values(base, typed)
+        if options.max_gsd is not None:
+            constraints = replace(wanted.constraints, max_distance_m=_max_distance_m(wanted, options.max_gsd))
+            wanted = replace(wanted, constraints=constraints)
+        return PlanRequest(**{each.name: getattr(wanted, each.name) for each in fields(PlanParameters)})
 
 
-def _max_distance_m(options: argparse.Namespace) -> float | None:
-    """The nearer of `--max-distance` and the distance at which `--max-gsd` is reached."""
+def _max_distance_m(wanted: PlanParameters, max_gsd_mm: float) -> float:
+    """The nearer of the largest distance and that at which a pixel size is reached."""
     from planning.aircraft.catalogue import profile
 
-    if options.max_gsd is None:
-        return options.max_distance  # type: ignore[no-any-return]
-    if not options.max_gsd > 0.0:
-        raise InputError(f"--max-gsd: expected a positive number of millimetres, got {options.max_gsd:g}")
-    by_gsd_m = profile(options.profile).camera.distance_for_gsd_m(options.max_gsd / 1000.0)
-    if not by_gsd_m > options.min_distance:
+    if not max_gsd_mm > 0.0:
+        raise InputError(f"--max-gsd: expected a positive number of millimetres, got {max_gsd_mm:g}")
+    by_gsd_m = profile(wanted.profile_id).camera.distance_for_gsd_m(max_gsd_mm / 1000.0)
+    min_m, max_m = wanted.constraints.min_distance_m, wanted.constraints.max_distance_m
+    if not by_gsd_m > min_m:
         raise InputError(
-            f"--max-gsd: this camera has pixels of {options.max_gsd:g} mm at {by_gsd_m:.2f} m, but the minimum "
-            f"distance is {options.min_distance:g} m; allow larger pixels or lower --min-distance"
+            f"--max-gsd: this camera has pixels of {max_gsd_mm:g} mm at {by_gsd_m:.2f} m, but the minimum "
+            f"distance is {min_m:g} m; allow larger pixels or lower --min-distance"
         )
-    return by_gsd_m if options.max_distance is None else min(options.max_distance, by_gsd_m)
+    return by_gsd_m if max_m is None else min(max_m, by_gsd_m)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -198,7 +198,9 @@ def run_plan(options: argparse.Namespace) -> int:
     from planning.tradeoff.plan_report import plan_summary
 
     variants = _variants(options)
-    base = request_of(argparse.Namespace(**{**vars(options), "candidates": None}))
+    base = request_of(
+        argparse.Namespace(**{name: value for name, value in vars(options).items() if name != "candidates"})
+    )
     made = run_job(
         "tradeoff plan",
         lambda context: plan_tradeoff(
@@ -228,7 +230,7 @@ def run_plan(options: argparse.Namespace) -> int:
 
 
 def _variants(options: argparse.Namespace) -> Variants:
-    from planning.plan import check_section_step
+    from planning.parameters import check_section_step
     from planning.tradeoff.plan_runs import Variants
 
     try:

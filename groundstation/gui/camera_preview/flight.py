@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from planning.geo.frames import wrap_heading_rad
 from planning.insight.flight_profile import FlightProfile, sortie_profile
-from planning.plan import FlightRules, Plan, Sortie, viewpoint_arrays
+from planning.parameters import FlightRules
+from planning.plan import Plan, Sortie, viewpoint_arrays
 
 Array = NDArray[np.float64]
 

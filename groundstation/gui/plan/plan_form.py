@@ -24,8 +24,9 @@ from groundstation.gui.widgets.questions import choose_file
 from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.aircraft.catalogue import Profile, profile, profiles
 from planning.base.errors import GroundStationError
-from planning.plan import Constraints, usual_gsd_m
-from planning.request import DEFAULT_SHARE, DEFAULT_VIEWS, LARGEST_SEED, PlanRequest
+from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS, LARGEST_SEED, Constraints
+from planning.plan import usual_gsd_m
+from planning.request import PlanRequest
 from planning.viewpoints.methods import METHODS
 
 # Chooses the aircraft and camera of a plan: one that the program knows, or one from a file of the user's own.

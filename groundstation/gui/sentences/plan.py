@@ -139,7 +139,6 @@ SENTENCES = (
     ),
     QT_TRANSLATE_NOOP("Sentences", "no allowed viewpoint sees panel '{0}'"),
     QT_TRANSLATE_NOOP("Sentences", "home stands {0} m from a no-fly volume; no more than that is kept from it"),
-    QT_TRANSLATE_NOOP("Sentences", "expected 1 or more, got {0}"),
     QT_TRANSLATE_NOOP("Sentences", "expected at most one of a number of views, a share and a number of batteries"),
     QT_TRANSLATE_NOOP("Sentences", "expected 1 to 20000, got {0}"),
     QT_TRANSLATE_NOOP("Sentences", "expected at least the {0} locked ones, got {1}"),

@@ -354,8 +354,9 @@ def _sendable(error: BaseException) -> BaseException:
 
 def _load_planning() -> None:
     """Load the modules and the compiled kernels that most plans need, by planning a very small one."""
+    from planning.parameters import GreedyParameters
     from planning.planner import plan_flight
-    from planning.request import GreedyParameters, PlanRequest
+    from planning.request import PlanRequest
     from planning.site.bundled import SCENES
 
     few = GreedyParameters(n_candidates=200)

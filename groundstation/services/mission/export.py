@@ -21,14 +21,14 @@ from groundstation.services.project.project_file import SITE_FOLDER, check_not_i
 from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions, encode
 from missions.formats.registry import sortie_path, write_files
 from missions.mission.model import FileFormat
-from planning.aircraft.catalogue import DEFAULT_PROFILE
 from planning.base.errors import InputError
 from planning.base.files import real_path, sha256_given
 from planning.base.findings import Finding, Severity
 from planning.base.folders import check_ending
 from planning.base.json_file import JSON_FILE, check_output
 from planning.base.progress import QUIET, Monitor
-from planning.plan import Constraints, Plan, write_plan
+from planning.parameters import DEFAULT_PROFILE, Constraints
+from planning.plan import Plan, write_plan
 from planning.site.file import read_site, write_site
 from planning.site.records import SiteModel
 

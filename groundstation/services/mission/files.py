@@ -16,7 +16,7 @@ from missions.formats.registry import read_missions, sortie_path, write_files
 from missions.mission.legs import distance_m
 from missions.mission.model import FileFormat, GeoPoint, ReadMission
 from missions.mission.to_plan import viewpoints_and_sorties
-from planning.aircraft.catalogue import DEFAULT_PROFILE, profile
+from planning.aircraft.catalogue import profile
 from planning.base.errors import GroundStationError, InputError
 from planning.base.files import real_path
 from planning.base.findings import Finding, Severity
@@ -26,7 +26,8 @@ from planning.coverage.evaluate import coverage
 from planning.geo.frames import Origin
 from planning.geo.geoid import undulation_m
 from planning.geo.mesh import empty_mesh
-from planning.plan import Constraints, Coverage, FlightRules, Plan
+from planning.parameters import DEFAULT_PROFILE, Constraints, FlightRules
+from planning.plan import Coverage, Plan
 from planning.planner import share_out_anew
 from planning.site.file import is_planned_on, site_sha256
 from planning.site.records import MAX_DISTANCE_M, Airspace, Site, SiteModel

@@ -12,15 +12,16 @@ import numpy as np
 
 from groundstation.services.photos.poses import BetterPoses, RefineRequest, better_poses, refined_summary, still_true
 from groundstation.services.project.input_files import read_given_plan, read_given_site
-from planning.aircraft.catalogue import DEFAULT_PROFILE, profile
+from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.findings import Finding, Severity
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.model import CoverageModel
+from planning.parameters import DEFAULT_PROFILE, Constraints
 from planning.photos.folder import read_photos
 from planning.photos.places import PhotoHeights
 from planning.photos.record import PhotoMetadata
-from planning.plan import Constraints, Plan
+from planning.plan import Plan
 from planning.site.free_space import unchecked_space
 from planning.site.records import Site, SiteModel, require_panels
 from planning.viewpoints.prepare import coverage_model, decide_occlusion, wish_of

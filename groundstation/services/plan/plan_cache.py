@@ -20,7 +20,8 @@ from planning.coverage.sections import NOT_SEEN
 from planning.insight.reasons import SectionReasons, section_reasons
 from planning.insight.sampling import PanelSampling, panel_sampling
 from planning.insight.sections import PlanInsight, assembled
-from planning.plan import Camera, Constraints, Plan, viewpoint_arrays
+from planning.parameters import Constraints
+from planning.plan import Camera, Plan, viewpoint_arrays
 from planning.request import PlanRequest
 from planning.revision import Revision, revise
 from planning.site.records import SiteModel

@@ -28,8 +28,9 @@ from planning.base.errors import InfeasibleError, InputError
 from planning.base.json_file import part_folder, write_atomically
 from planning.base.parallel_map import sweep
 from planning.base.progress import QUIET, Monitor
+from planning.parameters import DEFAULT_VIEWS
 from planning.plan import Plan
-from planning.request import DEFAULT_VIEWS, PlanRequest
+from planning.request import PlanRequest
 from planning.routing.methods import TourMethod
 from planning.site.records import SiteModel
 from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, GapAxis, Panel, draw

@@ -23,8 +23,9 @@ from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import ply_bytes
-from planning.plan import Camera, Constraints, Plan, Viewpoint, plan_to_json, read_plan
-from planning.request import GreedyParameters, PlanRequest
+from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters
+from planning.plan import Camera, Plan, Viewpoint, plan_to_json, read_plan
+from planning.request import PlanRequest
 from planning.site.file import is_planned_on, site_bytes, site_sha256
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import PosedPhoto
@@ -100,7 +101,6 @@ SITE_FILE, PLAN_FILE = "site.json", "plan.json"
 
 DEFAULT_VIEWS, MAX_VIEWS = 24, 20_000
 DEFAULT_WIDTH_PX = 1024
-DEFAULT_PROFILE = "m3e"
 
 BUNDLED_TEXTS = {
     "planar": "plane facade of 20 x 8 panels, street, buildings opposite, trees and cars before it",

@@ -1,6 +1,7 @@
 """The window says what planning, missions and services say in the user's language and units."""
 
 import json
+import math
 import re
 from dataclasses import replace
 from functools import cache
@@ -20,6 +21,7 @@ from groundstation.services.site.sources import preview_import
 from groundstation.services.units import UnitSystem
 from missions.formats.registry import read_missions
 from planning.base.errors import GroundStationError
+from planning.base.parameters import declared
 from planning.checks import check_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
@@ -39,6 +41,7 @@ OTHER_TABLES = {"parts", "window"}
 """Words and what Python says, and what the window says instead; all others are of whole sentences."""
 
 NOT_SHOWN = {
+    "planning/base/parameters.py": "ranges in words, which are sentences with each parameter: see `refusals`",
     "reconstruction/dataset/effects.py": "the decision about each effect, for the command line",
     "reconstruction/dataset/records.py": "file content",
     "reconstruction/training/method_registry.py": "but for what each method is: where it is from, what changed",
@@ -152,7 +155,7 @@ NO_SENTENCE = {
         "cut off",
     ),
     "said on the command line only": (
-        "a minute; shows that everything works, and nothing else",
+        *("a minute; shows that everything works, and nothing else", "which views count"),
         *("expected a folder of pictures, found a file", "expected a folder of pictures, found nothing"),
         *("{0} and {1} have one name; keep one of them", "expected pictures ({0}) in this folder, found none"),
         *("{0}; what was flown before is in {1}", "sortie {0}: ", ", asked for"),
@@ -218,8 +221,27 @@ def test_every_sentence_of_the_sources_is_known_to_the_window():
     assert not missing, "add them to groundstation/gui/sentences, run `make translations` and translate them"
 
 
+@cache
+def refusals():
+    """What is said of values out of the ranges of parameters, without the names that stand before it."""
+    found = set()
+    for name, each in declared(PlanRequest).items():
+        wrong = next((value for value in (-1, math.nan, "?") if not each.parameter.holds(value)), None)
+        if wrong is not None:
+            with pytest.raises(ValueError, match=r"expected .*, got ") as caught:
+                each.parameter.check(name.rpartition(".")[2], wrong)
+            told = str(caught.value)
+            found.add(told if " " in told.partition(":")[0] else told.partition(": ")[2])
+    return found
+
+
+def test_every_range_of_a_parameter_is_known_to_the_window():
+    assert len(refusals()) > 6
+    assert [text for text in refusals() if phrasebook().find(text) is None] == []
+
+
 def test_every_sentence_of_the_window_is_still_made_somewhere():
-    made = sentences_of_sources()
+    made = {*sentences_of_sources(), *(unmarked(phrasebook().find(text)[0].source) for text in refusals())}
     for name, table in sentence_tables().items():
         if name not in OTHER_TABLES:
             assert not [text for text in table if unmarked(text) not in made], name

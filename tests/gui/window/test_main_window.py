@@ -16,7 +16,8 @@ from groundstation.gui.window.shortcuts import VIEWS
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
-from planning.request import GreedyParameters, PlanRequest
+from planning.parameters import GreedyParameters
+from planning.request import PlanRequest
 from tests.gui.driving import clicked, close_controller, press_in, trigger, turn_until, turn_until_idle
 
 GUI = Path(menus.__file__).parents[1]

@@ -17,7 +17,8 @@ from missions.formats.encode import ExportOptions, encode
 from missions.mission.build import missions_from_plan
 from missions.mission.model import FileFormat, HeightReference, Mission, altitude_amsl_m
 from planning.base.errors import MissionError
-from planning.plan import Constraints, FlightRules, Plan
+from planning.parameters import Constraints, FlightRules
+from planning.plan import Plan
 from tests.missions.plans import example_plan, make_plan, plans, ring
 from tests.planning.plan_cases import kiosk
 

@@ -15,8 +15,9 @@ from missions.flight.report import Limits, report_case
 from planning.base.errors import InputError
 from planning.checks.case import Case
 from planning.geo.frames import Origin, aim
+from planning.parameters import Constraints
 from planning.photos.folder import read_photos
-from planning.plan import Constraints, Plan, Viewpoint
+from planning.plan import Plan, Viewpoint
 from planning.site.bundled import ORIGIN
 from planning.site.records import SiteModel
 from tests.missions.flight.photo_files import Device, write_photos

@@ -21,7 +21,8 @@ from missions.flight.report_text import report_text, report_to_json
 from planning.base.findings import Finding, Severity
 from planning.checks.case import Case
 from planning.geo.frames import aim
-from planning.plan import Constraints, Plan, Viewpoint
+from planning.parameters import Constraints
+from planning.plan import Plan, Viewpoint
 from planning.site.bundled import ORIGIN
 from planning.site.records import SiteModel
 from tests.missions.flight.flights import cut_at, flown_as_planned, moved, never_taken, with_durations, with_photos

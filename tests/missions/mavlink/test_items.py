@@ -14,7 +14,8 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MissionItem, mission_items, plain
 from missions.mission.build import missions_from_plan
 from missions.mission.model import HeightReference, Mission, altitude_amsl_m
-from planning.plan import FlightRules, Plan, Viewpoint
+from planning.parameters import FlightRules
+from planning.plan import Plan, Viewpoint
 from tests.missions.mavlink.autopilot_twins import ArduPilotTwin, Px4Twin, Shot
 from tests.missions.plans import HONG_KONG, example_plan, make_plan, plans, ring
 

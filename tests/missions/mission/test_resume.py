@@ -21,7 +21,8 @@ from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, MissionError
 from planning.base.findings import Severity
 from planning.checks import check_plan
-from planning.plan import FlightRules, Plan
+from planning.parameters import FlightRules
+from planning.plan import Plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.records import NoFlyZone, SiteModel

@@ -14,7 +14,7 @@ from planning.base.errors import InputError
 from planning.base.findings import Severity
 from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin
-from planning.plan import FlightRules
+from planning.parameters import FlightRules
 from tests.missions.plans import HOME, HONG_KONG, make_plan
 
 

@@ -13,9 +13,10 @@ from missions.simulator.airframe.multirotor import Multirotor
 from missions.simulator.airframe.state import Pose, Target
 from planning.aircraft.catalogue import profile
 from planning.motion.sortie_timing import sortie_flight_path, stopping_duration_s
-from planning.plan import Constraints, Coverage, FlightRules, Plan, Sortie, Viewpoint
+from planning.parameters import Constraints, FlightRules, GreedyParameters
+from planning.plan import Coverage, Plan, Sortie, Viewpoint
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
 

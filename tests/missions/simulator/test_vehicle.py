@@ -46,9 +46,10 @@ from missions.simulator.autopilot.stored_item import Refused, stored
 from missions.simulator.build import make_airframe
 from missions.simulator.vehicle import CONTROL_STEP_S, SimulatedVehicle
 from planning.geo.frames import camera_axes
+from planning.parameters import GreedyParameters
 from planning.plan import Plan
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from tests.missions.plans import example_plan, plans
 from tests.missions.simulator.flying import bundled

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from planning.aircraft.catalogue import DEFAULT_PROFILE, profile, profiles
+from planning.aircraft.catalogue import profile, profiles
 from planning.base.errors import InputError
+from planning.parameters import DEFAULT_PROFILE
 
 
 def test_the_default_is_the_contract_s_aircraft_and_camera() -> None:

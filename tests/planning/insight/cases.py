@@ -6,9 +6,10 @@ import functools
 
 from planning.aircraft.catalogue import profile
 from planning.insight.reasons import SectionReasons, section_reasons
-from planning.plan import Constraints, Plan
+from planning.parameters import Constraints, GreedyParameters
+from planning.plan import Plan
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared, prepare

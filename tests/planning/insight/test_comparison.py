@@ -11,7 +11,8 @@ from planning.checks import check_plan
 from planning.coverage.model import exact_coverage
 from planning.coverage.reach_kernel import UNREACHABLE
 from planning.insight.comparison import Better, Row, compare_plans
-from planning.plan import Constraints, viewpoint_arrays
+from planning.parameters import Constraints
+from planning.plan import viewpoint_arrays
 from tests.planning.insight.cases import NEAR, plan, prepared, scene
 
 model, site, planned = partial(scene, "kiosk"), partial(prepared, "kiosk"), partial(plan, "kiosk")

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from planning.base.errors import InfeasibleError
 from planning.insight.flight_profile import LOW_M, keep_extremes, low_flight, lowest_flight, sortie_profile
-from planning.plan import FlightRules, Sortie
+from planning.parameters import FlightRules
+from planning.plan import Sortie
 from tests.planning.insight.cases import plan
 
 

@@ -14,7 +14,7 @@ from planning.coverage.reachability import elevation_range_rad, find_reachable
 from planning.coverage.sections import sections_of
 from planning.insight.reasons import BrokenRule, Rule, section_reasons
 from planning.insight.things import Thing
-from planning.plan import Constraints
+from planning.parameters import Constraints
 from planning.site.bundled import SCENES
 from planning.site.free_space import SAFETY_MARGIN_M
 from planning.site.importing.importer import import_site

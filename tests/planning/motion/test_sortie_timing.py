@@ -8,7 +8,8 @@ import pytest
 from planning.aircraft.catalogue import profile
 from planning.geo.frames import Vec3
 from planning.motion.sortie_timing import photo_vertices, sortie_flight_path, stopping_duration_s
-from planning.plan import FlightRules, Sortie, Viewpoint
+from planning.parameters import FlightRules
+from planning.plan import Sortie, Viewpoint
 
 M3E = profile("m3e").aircraft
 HOME, TOP, NEAR, FAR = (0.0, 0.0, 0.0), (0.0, 0.0, 20.0), (10.0, 0.0, 20.0), (30.0, 0.0, 20.0)

@@ -29,7 +29,8 @@ from planning.motion.timing import (
     usable_battery_s,
     with_turns_s,
 )
-from planning.plan import Aircraft, FlightRules
+from planning.parameters import FlightRules
+from planning.plan import Aircraft
 
 M3E = profile("m3e").aircraft
 LIMITS = MotionLimits(10.0, 4.0, 3.0, 2.5, math.radians(60.0), math.radians(30.0))

@@ -16,9 +16,9 @@ from planning.base.findings import Finding, Severity
 from planning.checks import check_plan
 from planning.coverage.evaluate import coverage, coverage_counts
 from planning.geo.frames import Vec3
-from planning.plan import Constraints, FlightRules
+from planning.parameters import Constraints, FlightRules, GreedyParameters
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.revision import Revision, add, delete, lock, move, revise
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel

@@ -16,7 +16,8 @@ from planning.coverage.evaluate import sights
 from planning.coverage.positions import aimed_views, spread_positions
 from planning.motion.speed_profile import fastest_profile
 from planning.motion.timing import flight_path, motion_limits, stopping_times_s
-from planning.plan import FlightRules, Plan, viewpoint_arrays
+from planning.parameters import FlightRules
+from planning.plan import Plan, viewpoint_arrays
 from planning.revision import Revision, delete, lock, move, revise
 from planning.routing.rally import SAMPLE_M
 from tests.planning.revision.cases import SETTINGS, Edit, assert_is_as_from_scratch, edits, planned, prepared

@@ -21,7 +21,8 @@ from planning.checks import check_plan
 from planning.coverage.evaluate import coverage_counts
 from planning.coverage.positions import aimed_views
 from planning.motion.timing import usable_battery_s
-from planning.plan import Constraints, FlightRules, Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
+from planning.parameters import Constraints, FlightRules
+from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.revision.top_up import METHOD, Target, TopUp, TopUpRequest, WhyMissing, top_up

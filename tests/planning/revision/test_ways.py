@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from planning.aircraft.catalogue import profile
-from planning.plan import FlightRules
+from planning.parameters import FlightRules
 from planning.revision.ways import HOME, Ways
 from planning.routing.legs import build_leg_table
 from planning.routing.roadmap import build_roadmap, leg_length

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, OperationCancelled
 from planning.base.progress import TimeLimit
-from planning.plan import Aircraft, FlightRules, ViewpointArrays
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, ViewpointArrays
 from planning.routing.flights import Flight, flight_times, plan_flights
 from planning.routing.roadmap import Roadmap, build_roadmap
 from planning.site.free_space import free_space

@@ -15,7 +15,7 @@ from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, OperationCancelled
 from planning.geo.mesh import box_mesh, empty_mesh
 from planning.motion.timing import motion_limits, round_trip_metric
-from planning.plan import FlightRules
+from planning.parameters import FlightRules
 from planning.routing import legs
 from planning.routing.legs import MIN_SPACING_M, LegTable, build_leg_table
 from planning.routing.roadmap import build_roadmap, leg_length

@@ -9,9 +9,9 @@ import pytest
 from planning.base.errors import InfeasibleError
 from planning.base.findings import is_flyable
 from planning.checks import check_plan
-from planning.plan import Constraints
+from planning.parameters import Constraints, GreedyParameters
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.routing.roadmap import COLUMN_SPACING_M
 from planning.site.bundled import SCENES
 from planning.site.free_space import LEG_MARGIN_M, SAFETY_MARGIN_M, free_space

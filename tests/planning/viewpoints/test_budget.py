@@ -19,9 +19,10 @@ from planning.coverage.model import CoverageModel
 from planning.coverage.reachability import find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.motion.timing import usable_battery_s
-from planning.plan import Constraints, FlightRules, ViewpointArrays
+from planning.parameters import Constraints, FlightRules, GreedyParameters
+from planning.plan import ViewpointArrays
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.routing.flights import Flight, flight_times
 from planning.routing.roadmap import build_roadmap
 from planning.site.bundled import SCENES

@@ -16,9 +16,10 @@ from planning.base.findings import is_flyable
 from planning.base.progress import QUIET, Trace
 from planning.checks import check_plan
 from planning.coverage.evaluate import coverage_counts
+from planning.parameters import GreedyParameters
 from planning.plan import Plan, Viewpoint, ViewpointArrays, viewpoint_arrays
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.routing.flights import Flight
 from planning.routing.orienteering import solve_orienteering
 from planning.viewpoints.budget import best_flights, with_fewer_views

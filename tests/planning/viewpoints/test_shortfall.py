@@ -14,9 +14,10 @@ from planning.base.findings import Severity
 from planning.coverage.model import exact_coverage
 from planning.coverage.reach_kernel import REACHABLE, UNDECIDED
 from planning.geo.mesh import box_mesh
-from planning.plan import Constraints, viewpoint_arrays
+from planning.parameters import Constraints, GreedyParameters
+from planning.plan import viewpoint_arrays
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.site.records import Obstacle, SiteModel
 from planning.viewpoints.prepare import prepare
 from planning.viewpoints.shortfall import WhyOpen, open_sections

@@ -21,9 +21,10 @@ from planning.coverage.positions import aimed_views, spread_positions
 from planning.coverage.reach_kernel import REACHABLE
 from planning.coverage.reachability import find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
-from planning.plan import Constraints, ViewpointArrays
+from planning.parameters import Constraints, GreedyParameters
+from planning.plan import ViewpointArrays
 from planning.planner import plan_flight
-from planning.request import GreedyParameters, PlanRequest
+from planning.request import PlanRequest
 from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import free_space
 from planning.site.records import SiteModel, panel_corners

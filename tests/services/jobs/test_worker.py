@@ -13,7 +13,8 @@ from groundstation.services.jobs.worker import Worker
 from groundstation.services.plan.planning import plan_document_site, reunited
 from planning.base.errors import GroundStationError, InfeasibleError, OperationCancelled
 from planning.base.progress import QUIET, StopRequest, Trace, never
-from planning.request import GreedyParameters, PlanRequest
+from planning.parameters import GreedyParameters
+from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from tests.planning.plan_cases import kiosk
 from tests.slow import slow

@@ -11,7 +11,8 @@ from groundstation.services.photos.intake import counted_again, panel_ids, take_
 from planning.aircraft.catalogue import profile
 from planning.coverage.sections import NOT_SEEN
 from planning.insight.sections import SectionState
-from planning.plan import Constraints, Viewpoint
+from planning.parameters import Constraints
+from planning.plan import Viewpoint
 from planning.site.bundled import SCENES
 from planning.site.file import site_sha256
 from planning.site.free_space import unchecked_space

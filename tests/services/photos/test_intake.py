@@ -8,7 +8,7 @@ import pytest
 from groundstation.services.photos.intake import NO_PANELS, counted_again, intake_summary, take_in_photos
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, InputError
-from planning.plan import Constraints
+from planning.parameters import Constraints
 from planning.viewpoints.prepare import prepare
 from tests.services.photo_cases import site_model, write_photos
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from groundstation.services.plan.effects import plan_effects, scene_effects
-from planning.plan import Constraints
+from planning.parameters import Constraints
 from planning.request import PlanRequest
 from planning.site.bundled import canyon, roof
 from tests.planning.revision.cases import planned

@@ -17,7 +17,8 @@ from groundstation.services.plan.planning import (
 from planning.base.errors import InfeasibleError, InputError, OperationCancelled
 from planning.base.findings import Finding, Severity, is_flyable
 from planning.checks import check_plan
-from planning.plan import Constraints, read_plan, write_plan
+from planning.parameters import Constraints
+from planning.plan import read_plan, write_plan
 from planning.planner import FEWEST_ROUTED
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES, write_scene

@@ -18,7 +18,8 @@ from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, InputError, MissionError
 from planning.base.findings import Finding, Severity
 from planning.geo.frames import Origin
-from planning.plan import FlightRules, Plan, Viewpoint
+from planning.parameters import FlightRules
+from planning.plan import Plan, Viewpoint
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.revision.top_up import Target, TopUpRequest
