@@ -7493,10 +7493,6 @@ Damit weiterarbeiten?</translation>
         <translation>Luftraum: seine Decke liegt {0} m über dem Boden, und Flüge halten von ihm {1} m Abstand; die Decke anheben oder niedrigere Flüge erlauben</translation>
     </message>
     <message>
-        <source>expected 1 or more, got {0}</source>
-        <translation>erwartet wurde 1 oder mehr, gefunden: {0}</translation>
-    </message>
-    <message>
         <source>expected 1 to 20000, got {0}</source>
         <translation>erwartet wurden 1 bis 20000, gefunden: {0}</translation>
     </message>
