@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.services.jobs.channel import Lost
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.jobs.worker import Worker
 from groundstation.services.model.export import ModelExport, WrittenModel, export_apart
@@ -23,7 +24,7 @@ from groundstation.services.model.scene_card import (
     scenes_beside,
 )
 from groundstation.services.model.scene_records import Attachment, attachments_of, book_of_scene, user_name, with_file
-from groundstation.services.reconstruct.messages import Look, Lost, Organise, Probe, Probed, SceneMade, Seen, Tints
+from groundstation.services.reconstruct.messages import Look, Organise, Probe, Probed, SceneMade, Seen, Tints
 from groundstation.services.reconstruct.process import ModelProcess
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity

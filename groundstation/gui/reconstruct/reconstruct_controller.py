@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.reconstruct.folder_controller import FolderController
+from groundstation.services.jobs.channel import Lost
 from groundstation.services.reconstruct.curves import ThinCurve
 from groundstation.services.reconstruct.messages import (
     AskScene,
@@ -19,7 +20,6 @@ from groundstation.services.reconstruct.messages import (
     Devices,
     Ended,
     Look,
-    Lost,
     Measured,
     Pause,
     PhotoError,
@@ -252,8 +252,8 @@ class ReconstructController(FolderController):
                 self.stateChanged.emit()
             case Ended():
                 self._take_end(message)
-            case Lost(status):
-                self._take_loss(status)
+            case Lost():
+                self._take_loss(message)
 
     def _take_step(self, stepped: Stepped) -> None:
         self.training.take_step(stepped)
@@ -282,7 +282,7 @@ class ReconstructController(FolderController):
         self.stateChanged.emit()
         self.progressed.emit()
 
-    def _take_loss(self, status: int) -> None:
+    def _take_loss(self, lost: Lost) -> None:
         was, self.phase, self.is_paused = self.phase, Phase.IDLE, False
         self.training.stepped, self.cuda = None, None
         if was in BUSY:
@@ -291,8 +291,8 @@ class ReconstructController(FolderController):
         if was is not Phase.IDLE:
             why = (
                 self.tr("the system ended it, mostly because memory ran out")
-                if status == -9
-                else self.tr("exit status {0}").format(status)
+                if lost.is_killed
+                else self.tr("exit status {0}").format(lost.status)
             )
             advice = (
                 self.tr("Close other programs, and go on from the last state.")

@@ -1,4 +1,4 @@
-"""What the process of models does (`reconstruct_process`): trains, and shows models and photos.
+"""What the process of models does (`process.py`): trains, and shows models and photos.
 
 One thread does the work; another reads what is asked. Between two steps of a training, and while it pauses, what is
 looked at is rendered by the first, so that nothing looks at a model while it changes. Looking comes before learning: a
@@ -8,15 +8,12 @@ picture is waited for, a step is not.
 from __future__ import annotations
 
 import os
-import pickle
 import queue
-import signal
-import sys
 import threading
 import time
-from contextlib import suppress
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
+from groundstation.services.jobs.channel import Send, sendable
 from groundstation.services.reconstruct.folders import note_training
 from groundstation.services.reconstruct.messages import (
     AskScene,
@@ -62,25 +59,14 @@ class _Wishes:
         self._looks: dict[tuple[type, str], Look | Probe] = {}
         self._lock = threading.Lock()
 
-    def read(self, source: IO[bytes]) -> None:
-        """Read until the other side closes the pipe."""
-        with suppress(EOFError, OSError):
-            while True:
-                self._take(pickle.load(source))
-        self.gone.set()
-        self.cancel.set()
-        self.pause.clear()
-        self.orders.put(None)
-        time.sleep(LAST_S)
-        os._exit(0)
-
     def next_look(self) -> Look | Probe | None:
         """The look or probe that was asked for first, of those that no newer one has replaced."""
         with self._lock:
             place = next(iter(self._looks), None)
             return None if place is None else self._looks.pop(place)
 
-    def _take(self, message: Any) -> None:
+    def take(self, message: Any) -> None:
+        """Take a message of the window."""
         match message:
             case Look() | Probe():
                 with self._lock:
@@ -108,11 +94,21 @@ class _Wishes:
 class _Server:
     """Does what is wished, and tells."""
 
-    def __init__(self, out: IO[bytes], wishes: _Wishes) -> None:
-        self._out, self._wishes = out, wishes
+    def __init__(self, send: Send) -> None:
+        self._tell, self._wishes = send, _Wishes()
+        self.take = self._wishes.take
         self._darkroom = RenderQueue(self._tell)
         self._stage, self._reported_s, self._stepped_s = "", 0.0, 0.0
         self._is_joint, self._n_measured = False, 0
+
+    def gone(self) -> float:
+        """Break a training off: it keeps its state."""
+        wishes = self._wishes
+        wishes.gone.set()
+        wishes.cancel.set()
+        wishes.pause.clear()
+        wishes.orders.put(None)
+        return LAST_S
 
     def run(self) -> None:
         """Work until the window has gone."""
@@ -159,7 +155,7 @@ class _Server:
         except OperationCancelled:
             self._tell(Ended("kept"))
         except BaseException as error:
-            self._tell(Ended("failed", _sendable(error)))
+            self._tell(Ended("failed", sendable(error)))
         else:
             self._is_joint = False
             self._darkroom.keep_trained(made.trained)
@@ -176,7 +172,7 @@ class _Server:
         except OperationCancelled:
             self._tell(Ended("kept"))
         except BaseException as error:
-            self._tell(Ended("failed", _sendable(error)))
+            self._tell(Ended("failed", sendable(error)))
         else:
             self._tell(Ended("done"))
 
@@ -226,39 +222,5 @@ class _Server:
                 self._tell(self._darkroom.probed(look))
         return look is not None
 
-    def _tell(self, message: Any) -> None:
-        try:
-            pickled = pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
-            self._out.write(pickled)
-            self._out.flush()
-        except OSError:
-            # The window has gone; the thread that reads has noticed, or will.
-            self._wishes.cancel.set()
 
-
-def _sendable(error: BaseException) -> BaseException:
-    """An error as it comes through a pipe; one that does not is told in words."""
-    try:
-        pickle.loads(pickle.dumps(error))
-    except Exception:
-        return RuntimeError(f"{type(error).__name__}: {error}")
-    return error
-
-
-def serve(niceness: int) -> None:
-    """What the process does: messages have its standard output for themselves, all else goes to the error output."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides what Ctrl+C ends
-    if sys.platform != "win32":
-        os.nice(niceness)
-    out = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    wishes = _Wishes()
-    threading.Thread(target=wishes.read, args=(sys.stdin.buffer,), name="read-wishes", daemon=True).start()
-    _Server(out, wishes).run()
-
-
-if __name__ == "__main__":
-    # By its full name, so that what is pickled here has the same classes over there.
-    from groundstation.services.reconstruct.server import serve as serve_by_name
-
-    serve_by_name(int(sys.argv[1]))
+service = _Server

@@ -10,6 +10,7 @@ import signal
 import numpy as np
 import pytest
 
+from groundstation.services.jobs.channel import Lost
 from groundstation.services.reconstruct.folders import (
     CHECKPOINT,
     MODEL,
@@ -24,7 +25,6 @@ from groundstation.services.reconstruct.messages import (
     Devices,
     Ended,
     Look,
-    Lost,
     Measured,
     Pause,
     PhotoError,
