@@ -243,6 +243,7 @@ class _Service:
                 self._send(_Ended(error=sendable(error)))
 
     def _outcome(self, call: _Call) -> _Ended:
+        self._stage = ""  # a first report is never held back for one of the call before
         trace = Trace(
             observer=lambda point: self._send(_Improved(point.value)),
             bound_observer=lambda bound: self._send(_Bounded(bound)),

@@ -290,10 +290,3 @@ class Ended:
     outcome: Outcome
     error: BaseException | None = None
     summary: dict[str, Any] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Lost:
-    """The process has ended by itself; `status` as the system has it."""
-
-    status: int

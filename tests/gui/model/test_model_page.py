@@ -11,8 +11,9 @@ from PySide6.QtGui import QMouseEvent
 
 from groundstation.gui.model.record_side import KIND_TITLES, RecordDialog
 from groundstation.gui.reconstruct.model_view import Mark
+from groundstation.services.jobs.channel import Lost
 from groundstation.services.model.panel_colours import Computed
-from groundstation.services.reconstruct.messages import Look, Lost, Organise, Probe, Probed, SceneMade, Section, Seen
+from groundstation.services.reconstruct.messages import Look, Organise, Probe, Probed, SceneMade, Section, Seen
 from groundstation.services.units import UnitSystem
 from reconstruction.objects.store import write_scene
 from reconstruction.records.book import FILE

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from groundstation.services.jobs.channel import Lost
 from groundstation.services.reconstruct.messages import (
     AskScene,
     BreakOff,
@@ -15,7 +16,6 @@ from groundstation.services.reconstruct.messages import (
     Devices,
     Ended,
     Look,
-    Lost,
     Measured,
     Pause,
     PhotoError,

@@ -99,6 +99,13 @@ def test_the_result_progress_quality_and_bound_come_back(worker):
     assert trace.bound == 63
 
 
+def test_every_call_reports_however_soon_it_follows_the_one_before(worker):
+    for _ in range(20):
+        reports = Reports()
+        worker.run(double, 1, monitor=reports)
+        assert "doubling" in reports.stages
+
+
 def test_the_work_is_done_in_one_other_process(worker):
     assert worker.run(where) == worker.run(where) != os.getpid()
 

@@ -175,7 +175,7 @@ def test_what_cannot_be_is_said_and_it_goes_on_working(heard, card, wish, tmp_pa
 def test_a_process_that_is_ended_is_told_and_another_one_takes_its_place(heard, card):
     photo = card.source.photos[0]
     heard.seen(Subject("photo", card.folder, photo.name), photo)
-    heard.process._process.send_signal(signal.SIGKILL)
+    heard.process._process._child.send_signal(signal.SIGKILL)
     assert heard.until(Lost).status == -signal.SIGKILL
     assert heard.seen(Subject("photo", card.folder, photo.name), photo).picture is not None
 
@@ -185,7 +185,7 @@ def test_when_the_window_has_gone_a_training_keeps_its_state_and_the_process_end
     heard, out = Heard(), tmp_path / "model"
     heard.send(Train(card.folder, out, wish))
     heard.until(Stepped, lambda stepped: stepped.step > 2)
-    process = heard.process._process
+    process = heard.process._process._child
     heard.process.close()
     assert process.wait(PATIENCE_S) == 0
     assert standing(out).is_interrupted
