@@ -38,6 +38,8 @@ class GarbageCollector(QObject):
         super().__init__(parent)
         self._is_busy = is_busy
         self._round, self._was_on = 0, gc.isenabled()
+        # What others left out stays so: Python gives back all or nothing, and a search through all of it takes seconds.
+        self._may_leave_out = gc.get_freeze_count() == 0
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._collect)
         gc.disable()
@@ -45,12 +47,14 @@ class GarbageCollector(QObject):
 
     def settle(self) -> None:
         """What has been imported until now stays."""
-        gc.freeze()
+        if self._may_leave_out:
+            gc.freeze()
 
     def close(self) -> None:
         """Leave the search as it was."""
         self._timer.stop()
-        gc.unfreeze()
+        if self._may_leave_out:
+            gc.unfreeze()
         if self._was_on:
             gc.enable()
 
@@ -59,7 +63,7 @@ class GarbageCollector(QObject):
         if self._round >= FULL_EVERY and not self._is_busy():
             self._round = 0
             gc.collect()
-            gc.freeze()
+            self.settle()
         elif gc.get_count()[0] > gc.get_threshold()[0]:
             # What outlives a round waits for the next long search: rounds that look at it again, as Python's own do,
             # took up to 40 ms once a plan was there.
