@@ -309,7 +309,7 @@ class PlanParameters:
     )
     profile_id: str = parameter(
         DEFAULT_PROFILE,
-        "aircraft and camera, or a .toml file with your own; '--profile list' shows all",
+        "aircraft and camera, or a .toml file with your own",
         label="Aircraft",
         option="--profile",
         metavar="ID",

@@ -143,7 +143,7 @@ def add_profile_argument(parser: Any, *, has_default: bool = True) -> None:
         default=DEFAULT_PROFILE if has_default else argparse.SUPPRESS,
         metavar=each.parameter.metavar,
         action=_Profile,
-        help=f"{each.parameter.help} (default {DEFAULT_PROFILE})",
+        help=f"{each.parameter.help}; '{each.parameter.option} list' shows all (default {DEFAULT_PROFILE})",
     )
 
 

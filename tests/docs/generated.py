@@ -1,10 +1,10 @@
-"""The pages that are made from the code and from measured tables."""
+"""The pages that are made from the code, and the texts of declared parameters that Qt Linguist looks for."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from tests.docs import commands, settings
+from tests.docs import commands, parameter_texts, settings
 
 
 def generated_pages(docs: Path) -> dict[Path, str]:
@@ -12,4 +12,5 @@ def generated_pages(docs: Path) -> dict[Path, str]:
     return {
         docs / "reference" / "commands.md": commands.page(),
         docs / "reference" / "settings.md": settings.page(),
+        docs.parent / "groundstation/gui/application/parameter_texts.py": parameter_texts.module(),
     }

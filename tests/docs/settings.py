@@ -11,6 +11,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
+from planning.base.parameters import Parameter, declared
+
 HEADER = """# Settings
 
 Written by `make docs` (`python -m tests.docs`) from the records that read these files; do not edit by hand. All are
@@ -42,6 +44,7 @@ def settings_files() -> Sequence[SettingsFile]:
     """Every file, in the order of the page; imported here, since half of them bring torch."""
     from groundstation.services.fly.options import FlightSettings
     from groundstation.services.settings import Settings
+    from planning.parameters import PlanParameters
     from planning.plan import Aircraft, Camera
     from reconstruction.panels.search.parameters import SegmentationParameters
     from reconstruction.scenes.photos.camera_model import Taking
@@ -51,6 +54,7 @@ def settings_files() -> Sequence[SettingsFile]:
     return (
         SettingsFile("The program: settings.toml", "In the user's folder for settings.", Settings),
         SettingsFile("How flights are flown: flight.toml", "Beside `settings.toml`.", FlightSettings),
+        SettingsFile("Planning", "`plan --settings FILE`.", PlanParameters),
         SettingsFile("Aircraft", "`aircraft` in a table of a profile, `plan --profile FILE`.", Aircraft),
         SettingsFile("Camera", "`camera` in a table of a profile, `plan --profile FILE`.", Camera),
         SettingsFile("Search for panels", "`segment --parameters FILE`.", SegmentationParameters),
@@ -71,8 +75,9 @@ def page() -> str:
 def _tables(record: type, known: Any, prefix: str, seen: set[type]) -> list[str]:
     """Table of a record's fields, with the values of one that is `known` as defaults; then of the records in it."""
     seen.add(record)
-    said = _described(record)
-    lines = ["| key | type | default | meaning |", "| --- | --- | --- | --- |"]
+    said, own = _described(record), declared(record)
+    heads = ("key", "type", "default", *(("range", "option") if own else ()), "meaning")
+    lines = [f"| {' | '.join(heads)} |", f"|{' --- |' * len(heads)}"]
     inner: list[tuple[str, Any]] = []
     kinds = get_type_hints(record)
     for field in fields(record):
@@ -81,13 +86,30 @@ def _tables(record: type, known: Any, prefix: str, seen: set[type]) -> list[str]
         default = _default(field) if known is None else getattr(known, field.name)
         if is_dataclass(default) and type(default) not in seen:
             inner.append((field.name, default))
-        meaning = said.get(field.name, "")
-        lines.append(f"| `{prefix}{field.name}` | {_type(kinds[field.name])} | {_shown(default)} | {_cell(meaning)} |")
+        cells = [f"`{prefix}{field.name}`", _type(kinds[field.name]), _shown(default)]
+        if own:
+            cells += _declared_cells(own[field.name].parameter if field.name in own else None, cells[1], default)
+        meaning = own[field.name].parameter.help if field.name in own else said.get(field.name, "")
+        lines.append(f"| {' | '.join([*cells, _cell(meaning)])} |")
     parts = ["\n".join(lines) + "\n"]
     for name, each in inner:
         if type(each) not in seen:
             parts += [f"### {prefix}{name}\n", *_tables(type(each), each, f"{prefix}{name}.", seen)]
     return parts
+
+
+def _declared_cells(known: Parameter | None, kind: str, default: Any) -> list[str]:
+    """Range and option of a declared parameter; what None means stands with the range."""
+    if known is None:
+        return ["", ""]
+    values = known.range_text()
+    if known.choices:
+        values = "" if kind == "true, false" else ", ".join(f"`{choice.value}`" for choice in known.choices)
+    elif known.suggested and isinstance(default, str):
+        values = ", ".join(f"`{each}`" for each in known.suggested)
+    if default is None and known.unset:
+        values = f"{values}; none: {known.unset}" if values else f"none: {known.unset}"
+    return [values, f"`{known.option}`" if known.option else ""]
 
 
 def _described(record: type) -> dict[str, str]:

@@ -103,7 +103,7 @@ def test_the_plan_form_keeps_what_it_cannot_show(plan_form, request_, units):
     assert plan_form.value() == request_
     assert plan_form._request() == request_, "what the boxes say"
     plan_form.set_units(METRIC)
-    plan_form._whole_panel.setChecked(not request_.constraints.whole_panel)
+    plan_form.box("constraints.whole_panel").setChecked(not request_.constraints.whole_panel)
     assert plan_form.problem() == ""
     edited = replace(request_.constraints, whole_panel=not request_.constraints.whole_panel)
     assert plan_form.value() == replace(request_, constraints=edited)
@@ -112,11 +112,11 @@ def test_the_plan_form_keeps_what_it_cannot_show(plan_form, request_, units):
 def test_fifty_batteries_sections_of_45_degrees_and_a_long_seed_survive_an_edit(plan_form):
     request = PlanRequest(n_batteries=50, constraints=Constraints(section_step_deg=45.0), seed=LARGEST_SEED)
     plan_form.setValue(request)
-    plan_form._wind.box().setValue(3.0)
+    plan_form.box("rules.wind_m_s").box().setValue(3.0)
     assert plan_form.value() == replace(request, rules=replace(request.rules, wind_m_s=3.0))
-    assert plan_form._batteries.text() == "50"
-    assert plan_form._step.currentText() == "45°"
-    assert plan_form._seed.text() == "9223372036854775807"
+    assert plan_form.box("n_batteries").text() == "50"
+    assert plan_form.box("constraints.section_step_deg").currentText() == "45°"
+    assert plan_form.box("seed").text() == "9223372036854775807"
 
 
 @given(

@@ -65,31 +65,31 @@ def test_one_edit_changes_one_thing_and_is_announced_once(form):
     form.setValue(request)
     heard = []
     form.valueChanged.connect(heard.append)
-    form._wind.box().setValue(4.0)
+    form.box("rules.wind_m_s").box().setValue(4.0)
     form.valueChanged.disconnect(heard.append)
     assert heard == [replace(request, rules=FlightRules(wind_m_s=4.0))]
 
 
 def test_the_wanted_pixel_is_that_of_camera_and_distance_until_one_is_typed(form):
     form.setValue(PlanRequest())
-    assert form._sharp.value() == pytest.approx(usual_gsd_m(profile("m3e").camera, 10.0))
-    form._distance.box().setValue(60.0)
-    assert form._sharp.value() == pytest.approx(usual_gsd_m(profile("m3e").camera, 60.0))
+    assert form.box("constraints.wanted_gsd_mm").value() == pytest.approx(usual_gsd_m(profile("m3e").camera, 10.0))
+    form.box("constraints.min_distance_m").box().setValue(60.0)
+    assert form.box("constraints.wanted_gsd_mm").value() == pytest.approx(usual_gsd_m(profile("m3e").camera, 60.0))
     assert form.value().constraints.wanted_gsd_mm is None
-    form._sharp.box().setValue(12.5)
+    form.box("constraints.wanted_gsd_mm").box().setValue(12.5)
     assert form.value().constraints.wanted_gsd_mm == pytest.approx(12.5)
-    form._distance.box().setValue(20.0)
+    form.box("constraints.min_distance_m").box().setValue(20.0)
     assert form.value().constraints.wanted_gsd_mm == pytest.approx(12.5)
-    form._sharp.box().setValue(0.0)
+    form.box("constraints.wanted_gsd_mm").box().setValue(0.0)
     assert form.value().constraints.wanted_gsd_mm == 0.0
-    assert form._sharp.box().text() == "any"
+    assert form.box("constraints.wanted_gsd_mm").box().text() == "any"
 
 
 def test_a_request_that_makes_no_sense_is_explained_and_not_announced(form):
     form.setValue(PlanRequest(constraints=Constraints(min_distance_m=20.0, max_distance_m=40.0)))
     heard = []
     form.valueChanged.connect(heard.append)
-    form._distance.box().setValue(60.0)
+    form.box("constraints.min_distance_m").box().setValue(60.0)
     form.valueChanged.disconnect(heard.append)
     assert not heard
     assert "within 40.0 m, but the safety distance is 60.0 m" in form.problem()

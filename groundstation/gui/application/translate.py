@@ -18,6 +18,8 @@ from groundstation.services.sentences import Phrasebook
 from groundstation.services.site.import_wording import in_window_words
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding
+from planning.base.parameters import declared
+from planning.parameters import PlanParameters
 
 
 @cache
@@ -35,8 +37,18 @@ def with_fields(text: str) -> str:
     """A text with labels of fields in place of the command line's options."""
     if "--" not in text:
         return text
-    labels = {option: QCoreApplication.translate(*label) for option, label in OPTION_FIELDS.items()}
-    return in_window_words(text, labels, QCoreApplication.translate("Words", "“{0}”"))
+    return in_window_words(
+        text,
+        {option: QCoreApplication.translate(*label) for option, label in field_labels().items()},
+        QCoreApplication.translate("Words", "“{0}”"),
+    )
+
+
+@cache
+def field_labels() -> dict[str, tuple[str, str]]:
+    """Context and text of each field's label, by the option that says the same."""
+    own = (each.parameter for each in declared(PlanParameters).values() if each.parameter.row)
+    return {**OPTION_FIELDS, **{known.option: ("Parameters", known.label) for known in own}}
 
 
 def finding_in_own_words(finding: Finding, units: UnitSystem) -> Finding:

@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import own_words
 from groundstation.gui.plan.method_names import method_name
-from groundstation.gui.widgets.inputs import (
-    ChoiceBox,
-    Form,
-    LengthBox,
-    NumberBox,
-    PercentBox,
-    QuantityBox,
-    SpeedBox,
-    WholeBox,
-)
+from groundstation.gui.widgets.inputs import ChoiceBox, Form, QuantityBox
+from groundstation.gui.widgets.parameter_form import ParameterRow, add_rows, rows_of, tip_of, title_of
 from groundstation.gui.widgets.questions import choose_file
 from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.aircraft.catalogue import Profile, profile, profiles
 from planning.base.errors import GroundStationError
-from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS, LARGEST_SEED, Constraints
+from planning.base.parameters import declared, with_values
+from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS, Constraints, PlanParameters
 from planning.plan import usual_gsd_m
 from planning.request import PlanRequest
-from planning.viewpoints.methods import METHODS
 
 # Chooses the aircraft and camera of a plan: one that the program knows, or one from a file of the user's own.
 
@@ -94,7 +86,21 @@ def _text(found: Profile) -> str:
 
 COVERAGE, VIEWS, BATTERIES = range(3)
 
-SECTION_STEPS_DEG = (30, 15, 10, 5)
+GOALS = {COVERAGE: "share", VIEWS: "n_views", BATTERIES: "n_batteries"}
+"""What each goal is the value of."""
+
+OWN = ("profile_id", "method", "constraints.wanted_gsd_mm")
+"""Parameters whose boxes depend on more than themselves."""
+
+FIRST = (
+    *("profile_id", "goal", "share", "n_views", "n_batteries", "constraints.min_distance_m", "method"),
+    "time_budget_s",
+)
+FURTHER = (
+    *("rules.wind_m_s", "rules.battery_reserve", "rules.settle_s", "gsd_limit", "gsd", "constraints.wanted_gsd_mm"),
+    *("constraints.section_step_deg", "constraints.whole_panel", "greedy.solid_angle_weights", "precision", "seed"),
+)
+"""Rows in order; any other parameter that is declared with a row comes behind them."""
 
 COARSEST_GSD_M = (0.0001, 0.5)
 """From microscopes to satellites: nobody asks for less or more."""
@@ -126,14 +132,16 @@ class PlanForm(QWidget):
         self._wrong.setVisible(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 8, 8, 8)
-        self._first = self._rows(self._first_rows())
+        self._first = Form()
+        add_rows(self._first, self._placed("first"), FIRST)
         layout.addLayout(self._first)
         self._more = QToolButton()
         self._more.setCheckable(True)
         self._more.setText(self.tr("More settings"))
         layout.addWidget(self._more)
         self._further = QWidget()
-        further = self._rows(self._further_rows())
+        further = Form()
+        add_rows(further, self._placed("more"), FURTHER)
         further.setContentsMargins(0, 0, 0, 0)
         self._further.setLayout(further)
         self._further.setVisible(False)
@@ -144,98 +152,43 @@ class PlanForm(QWidget):
         self._connect()
 
     def _make_boxes(self) -> None:
+        known = declared(PlanParameters)
+        self.rows = rows_of(known, but=OWN)
+        self._method = ParameterRow(known["method"], method_name)
         self.aircraft = AircraftBox()
-        self._method = ChoiceBox()
-        for method in METHODS:
-            self._method.addItem(method_name(method), method)
+        self.aircraft.setToolTip(tip_of(known["profile_id"].parameter))
         self._goal = ChoiceBox()
         self._goal.addItems([self.tr("coverage wanted"), self.tr("number of views"), self.tr("batteries at hand")])
-        self._coverage = PercentBox(0.1, 1.0, 0.005)
-        self._views = WholeBox(1, 20_000)
-        self._batteries = WholeBox(1, 100)
-        self._distance = LengthBox(0.0, 200.0)
-        self._budget = NumberBox(1.0, 3600.0, 5.0, " s")
-        self._wind = SpeedBox(0.0, 20.0)
         self._is_gsd_limited = QCheckBox(self.tr("Limit the pixel size"))
         self._gsd = QuantityBox(sampling_unit, *COARSEST_GSD_M, 0.5)
-        self._sharp = QuantityBox(sampling_unit, 0.0, COARSEST_GSD_M[1], 0.5)
-        self._sharp.box().setSpecialValueText(self.tr("any"))
-        self._sharp.setToolTip(
-            self.tr(
-                "Each direction of view is wanted with pixels up to this size on the panel; those seen only more "
-                "coarsely are counted and named"
-            )
-        )
-        self._step = ChoiceBox()
-        for step in SECTION_STEPS_DEG:
-            self._step.addItem(_degrees(step), float(step))
-        self._whole_panel = QCheckBox(self.tr("Count whole panels only"))
-        self._whole_panel.setToolTip(self.tr("A view counts only when all four corners are in the picture"))
-        self._solid_angle = QCheckBox(self.tr("Weight sections by solid angle"))
-        self._reserve = PercentBox(0.0, 0.9, 0.05, 0)
-        self._settle = NumberBox(0.0, 30.0, 0.5, " s")
-        self._precision = ChoiceBox()
-        self._precision.addItem(self.tr("single (fast)"), "f32")
-        self._precision.addItem(self.tr("double (slower)"), "f64")
-        self._seed = WholeBox(0, LARGEST_SEED)
+        self._sharp = ParameterRow(known["constraints.wanted_gsd_mm"])
+        self.box("constraints.wanted_gsd_mm").box().setSpecialValueText(self.tr("any"))
 
-    def _first_rows(self) -> tuple[tuple[str, QWidget], ...]:
-        return (
-            (self.tr("Aircraft"), self.aircraft),
-            (self.tr("Plan for"), self._goal),
-            (self.tr("Coverage"), self._coverage),
-            (self.tr("Views"), self._views),
-            (self.tr("Batteries"), self._batteries),
-            (self.tr("Safety distance"), self._distance),
-            (self.tr("Method"), self._method),
-            (self.tr("Time to plan"), self._budget),
-        )
+    def box(self, name: str) -> Any:
+        """The box of a parameter, by its name as settings files have it."""
+        own = {"method": self._method, "constraints.wanted_gsd_mm": self._sharp}
+        return (own.get(name) or self.rows[name]).widget
 
-    def _further_rows(self) -> tuple[tuple[str, QWidget], ...]:
-        return (
-            (self.tr("Wind"), self._wind),
-            (self.tr("Battery reserve"), self._reserve),
-            (self.tr("Hover before photo"), self._settle),
-            ("", self._is_gsd_limited),
-            (self.tr("Coarsest pixel"), self._gsd),
-            (self.tr("Wanted pixel"), self._sharp),
-            (self.tr("Section step"), self._step),
-            ("", self._whole_panel),
-            ("", self._solid_angle),
-            (self.tr("Precision"), self._precision),
-            (self.tr("Seed"), self._seed),
-        )
-
-    def _rows(self, rows: tuple[tuple[str, QWidget], ...]) -> Form:
-        layout = Form()
-        for label, widget in rows:
-            if label:
-                layout.addRow(label, widget)
-            else:
-                layout.addRow(widget)
-        return layout
+    def _placed(self, where: str) -> dict[str, ParameterRow | tuple[str, QWidget]]:
+        """Rows that stand at once, or further below."""
+        rows: dict[str, ParameterRow | tuple[str, QWidget]] = {
+            name: row for name, row in self.rows.items() if row.declared.parameter.row == where
+        }
+        if where == "first":
+            title = title_of(declared(PlanParameters)["profile_id"].parameter)
+            own = {"profile_id": (title, self.aircraft), "goal": (self.tr("Plan for"), self._goal)}
+            return {**rows, **own, "method": self._method}
+        own = {"gsd_limit": ("", self._is_gsd_limited), "gsd": (self.tr("Coarsest pixel"), self._gsd)}
+        return {**rows, **own, "constraints.wanted_gsd_mm": self._sharp}
 
     def _connect(self) -> None:
-        for box in (self._method, self._goal, self._step, self._precision):
-            box.currentIndexChanged.connect(self._edited)
+        self._goal.currentIndexChanged.connect(self._edited)
+        self._is_gsd_limited.toggled.connect(self._edited)
+        self._gsd.valueChanged.connect(self._edited)
         self.aircraft.valueChanged.connect(self._edited)
         self.aircraft.refused.connect(lambda text: self._say_wrong(own_words(text, self._units)))
-        for spin in (
-            self._coverage,
-            self._views,
-            self._batteries,
-            self._distance,
-            self._budget,
-            self._wind,
-            self._gsd,
-            self._sharp,
-            self._reserve,
-            self._settle,
-            self._seed,
-        ):
-            spin.valueChanged.connect(self._edited)
-        for check in (self._is_gsd_limited, self._whole_panel, self._solid_angle):
-            check.toggled.connect(self._edited)
+        for row in (*self.rows.values(), self._method, self._sharp):
+            row.valueChanged.connect(self._edited)
 
     def value(self) -> PlanRequest:
         """The last request that made sense."""
@@ -246,24 +199,14 @@ class PlanForm(QWidget):
         blockers = [QSignalBlocker(box) for box in self.findChildren(QWidget)]
         self._value = request
         wrong = self._show_aircraft(request)
-        self._method.show_value(request.method, method_name(request.method))
+        self._method.setValue(request.method)
         goal = VIEWS if request.n_views is not None else BATTERIES if request.n_batteries is not None else COVERAGE
         self._goal.setCurrentIndex(goal)
-        self._coverage.setValue(DEFAULT_SHARE if request.share is None else request.share)
-        self._views.setValue(DEFAULT_VIEWS if request.n_views is None else request.n_views)
-        self._batteries.setValue(1 if request.n_batteries is None else request.n_batteries)
-        constraints, rules = request.constraints, request.rules
-        self._distance.setValue(constraints.min_distance_m)
-        self._step.show_value(constraints.section_step_deg, _degrees(constraints.section_step_deg))
-        self._whole_panel.setChecked(constraints.whole_panel)
-        self._is_gsd_limited.setChecked(constraints.max_distance_m is not None)
-        self._wind.setValue(rules.wind_m_s)
-        self._reserve.setValue(rules.battery_reserve)
-        self._settle.setValue(rules.settle_s)
-        self._solid_angle.setChecked(request.greedy.solid_angle_weights)
-        self._precision.show_value(request.precision)
-        self._seed.setValue(request.seed)
-        self._budget.setValue(request.time_budget_s)
+        usual = {"share": DEFAULT_SHARE, "n_views": DEFAULT_VIEWS, "n_batteries": 1}
+        for name, row in self.rows.items():
+            value = row.declared.value_in(request)
+            row.setValue(usual.get(name) if value is None else value)
+        self._is_gsd_limited.setChecked(request.constraints.max_distance_m is not None)
         del blockers
         self._say_wrong(wrong)
         self._show_goal()
@@ -285,9 +228,9 @@ class PlanForm(QWidget):
         """Show the pixel wanted; where none is, the one that camera and safety distance make of that."""
         wanted_mm = constraints.wanted_gsd_mm
         camera, near_m = profile(self.aircraft.value()).camera, constraints.min_distance_m
-        with QSignalBlocker(self._sharp):
-            self._sharp.setValue(usual_gsd_m(camera, near_m) if wanted_mm is None else wanted_mm / 1000.0)
-        self._shown_sharp_m = self._sharp.value()
+        with QSignalBlocker(self._sharp.widget):
+            self._sharp.setValue(1000.0 * usual_gsd_m(camera, near_m) if wanted_mm is None else wanted_mm)
+        self._shown_sharp_mm = self._sharp.value()
 
     def problem(self) -> str:
         """Why what stands in the boxes makes no sense; empty where it does.
@@ -295,54 +238,43 @@ class PlanForm(QWidget):
         Boxes have limits; only pixels that small can be asked for that they are not to be had so far away.
         """
         furthest_m, unit = self._furthest_m(), length_unit(self._units)
-        if furthest_m is None or furthest_m > self._distance.value():
+        nearest_m = self.rows["constraints.min_distance_m"].value()
+        if furthest_m is None or furthest_m > nearest_m:
             return ""
         return self.tr(
             "Pixels of {0} need views within {1}, but the safety distance is {2}: allow coarser pixels, or come nearer."
         ).format(
             sampling_unit(self._units).text(self._gsd.value()),
             unit.text(furthest_m),
-            unit.text(self._distance.value()),
+            unit.text(nearest_m),
         )
 
     def set_units(self, system: UnitSystem) -> None:
         """Show lengths and speeds in other units."""
         self._units = system
-        for box in (self._distance, self._wind, self._gsd, self._sharp):
-            box.set_units(system)
+        self._gsd.set_units(system)
+        for row in (*self.rows.values(), self._sharp):
+            row.set_units(system)
 
     def _request(self) -> PlanRequest:
         """What the boxes say."""
         goal, before = self._goal.currentIndex(), self._value
-        share = self._coverage.value()
+        values = {row.declared.path: row.value() for row in self.rows.values()}
         has_goal = any(value is not None for value in (before.share, before.n_views, before.n_batteries))
-        profile_id = self.aircraft.value()
-        return replace(
+        # What was asked for without a goal is still so while the one that is offered stands.
+        is_offered = goal == COVERAGE and not has_goal and values["share",] == DEFAULT_SHARE
+        for number, name in GOALS.items():
+            if number != goal or is_offered:
+                values[name,] = None
+        return with_values(
             before,
-            profile_id=profile_id,
-            method=str(self._method.currentData()),
-            # What was asked for without a goal is still so while the one that is offered stands.
-            share=share if goal == COVERAGE and (has_goal or share != DEFAULT_SHARE) else None,
-            n_views=self._views.value() if goal == VIEWS else None,
-            n_batteries=self._batteries.value() if goal == BATTERIES else None,
-            constraints=replace(
-                before.constraints,
-                min_distance_m=self._distance.value(),
-                section_step_deg=float(self._step.currentData()),
-                whole_panel=self._whole_panel.isChecked(),
-                max_distance_m=self._furthest_m(),
-                wanted_gsd_mm=self._wanted_gsd_mm(),
-            ),
-            rules=replace(
-                before.rules,
-                wind_m_s=self._wind.value(),
-                battery_reserve=self._reserve.value(),
-                settle_s=self._settle.value(),
-            ),
-            greedy=replace(before.greedy, solid_angle_weights=self._solid_angle.isChecked()),
-            precision=self._precision.currentData(),
-            seed=self._seed.value(),
-            time_budget_s=self._budget.value(),
+            {
+                **values,
+                ("profile_id",): self.aircraft.value(),
+                ("method",): self._method.value(),
+                ("constraints", "max_distance_m"): self._furthest_m(),
+                ("constraints", "wanted_gsd_mm"): self._wanted_gsd_mm(),
+            },
         )
 
     def _furthest_m(self) -> float | None:
@@ -354,9 +286,8 @@ class PlanForm(QWidget):
         return profile(self.aircraft.value()).camera.distance_for_gsd_m(self._gsd.value())
 
     def _wanted_gsd_mm(self) -> float | None:
-        if self._sharp.value() == self._shown_sharp_m:
-            return self._value.constraints.wanted_gsd_mm
-        return round(1000.0 * self._sharp.value(), 6)
+        shown_mm: float = self._sharp.value()
+        return self._value.constraints.wanted_gsd_mm if shown_mm == self._shown_sharp_mm else shown_mm
 
     def _edited(self) -> None:
         self._show_goal()
@@ -375,10 +306,6 @@ class PlanForm(QWidget):
 
     def _show_goal(self) -> None:
         """Only the goal chosen is shown, and only what its limit needs."""
-        for goal, widget in ((COVERAGE, self._coverage), (VIEWS, self._views), (BATTERIES, self._batteries)):
-            self._first.setRowVisible(widget, self._goal.currentIndex() == goal)
+        for goal, name in GOALS.items():
+            self._first.setRowVisible(self.box(name), self._goal.currentIndex() == goal)
         self._gsd.setEnabled(self._is_gsd_limited.isChecked())
-
-
-def _degrees(step_deg: float) -> str:
-    return f"{step_deg:.4g}°"

@@ -163,15 +163,5 @@ OPTION_FIELDS = {
     "--up": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Axis that points up")),
     "--at": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Planned for")),
     "--temperature": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Temperature")),
-    "--batteries": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Batteries")),
-    "--coverage": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Coverage")),
-    "--min-distance": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Safety distance")),
-    "--profile": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Aircraft")),
-    "--reserve": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Battery reserve")),
-    "--seed": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Seed")),
-    "--step": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Section step")),
-    "--time-budget": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Time to plan")),
-    "--views": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Views")),
-    "--wind": ("PlanForm", QT_TRANSLATE_NOOP("PlanForm", "Wind")),
 }
-"""Fields of the window by the option that says the same: context and text of their label, for Qt Linguist."""
+"""Fields by the option that says the same, but for declared parameters: context and text of their label."""

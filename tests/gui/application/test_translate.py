@@ -11,9 +11,9 @@ import pytest
 from PySide6.QtCore import QTranslator
 
 from groundstation.gui.application.languages import FOLDER
-from groundstation.gui.application.translate import own_words, phrasebook
+from groundstation.gui.application.translate import field_labels, own_words, phrasebook
 from groundstation.gui.sentences import sentence_tables
-from groundstation.gui.sentences.window import IN_WINDOW, OPTION_FIELDS
+from groundstation.gui.sentences.window import IN_WINDOW
 from groundstation.services.sentences import Template
 from groundstation.services.site.findings import site_findings
 from groundstation.services.site.import_wording import in_window_words
@@ -156,6 +156,7 @@ NO_SENTENCE = {
     ),
     "said on the command line only": (
         *("a minute; shows that everything works, and nothing else", "which views count"),
+        "how much (one of the first three)",
         *("expected a folder of pictures, found a file", "expected a folder of pictures, found nothing"),
         *("{0} and {1} have one name; keep one of them", "expected pictures ({0}) in this folder, found none"),
         *("{0}; what was flown before is in {1}", "sortie {0}: ", ", asked for"),
@@ -226,7 +227,7 @@ def refusals():
     """What is said of values out of the ranges of parameters, without the names that stand before it."""
     found = set()
     for name, each in declared(PlanRequest).items():
-        wrong = next((value for value in (-1, math.nan, "?") if not each.parameter.holds(value)), None)
+        wrong = next((value for value in ("?", -1, math.nan) if not each.parameter.holds(value)), None)
         if wrong is not None:
             with pytest.raises(ValueError, match=r"expected .*, got ") as caught:
                 each.parameter.check(name.rpartition(".")[2], wrong)
@@ -274,7 +275,7 @@ def as_in_the_window(template, text, values):
     """A sentence with the window's own buttons and fields in place of commands and options."""
     if template in IN_WINDOW:
         return filled(IN_WINDOW[template], values)
-    return in_window_words(text, {option: label for option, (_, label) in OPTION_FIELDS.items()})
+    return in_window_words(text, {option: label for option, (_, label) in field_labels().items()})
 
 
 COMMANDS = {path.stem.rstrip("_") for path in COMMAND_FOLDER.glob("[a-z]*.py")} | {"reflight", "app.py"}

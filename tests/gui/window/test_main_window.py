@@ -192,7 +192,7 @@ def test_theme_units_and_language_change_at_once_and_are_kept(application, contr
     assert controller.window.grab().toImage().pixelColor(5, 5).lightness() < light / 2
     controller.window.show_tab("plan")
     controller.choose(units=UnitSystem.IMPERIAL)
-    assert controller.window.tab("plan").form._distance.box().text() == "32.8 ft"
+    assert controller.window.tab("plan").form.box("constraints.min_distance_m").box().text() == "32.8 ft"
     turn_until_idle(application, controller)
     controller.choose(language=Language.GERMAN)
     turn_until(application, lambda: controller.window.stage.scene() is not None)

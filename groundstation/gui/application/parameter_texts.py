@@ -1,0 +1,53 @@
+"""Titles and tool tips of declared parameters, for Qt Linguist.
+
+Written by `make docs` (`python -m tests.docs`); do not edit by hand.
+"""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QT_TRANSLATE_NOOP
+
+TEXTS = (
+    QT_TRANSLATE_NOOP("Parameters", "Method"),
+    QT_TRANSLATE_NOOP("Parameters", "how views are chosen"),
+    QT_TRANSLATE_NOOP("Parameters", "Views"),
+    QT_TRANSLATE_NOOP("Parameters", "number of views"),
+    QT_TRANSLATE_NOOP("Parameters", "Coverage"),
+    QT_TRANSLATE_NOOP("Parameters", "share of what can be covered, 0 to 1, with as few views as possible"),
+    QT_TRANSLATE_NOOP("Parameters", "Batteries"),
+    QT_TRANSLATE_NOOP("Parameters", "number of sorties: as much as can be covered within them"),
+    QT_TRANSLATE_NOOP("Parameters", "Aircraft"),
+    QT_TRANSLATE_NOOP("Parameters", "aircraft and camera, or a .toml file with your own"),
+    QT_TRANSLATE_NOOP("Parameters", "Safety distance"),
+    QT_TRANSLATE_NOOP("Parameters", "of every view and path to everything solid"),
+    QT_TRANSLATE_NOOP("Parameters", "Section step"),
+    QT_TRANSLATE_NOOP("Parameters", "width of the hemisphere sections"),
+    QT_TRANSLATE_NOOP("Parameters", "Count whole panels only"),
+    QT_TRANSLATE_NOOP(
+        "Parameters", "a view counts only when all four corners of a panel are in the picture, not just its middle"
+    ),
+    QT_TRANSLATE_NOOP("Parameters", "Wanted pixel"),
+    QT_TRANSLATE_NOOP(
+        "Parameters",
+        "each direction of view is wanted with pixels up to this size on the panel; those seen only more coarsely are"
+        " counted and named",
+    ),
+    QT_TRANSLATE_NOOP("Parameters", "Battery reserve"),
+    QT_TRANSLATE_NOOP("Parameters", "part of the battery that is left at landing"),
+    QT_TRANSLATE_NOOP("Parameters", "Hover before photo"),
+    QT_TRANSLATE_NOOP("Parameters", "hover between the end of all turning and the shutter"),
+    QT_TRANSLATE_NOOP("Parameters", "Wind"),
+    QT_TRANSLATE_NOOP("Parameters", "steady wind that is expected, from the worst direction"),
+    QT_TRANSLATE_NOOP("Parameters", "Weight sections by solid angle"),
+    QT_TRANSLATE_NOOP("Parameters", "weight hemisphere sections by their solid angle instead of equally"),
+    QT_TRANSLATE_NOOP("Parameters", "Precision"),
+    QT_TRANSLATE_NOOP("Parameters", "of the coverage kernel"),
+    QT_TRANSLATE_NOOP("Parameters", "single (fast)"),
+    QT_TRANSLATE_NOOP("Parameters", "double (slower)"),
+    QT_TRANSLATE_NOOP("Parameters", "Seed"),
+    QT_TRANSLATE_NOOP("Parameters", "of everything random"),
+    QT_TRANSLATE_NOOP("Parameters", "Time to plan"),
+    QT_TRANSLATE_NOOP(
+        "Parameters", "longest wall time for the whole plan; the search ends earlier when it finds nothing more"
+    ),
+)
