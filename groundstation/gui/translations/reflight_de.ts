@@ -3458,6 +3458,145 @@ Blickrichtung: {3}</translation>
     </message>
 </context>
 <context>
+    <name>Parameters</name>
+    <message>
+        <source>Method</source>
+        <translation>Verfahren</translation>
+    </message>
+    <message>
+        <source>how views are chosen</source>
+        <translation>wie Ansichten gewählt werden</translation>
+    </message>
+    <message>
+        <source>Views</source>
+        <translation>Aufnahmen</translation>
+    </message>
+    <message>
+        <source>number of views</source>
+        <translation>Zahl der Ansichten</translation>
+    </message>
+    <message>
+        <source>Coverage</source>
+        <translation>Abdeckung</translation>
+    </message>
+    <message>
+        <source>share of what can be covered, 0 to 1, with as few views as possible</source>
+        <translation>Anteil dessen, was abgedeckt werden kann, 0 bis 1, mit möglichst wenigen Ansichten</translation>
+    </message>
+    <message>
+        <source>Batteries</source>
+        <translation>Akkus</translation>
+    </message>
+    <message>
+        <source>number of sorties: as much as can be covered within them</source>
+        <translation>Zahl der Flüge: so viel, wie in ihnen abgedeckt werden kann</translation>
+    </message>
+    <message>
+        <source>Aircraft</source>
+        <translation>Fluggerät</translation>
+    </message>
+    <message>
+        <source>aircraft and camera, or a .toml file with your own</source>
+        <translation>Fluggerät und Kamera, oder eine .toml-Datei mit eigenen</translation>
+    </message>
+    <message>
+        <source>Safety distance</source>
+        <translation>Mindestabstand</translation>
+    </message>
+    <message>
+        <source>of every view and path to everything solid</source>
+        <translation>jeder Ansicht und jedes Wegs zu allem Festen</translation>
+    </message>
+    <message>
+        <source>Section step</source>
+        <translation>Sektorweite</translation>
+    </message>
+    <message>
+        <source>width of the hemisphere sections</source>
+        <translation>Breite der Abschnitte der Halbkugeln</translation>
+    </message>
+    <message>
+        <source>Count whole panels only</source>
+        <translation>Nur ganze Scheiben</translation>
+    </message>
+    <message>
+        <source>a view counts only when all four corners of a panel are in the picture, not just its middle</source>
+        <translation>eine Ansicht zählt nur, wenn alle vier Ecken einer Scheibe im Bild sind, nicht nur ihre Mitte</translation>
+    </message>
+    <message>
+        <source>Wanted pixel</source>
+        <translation>Gewünschtes Pixel</translation>
+    </message>
+    <message>
+        <source>each direction of view is wanted with pixels up to this size on the panel; those seen only more coarsely are counted and named</source>
+        <translation>jede Blickrichtung ist mit Pixeln bis zu dieser Größe auf der Scheibe gewünscht; gröber gesehene werden gezählt und genannt</translation>
+    </message>
+    <message>
+        <source>Battery reserve</source>
+        <translation>Akkureserve</translation>
+    </message>
+    <message>
+        <source>part of the battery that is left at landing</source>
+        <translation>Teil des Akkus, der bei der Landung übrig ist</translation>
+    </message>
+    <message>
+        <source>Hover before photo</source>
+        <translation>Halt vor Foto</translation>
+    </message>
+    <message>
+        <source>hover between the end of all turning and the shutter</source>
+        <translation>Schweben zwischen dem Ende aller Drehungen und dem Auslösen</translation>
+    </message>
+    <message>
+        <source>Wind</source>
+        <translation>Wind</translation>
+    </message>
+    <message>
+        <source>steady wind that is expected, from the worst direction</source>
+        <translation>erwarteter gleichmäßiger Wind, aus der ungünstigsten Richtung</translation>
+    </message>
+    <message>
+        <source>Weight sections by solid angle</source>
+        <translation>Raumwinkel gewichten</translation>
+    </message>
+    <message>
+        <source>weight hemisphere sections by their solid angle instead of equally</source>
+        <translation>Abschnitte der Halbkugeln nach ihrem Raumwinkel gewichten statt alle gleich</translation>
+    </message>
+    <message>
+        <source>Precision</source>
+        <translation>Genauigkeit</translation>
+    </message>
+    <message>
+        <source>of the coverage kernel</source>
+        <translation>der Abdeckungsrechnung</translation>
+    </message>
+    <message>
+        <source>single (fast)</source>
+        <translation>einfach (schnell)</translation>
+    </message>
+    <message>
+        <source>double (slower)</source>
+        <translation>doppelt (langsamer)</translation>
+    </message>
+    <message>
+        <source>Seed</source>
+        <translation>Startwert</translation>
+    </message>
+    <message>
+        <source>of everything random</source>
+        <translation>von allem Zufälligen</translation>
+    </message>
+    <message>
+        <source>Time to plan</source>
+        <translation>Planungszeit</translation>
+    </message>
+    <message>
+        <source>longest wall time for the whole plan; the search ends earlier when it finds nothing more</source>
+        <translation>längste Zeit für den ganzen Plan; die Suche endet früher, wenn sie nichts mehr findet</translation>
+    </message>
+</context>
+<context>
     <name>PassphraseDialog</name>
     <message>
         <source>Set the signing passphrase</source>
@@ -3907,7 +4046,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>number of views</source>
-        <translation>Aufnahmen</translation>
+        <translation>Zahl der Ansichten</translation>
     </message>
     <message>
         <source>batteries at hand</source>
@@ -3922,92 +4061,12 @@ Blickrichtung: {3}</translation>
         <translation>beliebig</translation>
     </message>
     <message>
-        <source>Each direction of view is wanted with pixels up to this size on the panel; those seen only more coarsely are counted and named</source>
-        <translation>Jede Blickrichtung ist mit Pixeln bis zu dieser Größe auf der Scheibe gewünscht; die nur gröber gesehenen werden gezählt und genannt</translation>
-    </message>
-    <message>
-        <source>Count whole panels only</source>
-        <translation>Nur ganze Scheiben</translation>
-    </message>
-    <message>
-        <source>A view counts only when all four corners are in the picture</source>
-        <translation>Eine Aufnahme zählt nur, wenn alle vier Ecken im Bild sind</translation>
-    </message>
-    <message>
-        <source>Weight sections by solid angle</source>
-        <translation>Raumwinkel gewichten</translation>
-    </message>
-    <message>
-        <source>single (fast)</source>
-        <translation>einfach (schnell)</translation>
-    </message>
-    <message>
-        <source>double (slower)</source>
-        <translation>doppelt (langsamer)</translation>
-    </message>
-    <message>
-        <source>Aircraft</source>
-        <translation>Fluggerät</translation>
-    </message>
-    <message>
         <source>Plan for</source>
         <translation>Ziel</translation>
     </message>
     <message>
-        <source>Coverage</source>
-        <translation>Abdeckung</translation>
-    </message>
-    <message>
-        <source>Views</source>
-        <translation>Aufnahmen</translation>
-    </message>
-    <message>
-        <source>Batteries</source>
-        <translation>Akkus</translation>
-    </message>
-    <message>
-        <source>Safety distance</source>
-        <translation>Mindestabstand</translation>
-    </message>
-    <message>
-        <source>Method</source>
-        <translation>Verfahren</translation>
-    </message>
-    <message>
-        <source>Time to plan</source>
-        <translation>Planungszeit</translation>
-    </message>
-    <message>
-        <source>Wind</source>
-        <translation>Wind</translation>
-    </message>
-    <message>
-        <source>Battery reserve</source>
-        <translation>Akkureserve</translation>
-    </message>
-    <message>
-        <source>Hover before photo</source>
-        <translation>Halt vor Foto</translation>
-    </message>
-    <message>
         <source>Coarsest pixel</source>
         <translation>Gröbstes Pixel</translation>
-    </message>
-    <message>
-        <source>Wanted pixel</source>
-        <translation>Gewünschtes Pixel</translation>
-    </message>
-    <message>
-        <source>Section step</source>
-        <translation>Sektorweite</translation>
-    </message>
-    <message>
-        <source>Precision</source>
-        <translation>Genauigkeit</translation>
-    </message>
-    <message>
-        <source>Seed</source>
-        <translation>Startwert</translation>
     </message>
     <message>
         <source>Pixels of {0} need views within {1}, but the safety distance is {2}: allow coarser pixels, or come nearer.</source>
