@@ -14,21 +14,45 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from groundstation import __version__
 from groundstation.cli import commands
 from groundstation.cli.console import program_name
 from groundstation.cli.options import new_folder
-from planning.base.errors import GroundStationError, OperationCancelled, shortened
+from planning.base.errors import GroundStationError, OperationCancelled, PluginError, shortened
+from planning.base.plugins import PluginGroup, blamed, untold_problems
 
 EXIT_DONE, EXIT_FAILED, EXIT_USAGE = 0, 1, 2
 
 
 class _Parser(argparse.ArgumentParser):
+    more_help: Callable[[], str] | None = None
+    """Makes the end of the help, where that takes time or depends on what is installed."""
+
+    def format_help(self) -> str:
+        text = super().format_help()
+        return text if self.more_help is None else text + self.more_help()
+
     def error(self, message: str) -> NoReturn:
         self.print_usage(sys.stderr)
         self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")
+
+
+class _Plugins(argparse.Action):
+    """Lists the plug-ins; each is tried."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from groundstation.services.plugins import plugin_rows
+
+        rows = plugin_rows()
+        for row in rows:
+            group = row.plugin.group.removeprefix("reflight.").replace("_", " ")
+            standing = "" if row.problem is None else ", left out"
+            print(f"{group:<17} {row.plugin.name:<20} {row.plugin.package}{standing}")
+        if not rows:
+            print(f"no plug-ins are installed (entry points of {', '.join(PluginGroup)})")
+        parser.exit()
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +92,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--version", action="version", version=f"Reflight {__version__}", help="show the version and exit"
     )
+    parser.add_argument("--plugins", action=_Plugins, nargs=0, help="list what plug-ins add, and exit")
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     window = parser.add_argument_group("the window")
     window.add_argument("--open", type=Path, metavar="PATH", help="project folder or site file to begin with")
@@ -106,7 +131,19 @@ def _make_streams_safe() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
+def _tell_of_plugins() -> None:
+    for problem in untold_problems():
+        print(f"warning: {_in_one_line(GroundStationError(str(problem)))}", file=sys.stderr)
+
+
 def _run(arguments: Sequence[str], open_window: OpenWindow) -> int:
+    try:
+        return _outcome(arguments, open_window)
+    finally:
+        _tell_of_plugins()
+
+
+def _outcome(arguments: Sequence[str], open_window: OpenWindow) -> int:
     debug = "--debug" in arguments
     try:
         parser = build_parser()
@@ -132,12 +169,15 @@ def _run(arguments: Sequence[str], open_window: OpenWindow) -> int:
     except Exception as error:
         if debug:
             raise
-        _report(error)
+        _report(blamed(error))
     return EXIT_FAILED
 
 
-def _report(error: Exception) -> None:
-    """Say that the program is at fault, and where the traceback is."""
+def _report(error: BaseException) -> None:
+    """Say that the program is at fault, or a plug-in, and where the traceback is."""
+    if isinstance(error, PluginError):
+        print(f"error: {_in_one_line(error)}", file=sys.stderr)
+        return
     with tempfile.NamedTemporaryFile("w", suffix=".txt", prefix="reflight-", delete=False) as report:
         traceback.print_exc(file=report)
     print(
@@ -147,7 +187,7 @@ def _report(error: Exception) -> None:
     )
 
 
-def _in_one_line(error: Exception) -> str:
+def _in_one_line(error: BaseException) -> str:
     """Message without line ends, and without the control characters that a damaged file can bring into it."""
     text = str(error)
     if isinstance(error, OSError) and error.strerror:

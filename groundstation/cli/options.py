@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from planning.base.errors import InputError
 from planning.base.folders import PLAIN_ENDINGS, check_ending, check_folder_name
 from planning.base.parameters import Declared, declared
+from planning.base.plugins import Plugin, PluginGroup, installed_plugins
 from planning.parameters import DEFAULT_PROFILE, LARGEST_SEED, PlanParameters
 
 if TYPE_CHECKING:
@@ -145,6 +146,38 @@ def add_profile_argument(parser: Any, *, has_default: bool = True) -> None:
         action=_Profile,
         help=f"{each.parameter.help}; '{each.parameter.option} list' shows all (default {DEFAULT_PROFILE})",
     )
+
+
+class PluginNames(Collection[str]):
+    """Names that an option takes: those of this program, and those of plug-ins, which are looked for only when asked.
+
+    Parameters
+    ----------
+    own
+        Of this program.
+    groups
+        Of the plug-ins.
+    """
+
+    def __init__(self, own: Iterable[str], *groups: PluginGroup) -> None:
+        self._own, self._groups = tuple(own), groups
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._own or any(plugin.name == name for plugin in self._plugins())
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*self._own, *(plugin.name for plugin in self._plugins())))
+
+    def __len__(self) -> int:
+        return len(self._own) + len(self._plugins())
+
+    def _plugins(self) -> list[Plugin]:
+        return [plugin for group in self._groups for plugin in installed_plugins(group)]
+
+    def help_on_plugins(self) -> str:
+        """Lines for the end of a help; empty where there are no plug-ins."""
+        lines = [f"  {plugin.name:<13} {plugin.package}\n" for plugin in self._plugins()]
+        return "".join(("\nfrom plug-ins:\n", *lines)) if lines else ""
 
 
 class _Profile(argparse.Action):

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.lists import above_zero, count
+from groundstation.cli.options import PluginNames
 from planning.base.errors import InputError
+from planning.base.plugins import PluginGroup
 from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 from reconstruction.training.names import PRESETS
 
@@ -41,7 +43,12 @@ def add_arguments(parser: Any) -> None:
     add = parser.add_argument
     add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
     add("--preset", choices=tuple(PRESETS), default="10min", help="settings to start from (default 10min)")
-    add("--method", choices=tuple(METHODS), help=f"method to start from (default {DEFAULT_METHOD})")
+    add(
+        "--method",
+        choices=PluginNames(METHODS, PluginGroup.TRAINING_METHODS),
+        metavar="METHOD",
+        help=f"method to start from (default {DEFAULT_METHOD})",
+    )
     add("--seconds", type=above_zero, metavar="S", help=f"of each training (default {DEFAULT_SECONDS:g})")
     add("--iterations", type=count, metavar="N", help="of each training, whatever time they take, instead of --seconds")
     add("--seed", type=int, default=0, metavar="N", help="of everything random (default 0)")

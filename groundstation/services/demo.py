@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from groundstation.services.fly.flying import FlightRequest, Flown, fly_files
-from groundstation.services.mission.export import SUFFIXES, export_plan
+from groundstation.services.mission.export import export_plan
 from groundstation.services.mission.preflight import preflight
 from groundstation.services.plan.planning import plan_site
+from missions.formats.registry import FORMATS
 from planning.base.errors import InputError
 from planning.base.findings import Finding, is_flyable
 from planning.base.progress import QUIET, Monitor
@@ -56,9 +57,9 @@ def demonstrate(
     findings = preflight(read_plan(plan_path), read_site(site_path), monitor=monitor).findings
     missions: list[Path] = []
     export_findings: list[Finding] = []
-    for file_format, (suffix, *_) in SUFFIXES.items():
+    for file_format, kind in FORMATS.items():
         monitor.report("exporting", len(missions), 0)
-        paths, found = export_plan(plan_path, file_format, folder / f"{scene}{suffix}", site_path)
+        paths, found = export_plan(plan_path, file_format, folder / f"{scene}{kind.endings[0]}", site_path)
         missions += paths
         export_findings += found
     flight_path = flown = None

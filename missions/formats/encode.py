@@ -1,19 +1,17 @@
-"""Plans as the contents of mission files, with everything the checks of their format found on them."""
+"""Sorties as the contents of DJI and MAVLink files, with everything the checks of their format found on them."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from missions.dji.write import LinkLoss
 from missions.mavlink.autopilots import Autopilot
-from missions.mission.build import missions_from_plan
 from missions.mission.model import FileFormat, HeightReference, Mission
 from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
-from planning.geo.frames import Origin, Vec3
 from planning.plan import Plan
 from planning.routing.rally import CLEARANCE_M, clear_height_z_m, return_height
 from planning.site.free_space import unchecked_space
@@ -57,55 +55,8 @@ class EncodedFiles:
 DEFAULT_OPTIONS = ExportOptions()
 
 
-def encode(
-    plan: Plan,
-    origin: Origin | None,
-    home_enu_m: Vec3 | None,
-    file_format: FileFormat,
-    options: ExportOptions = DEFAULT_OPTIONS,
-) -> EncodedFiles:
-    """Contents that `export` writes, with all findings instead of a refusal at the first.
-
-    Raises
-    ------
-    InputError, MissionError
-        As `export`, where there is nothing to check.
-    """
-    missions = missions_from_plan(plan, origin, home_enu_m)
-    encoded = _encoded(plan, missions, file_format, options)
-    return replace(encoded, findings=(*_on_passing(plan, missions), *encoded.findings))
-
-
-def _on_passing(plan: Plan, missions: Sequence[Mission]) -> Iterator[Finding]:
-    """An imported mission that takes photos in passing is another one when it is written: it stops for each."""
-    for sortie, mission in zip(plan.sorties, missions, strict=True):
-        n = len(sortie.in_passing_ids)
-        if n:
-            text = (
-                f"{n} photos that the imported mission takes in passing are stops in these files, so the sortie takes "
-                f"{mission.duration_s:.0f} s instead of {sortie.duration_s:.0f} s"
-            )
-            place = f"sortie {mission.number}"
-            yield Finding(Severity.WARNING, "in-passing", text, place, mission.duration_s, sortie.duration_s, "s")
-
-
-def _encoded(plan: Plan, missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
-    match file_format:
-        case FileFormat.DJI_KMZ:
-            return _encode_dji(plan, missions, options)
-        case FileFormat.MAVLINK_PLAN | FileFormat.MAVLINK_WPL:
-            return _encode_mavlink(missions, file_format, options)
-        case FileFormat.KML:
-            from missions.formats.kml_view import kml_bytes
-
-            return EncodedFiles((kml_bytes(missions),), ())
-        case FileFormat.CSV:
-            from missions.formats.csv_table import csv_bytes
-
-            return EncodedFiles((csv_bytes(missions),), ())
-
-
-def _encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
+def encode_dji(plan: Plan, missions: Sequence[Mission], options: ExportOptions) -> EncodedFiles:
+    """A DJI KMZ for each sortie."""
     from missions.dji.check import check_dji
     from missions.dji.container import parts_of_kmz
     from missions.dji.write import DjiOptions, kmz_bytes
@@ -234,7 +185,8 @@ def default_autopilot(profile_id: str) -> Autopilot:
     return Autopilot.PX4 if profile_id == Autopilot.PX4 else Autopilot.ARDUPILOT
 
 
-def _encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
+def encode_mavlink(missions: Sequence[Mission], file_format: FileFormat, options: ExportOptions) -> EncodedFiles:
+    """A `.plan` or a `.waypoints` file for each sortie."""
     from missions.mavlink.areas import rally_points
     from missions.mavlink.check import check_items
     from missions.mavlink.fence import fence_polygons

@@ -1,22 +1,26 @@
 """Every mission format behind one door: plans out, missions in.
 
 Writing checks what it wrote with the format's own checks and refuses to leave a file that an aircraft would refuse.
-Reading looks at the content, never only at the name of a file.
+Reading looks at the content, never only at the name of a file. Plug-ins add formats: an entry point of the group
+`reflight.mission_formats` stands for a `MissionFormat`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
-from missions.formats.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, encode
-from missions.mission.model import FileFormat, ReadMission
+from missions.formats.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, encode_dji, encode_mavlink
+from missions.mission.build import missions_from_plan
+from missions.mission.model import FileFormat, Mission, ReadMission
 from missions.mission.safe_files import KMZ_FILE, MISSION_FILE
 from planning.base.errors import InputError, MissionError
 from planning.base.files import open_given
-from planning.base.findings import Severity
+from planning.base.findings import Finding, Severity
 from planning.base.json_file import write_together
+from planning.base.plugins import Plugin, PluginGroup, doubted, expect_type, guarded, load_plugins, told_problem
 from planning.geo.frames import Origin, Vec3
 from planning.plan import Plan
 
@@ -26,12 +30,142 @@ HEAD_BYTES = 4096
 _Reader = Callable[[Path, bool], tuple[ReadMission, ...]]
 """Takes the file, and whether to refuse what an aircraft would refuse."""
 
+_Encoder = Callable[[Plan, Sequence[Mission], ExportOptions], EncodedFiles]
+
+
+@dataclass(frozen=True, slots=True)
+class MissionFormat:
+    """A format of mission files.
+
+    Parameters
+    ----------
+    endings
+        Of the names of its files, with the dot; the first is proposed.
+    encode
+        Takes a plan, its sorties, and what the pilot chose; gives the contents of the files, one for each sortie or one
+        for all, and findings on them. With an error among the findings nothing is written.
+    begins, read
+        Whether a file that begins with these bytes (up to `HEAD_BYTES`) is of this format, and the sorties in it. None:
+        the format is only written.
+    title
+        Of a plug-in, in the window's list: such as "Table of photos (.csv)". For the formats of this program the window
+        has words in the user's language.
+    """
+
+    endings: tuple[str, ...]
+    encode: _Encoder
+    begins: Callable[[bytes], bool] | None = None
+    read: _Reader | None = None
+    title: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.endings or not all(ending.startswith(".") for ending in self.endings):
+            raise ValueError(f"endings: expected such as ('.csv',), got {self.endings}")
+        if (self.begins is None) != (self.read is None):
+            raise ValueError("begins and read: expected both or none of them")
+
+
+def _encode_kml(_plan: Plan, missions: Sequence[Mission], _options: ExportOptions) -> EncodedFiles:
+    from missions.formats.kml_view import kml_bytes
+
+    return EncodedFiles((kml_bytes(missions),), ())
+
+
+def _encode_csv(_plan: Plan, missions: Sequence[Mission], _options: ExportOptions) -> EncodedFiles:
+    from missions.formats.csv_table import csv_bytes
+
+    return EncodedFiles((csv_bytes(missions),), ())
+
+
+FORMATS: dict[str, MissionFormat] = {
+    FileFormat.DJI_KMZ: MissionFormat((".kmz",), encode_dji),
+    FileFormat.MAVLINK_PLAN: MissionFormat(
+        (".plan",),
+        lambda _plan, missions, options: encode_mavlink(missions, FileFormat.MAVLINK_PLAN, options),
+    ),
+    FileFormat.MAVLINK_WPL: MissionFormat(
+        (".waypoints", ".txt"),
+        lambda _plan, missions, options: encode_mavlink(missions, FileFormat.MAVLINK_WPL, options),
+    ),
+    FileFormat.KML: MissionFormat((".kml",), _encode_kml),
+    FileFormat.CSV: MissionFormat((".csv",), _encode_csv),
+}
+"""Of this program, by the name on the command line; `_reader_of` tells their files apart."""
+
+
+@cache
+def mission_formats() -> dict[str, MissionFormat]:
+    """All formats by the name on the command line: those of this program, then those of plug-ins."""
+    return FORMATS | load_plugins(PluginGroup.MISSION_FORMATS, _of_plugin, FORMATS)
+
+
+def _of_plugin(plugin: Plugin, found: object) -> MissionFormat:
+    own = expect_type(found, MissionFormat)
+    return replace(
+        own,
+        title=own.title or plugin.name,
+        encode=guarded(plugin, own.encode, EncodedFiles),
+        begins=None if own.begins is None else doubted(plugin, own.begins),
+        read=None if own.read is None else guarded(plugin, own.read, tuple),
+    )
+
+
+def mission_format(name: str) -> MissionFormat:
+    """A format by its name.
+
+    Raises
+    ------
+    InputError
+        There is none; the message lists all, or says why a plug-in was left out.
+    """
+    if name in FORMATS:
+        return FORMATS[name]
+    if name not in mission_formats():
+        problem = told_problem(PluginGroup.MISSION_FORMATS, name)
+        known = ", ".join(mission_formats())
+        raise InputError(
+            f"there is no mission format '{name}'; known are: {known}" if problem is None else str(problem)
+        )
+    return mission_formats()[name]
+
+
+def encode(
+    plan: Plan,
+    origin: Origin | None,
+    home_enu_m: Vec3 | None,
+    file_format: str,
+    options: ExportOptions = DEFAULT_OPTIONS,
+) -> EncodedFiles:
+    """Contents that `export` writes, with all findings instead of a refusal at the first.
+
+    Raises
+    ------
+    InputError, MissionError
+        As `export`, where there is nothing to check.
+    """
+    missions = missions_from_plan(plan, origin, home_enu_m)
+    encoded = mission_format(file_format).encode(plan, missions, options)
+    return replace(encoded, findings=(*_on_passing(plan, missions), *encoded.findings))
+
+
+def _on_passing(plan: Plan, missions: Sequence[Mission]) -> Iterator[Finding]:
+    """An imported mission that takes photos in passing is another one when it is written: it stops for each."""
+    for sortie, mission in zip(plan.sorties, missions, strict=True):
+        n = len(sortie.in_passing_ids)
+        if n:
+            text = (
+                f"{n} photos that the imported mission takes in passing are stops in these files, so the sortie takes "
+                f"{mission.duration_s:.0f} s instead of {sortie.duration_s:.0f} s"
+            )
+            place = f"sortie {mission.number}"
+            yield Finding(Severity.WARNING, "in-passing", text, place, mission.duration_s, sortie.duration_s, "s")
+
 
 def export(
     plan: Plan,
     origin: Origin | None,
     home_enu_m: Vec3 | None,
-    file_format: FileFormat,
+    file_format: str,
     path: Path,
     options: ExportOptions = DEFAULT_OPTIONS,
 ) -> tuple[Path, ...]:
@@ -102,6 +236,8 @@ def read_missions(path: Path, *, strict: bool = False) -> tuple[ReadMission, ...
 
 def is_mission(head: bytes) -> bool:
     """Whether a file that begins like this is a mission file; JSON is not told from other JSON."""
+    if _plugin_reader_of(head) is not None:
+        return True
     text = _without_mark(head)
     if text.startswith(b"<"):
         return b"<kml" in head
@@ -120,11 +256,20 @@ def _reader(path: Path) -> _Reader:
     return reader
 
 
+def _plugin_reader_of(head: bytes) -> _Reader | None:
+    """Of a plug-in that knows the file: asked first, as their ZIP, XML or JSON may look like that of this program."""
+    of_plugins = (each for name, each in mission_formats().items() if name not in FORMATS)
+    return next((each.read for each in of_plugins if each.begins is not None and each.begins(head)), None)
+
+
 def _reader_of(head: bytes) -> _Reader | None:
     from missions.dji.read import read_dji
     from missions.formats.csv_table import is_csv_table, read_csv
     from missions.formats.kml_view import read_kml
 
+    of_plugin = _plugin_reader_of(head)
+    if of_plugin is not None:
+        return of_plugin
     text = _without_mark(head)
     if head.startswith(b"PK") or b"/wpmz/" in head:
         return lambda path, strict: read_dji(path, strict=strict)

@@ -24,7 +24,6 @@ from missions.mission.legs import (
 )
 from missions.mission.model import (
     ON_THE_WAY,
-    FileFormat,
     Finish,
     HeightReference,
     ReadMission,
@@ -403,7 +402,7 @@ def autopilot_by_items(items: tuple[MissionItem, ...]) -> Autopilot | None:
     return None
 
 
-def read_mavlink(path: Path, file: MavlinkFile, file_format: FileFormat, *, strict: bool = False) -> ReadMission:
+def read_mavlink(path: Path, file: MavlinkFile, file_format: str, *, strict: bool = False) -> ReadMission:
     """The sortie that the items of a file describe.
 
     What an autopilot would refuse is a finding here and no reason to refuse: the file may be for another autopilot.

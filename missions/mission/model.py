@@ -223,7 +223,7 @@ class ReadMission:
 
     name: str
     path: Path
-    format: FileFormat
+    format: str
     waypoints: tuple[ReadWaypoint, ...]
     takeoff: GeoPoint | None
     height_reference: HeightReference

@@ -1,4 +1,8 @@
-"""Aircraft-and-camera profiles: facts with their sources, from `data/profiles.toml` or a file of the user's own."""
+"""Aircraft-and-camera profiles: facts with their sources.
+
+They are from `data/profiles.toml`, a file of the user's own, or plug-ins: an entry point of the group
+`reflight.aircraft` stands for the path of a TOML file in the format of `data/profiles.toml`, each table a profile.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +12,7 @@ from pathlib import Path
 
 from planning.base.errors import InputError
 from planning.base.json_file import read_toml
+from planning.base.plugins import NAME, Plugin, PluginGroup, load_plugins
 from planning.plan import Aircraft, Camera
 
 PROFILES_PATH = Path(__file__).parent / "data" / "profiles.toml"
@@ -24,9 +29,32 @@ class Profile:
 
 
 @cache
-def profiles() -> dict[str, Profile]:
-    """All profiles of the catalogue by identifier."""
+def bundled_profiles() -> dict[str, Profile]:
+    """Profiles of the catalogue by identifier."""
     return _read(PROFILES_PATH)
+
+
+@cache
+def profiles() -> dict[str, Profile]:
+    """All profiles by identifier: those of the catalogue, then those of plug-ins."""
+    found = dict(bundled_profiles())
+
+    def take(_plugin: Plugin, path: object) -> None:
+        if not isinstance(path, (str, Path)):
+            raise InputError(
+                f"expected its entry point to stand for the path of a TOML file, got {type(path).__name__}"
+            )
+        own = _read(Path(path))
+        wrong = next((key for key in own if not NAME.fullmatch(key)), None)
+        if wrong is not None:
+            raise InputError(f"{path}: '{wrong}' has other characters than a-z, 0-9, dot, hyphen and underscore")
+        known = next((key for key in own if key in found), None)
+        if known is not None:
+            raise InputError(f"{path}: there is another aircraft profile '{known}'")
+        found.update(own)
+
+    load_plugins(PluginGroup.AIRCRAFT, take, ())
+    return found
 
 
 def _read(path: Path) -> dict[str, Profile]:
@@ -46,6 +74,8 @@ def profile(identifier: str) -> Profile:
         if len(own) != 1:
             raise InputError(f"{identifier}: expected one table with an aircraft and its camera, got {len(own)}")
         return next(iter(own.values()))
+    if identifier in bundled_profiles():
+        return bundled_profiles()[identifier]
     try:
         return profiles()[identifier]
     except KeyError:

@@ -49,5 +49,9 @@ class ReconstructionError(GroundStationError):
     """Photos cannot be turned into a model as they stand."""
 
 
+class PluginError(GroundStationError):
+    """A plug-in of another package failed; the message names it."""
+
+
 class OperationCancelled(GroundStationError):  # noqa: N818
     """The user cancelled the work; nothing of it may look finished."""

@@ -4,13 +4,18 @@ All are written from their papers, on the same rasteriser, start, photos, exposu
 difference between two is one of the methods. All begin on known surfaces (`start_from`) and have antialiased splats
 (`raster.antialiased`), as none of the papers has; settings can make them begin and draw as published. This module loads
 nothing, for lists on the command line.
+
+Plug-ins add methods: an entry point of the group `reflight.training_methods` stands for a `Method`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any, Literal
+
+from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
 
 Primitive = Literal["discs", "ellipsoids"]
 """What splats are: flat Gaussian discs (2DGS), or Gaussian ellipsoids drawn by EWA splatting (3DGS)."""
@@ -37,6 +42,9 @@ class Method:
     knows_panels
         Whether it is told which panels there are, learns the light that they mirror alone first, and has the losses
         that the paper adds for glass (Eqs. 23 and 24).
+    shader
+        Of a plug-in: makes the `methods.shader.Shader` of a training from its `TrainConfig` and `Surroundings`, and
+        imports torch only then. None: as `methods.shaders` has it, which is spherical harmonics for new names.
     """
 
     title: str
@@ -46,6 +54,11 @@ class Method:
     settings: Mapping[str, Any] = field(default_factory=dict)
     knows_panels: bool = False
     primitive: Primitive = "discs"
+    shader: Callable[[Any, Any], object] | None = None
+
+    def __post_init__(self) -> None:
+        if self.knows_panels and self.shader is not None:
+            raise ValueError("shader: expected none of a method that knows panels: those have the light of panels")
 
 
 PAPER = "Liang et al., RefGlass-GS (the paper), 2026"
@@ -132,17 +145,32 @@ METHODS: dict[str, Method] = {
         "the grid of directions is a cube and smaller, the network has 64 hidden units",
     ),
 }
-"""By the name on the command line."""
+"""Of this program, by the name on the command line."""
+
+
+@cache
+def training_methods() -> dict[str, Method]:
+    """All methods by the name on the command line: those of this program, then those of plug-ins."""
+    return METHODS | load_plugins(PluginGroup.TRAINING_METHODS, _of_plugin, METHODS)
+
+
+def _of_plugin(plugin: Plugin, found: object) -> Method:
+    own = expect_type(found, Method)
+    return own if own.shader is None else replace(own, shader=guarded(plugin, own.shader, object))
 
 
 def method_named(name: str) -> Method:
-    """One of `METHODS`.
+    """One of `training_methods`.
 
     Raises
     ------
     ValueError
-        There is none of that name; the message lists all.
+        There is none of that name; the message lists all, or says why a plug-in was left out.
     """
-    if name not in METHODS:
-        raise ValueError(f"method: expected {', '.join(METHODS)}, got '{name}'")
-    return METHODS[name]
+    if name in METHODS:
+        return METHODS[name]
+    if name not in training_methods():
+        problem = told_problem(PluginGroup.TRAINING_METHODS, name)
+        expected = f"method: expected {', '.join(training_methods())}, got '{name}'"
+        raise ValueError(expected if problem is None else str(problem))
+    return training_methods()[name]

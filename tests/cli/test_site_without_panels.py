@@ -43,8 +43,7 @@ def bare(tmp_path_factory):
 @pytest.fixture
 def mission(bare, tmp_path):
     """The plan as a mission file."""
-    from missions.formats.encode import encode
-    from missions.formats.registry import write_files
+    from missions.formats.registry import encode, write_files
     from missions.mission.model import FileFormat
 
     plan = read_plan(bare / "office.plan.json")

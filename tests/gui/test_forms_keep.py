@@ -188,7 +188,7 @@ def test_the_export_form_keeps_what_the_format_takes(application, file_format, h
     _, options = form.value()
     assert (options.height_reference, options.link_loss, options.rth_height_m) == (heights, link_loss, rth_m)
     form.setValue(file_format, ExportOptions(heights, autopilot, link_loss, rth_m))
-    assert form.value()[0] is file_format
+    assert form.value()[0] == file_format
 
 
 @given(numbers(0.0, 359.999), numbers(-90.0, 90.0), st.booleans(), numbers(0.0, 1.0))

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from missions.formats.encode import ExportOptions, encode
-from missions.formats.registry import read_missions
+from missions.formats.encode import ExportOptions
+from missions.formats.registry import encode, read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.model import FileFormat
 from missions.mission.to_plan import viewpoints_and_sorties

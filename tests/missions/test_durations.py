@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.formats.encode import encode
-from missions.formats.registry import read_missions
+from missions.formats.registry import encode, read_missions
 from missions.mavlink.items import MavlinkFile, MissionItem, plain
 from missions.mavlink.read import read_mavlink
 from missions.mission.build import missions_from_plan

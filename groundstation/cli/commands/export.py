@@ -7,13 +7,16 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.lists import words
-from groundstation.cli.options import number
+from groundstation.cli.options import PluginNames, number
+from planning.base.plugins import PluginGroup
 
 MAX_RETURN_HEIGHT_M = 1500.0
 """Highest that DJI's waylines allow for any height above take-off."""
 
 MISSIONS = ("dji-kmz", "mavlink-plan", "mavlink-wpl", "kml", "csv")
 MODELS = ("web", "gltf", "3d-tiles", "usd", "ply", "ply-2dgs", "spz", "spz-4", "sog", "mesh", "cityjson", "ifc")
+ALL_MODELS = PluginNames(MODELS, PluginGroup.MODEL_FORMATS)
+ALL_FORMATS = PluginNames((*MISSIONS, *MODELS), PluginGroup.MISSION_FORMATS, PluginGroup.MODEL_FORMATS)
 
 COLOURS_HELP = "baked: what panels mirror is in their colours (default); own: without"
 GAUSSIANS_HELP = (
@@ -50,13 +53,13 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=run)
+    parser.more_help = ALL_FORMATS.help_on_plugins
     add = parser.add_argument
     add("plan", type=Path, metavar="PLAN|MODEL", help="plan file; or folder of a model, or of its objects")
-    formats = (*MISSIONS, *MODELS)
     add(
         "--format",
         required=True,
-        choices=formats,
+        choices=ALL_FORMATS,
         metavar="FORMAT",
         help=f"of plans {', '.join(MISSIONS)}; of models below",
     )
@@ -89,15 +92,15 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Export and print; returns the exit status."""
-    return _export_model(options) if options.format in MODELS else _export_plan(options)
+    return _export_model(options) if options.format in ALL_MODELS else _export_plan(options)
 
 
 def _export_model(options: argparse.Namespace) -> int:
     from groundstation.cli.console import print_json, run_job
-    from groundstation.services.model.export import ModelExport, ModelFormat, export_model
+    from groundstation.services.model.export import ModelExport, export_model
 
     wanted = ModelExport(
-        ModelFormat(options.format),
+        options.format,
         options.colours == "baked",
         options.degree,
         options.preset,
@@ -122,7 +125,7 @@ def _export_plan(options: argparse.Namespace) -> int:
     from missions.dji.write import LinkLoss
     from missions.formats.encode import ExportOptions
     from missions.mavlink.autopilots import Autopilot
-    from missions.mission.model import FileFormat, HeightReference
+    from missions.mission.model import HeightReference
     from planning.base.errors import InputError
     from planning.base.findings import Severity
 
@@ -135,7 +138,7 @@ def _export_plan(options: argparse.Namespace) -> int:
         link_loss=LinkLoss(options.link_loss),
         rth_height_m=height_m,
     )
-    paths, findings = export_plan(options.plan, FileFormat(options.format), options.out, options.site, export_options)
+    paths, findings = export_plan(options.plan, options.format, options.out, options.site, export_options)
     if options.json:
         print_json(
             {

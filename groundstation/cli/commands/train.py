@@ -9,16 +9,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.lists import above_zero, count
-from groundstation.cli.options import new_folder
+from groundstation.cli.options import PluginNames, new_folder
 from planning.base.errors import InputError, OperationCancelled
+from planning.base.plugins import PluginGroup
 from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
 from reconstruction.training.names import LIGHTS, PRESETS
 
 if TYPE_CHECKING:
     from groundstation.services.reconstruct.training import TrainedFiles, TrainRequest
 
-METHOD_LINES = "\n".join(f"  {name:<30} {method.title}" for name, method in METHODS.items())
 PRESET_LINES = "\n".join(f"  {name:<11} {text}" for name, text in PRESETS.items())
+
+METHOD_LINES = "\n".join(f"  {name:<30} {method.title}" for name, method in METHODS.items())
+METHOD_NAMES = PluginNames(METHODS, PluginGroup.TRAINING_METHODS)
 
 EPILOG = f"""presets:
 {PRESET_LINES}
@@ -61,10 +64,11 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=run)
+    parser.more_help = METHOD_NAMES.help_on_plugins
     add = parser.add_argument
     add("dataset", type=Path, metavar="DATASET", help="folder of a data set")
     add("-o", "--out", type=new_folder, required=True, metavar="MODEL", help="folder for the model")
-    add("--method", choices=tuple(METHODS), metavar="METHOD", help=f"one of those below (default {DEFAULT_METHOD})")
+    add("--method", choices=METHOD_NAMES, metavar="METHOD", help=f"one of those below (default {DEFAULT_METHOD})")
     add("--preset", choices=tuple(PRESETS), help="how long one can wait (default 10min)")
     add("--iterations", type=count, metavar="N", help="steps, whatever time they take, instead of the preset's")
     add("--time-budget", type=above_zero, metavar="S", help="end after so many seconds, all in all")

@@ -20,6 +20,7 @@ from groundstation.services.project.session import Session
 from groundstation.services.units import UnitSystem
 from planning.base.errors import GroundStationError, shortened
 from planning.base.findings import Severity
+from planning.base.plugins import untold_problems
 
 Work = Callable[[JobContext], Any]
 Done = Callable[[Any], None]
@@ -144,6 +145,11 @@ class ApplicationContext(QObject):
     def words(self, text: str) -> str:
         """What a part without Qt says, an error or a finding, in the user's language and units."""
         return own_words(shortened(text), self._units)
+
+    def tell_of_plugins(self) -> None:
+        """Say which plug-ins are left out of a list that was just filled, each once."""
+        for problem in untold_problems():
+            self.say(Severity.WARNING, self.words(str(problem)))
 
     def start(
         self, name: str, work: Work, when_done: Done | None = None, when_failed: Failed | None = None

@@ -17,7 +17,6 @@ from groundstation.gui.widgets.questions import agrees, choose_new_file, file_na
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.files import (
     MAVLINK_FORMATS,
-    SUFFIXES,
     PreparedExport,
     export_paths,
     prepare_export,
@@ -26,6 +25,7 @@ from groundstation.services.mission.files import (
 from groundstation.services.units import UnitSystem
 from missions.dji.write import MIN_RTH_HEIGHT_M, LinkLoss
 from missions.formats.encode import ExportOptions
+from missions.formats.registry import FORMATS, mission_format, mission_formats
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.model import FileFormat, HeightReference
 from planning.base.findings import Severity
@@ -68,24 +68,24 @@ class ExportForm(QWidget):
         self._return.valueChanged.connect(self._changed)
         self._show_options()
 
-    def value(self) -> tuple[FileFormat, ExportOptions]:
+    def value(self) -> tuple[str, ExportOptions]:
         """The format and its options; what is hidden has its usual value."""
-        file_format = FileFormat(self._format.currentData())
+        file_format = str(self._format.currentData())
         options = ExportOptions()
         if self._form.isRowVisible(self._heights):
             options = replace(options, height_reference=HeightReference(self._heights.currentData()))
         if file_format in MAVLINK_FORMATS and self._autopilot.currentData():
             options = replace(options, autopilot=Autopilot(self._autopilot.currentData()))
-        if file_format is FileFormat.DJI_KMZ:
+        if file_format == FileFormat.DJI_KMZ:
             height_m = None if self._return_auto.isChecked() else self._return.value()
             options = replace(options, link_loss=LinkLoss(self._link_loss.currentData()), rth_height_m=height_m)
         return file_format, options
 
-    def setValue(self, file_format: FileFormat, options: ExportOptions) -> None:  # noqa: N802
+    def setValue(self, file_format: str, options: ExportOptions) -> None:  # noqa: N802
         """Show a format and options."""
         with QSignalBlocker(self):
             for box, value in (
-                (self._format, file_format.value),
+                (self._format, str(file_format)),
                 (self._heights, options.height_reference.value),
                 (self._autopilot, options.autopilot.value if options.autopilot else ""),
                 (self._link_loss, options.link_loss.value),
@@ -109,6 +109,9 @@ class ExportForm(QWidget):
             (self.tr("Table of photos (.csv)"), FileFormat.CSV),
         ):
             self._format.addItem(text, value.value)
+        for name, of_plugin in mission_formats().items():
+            if name not in FORMATS:
+                self._format.addItem(of_plugin.title, name)
         self._autopilot.addItem(self.tr("by aircraft"), "")
         self._autopilot.addItem("ArduPilot", Autopilot.ARDUPILOT.value)
         self._autopilot.addItem("PX4", Autopilot.PX4.value)
@@ -116,13 +119,13 @@ class ExportForm(QWidget):
         self._link_loss.addItem(self.tr("return home straight"), LinkLoss.GO_HOME.value)
         self._fill_heights(FileFormat.DJI_KMZ)
 
-    def _fill_heights(self, file_format: FileFormat) -> None:
+    def _fill_heights(self, file_format: str) -> None:
         kept = self._heights.currentData()
         choices = [
             (self.tr("above take-off"), HeightReference.ABOVE_TAKEOFF),
             (self.tr("above sea level (EGM96)"), HeightReference.AMSL),
         ]
-        if file_format is FileFormat.DJI_KMZ:
+        if file_format == FileFormat.DJI_KMZ:
             choices.append((self.tr("above ellipsoid (WGS 84)"), HeightReference.ELLIPSOID))
         with QSignalBlocker(self._heights):
             self._heights.clear()
@@ -135,8 +138,8 @@ class ExportForm(QWidget):
         self.valueChanged.emit()
 
     def _show_options(self) -> None:
-        file_format = FileFormat(self._format.currentData())
-        is_dji, is_mavlink = file_format is FileFormat.DJI_KMZ, file_format in MAVLINK_FORMATS
+        file_format = str(self._format.currentData())
+        is_dji, is_mavlink = file_format == FileFormat.DJI_KMZ, file_format in MAVLINK_FORMATS
         self._fill_heights(file_format)
         self._form.setRowVisible(self._heights, is_dji or is_mavlink)
         self._form.setRowVisible(self._autopilot, is_mavlink)
@@ -290,11 +293,10 @@ class ExportDialog(QDialog):
 
     def _choose_file(self) -> None:
         file_format, _ = self._form.value()
-        suffix = SUFFIXES[file_format][0]
+        suffix, *others = mission_format(file_format).endings
         proposed = self._folder / f"{file_name(self._plan.site)}{suffix}"
         kinds = self.tr("Mission files (*{0})").format(suffix)
-        others = (*SUFFIXES[file_format][1:], *PLAIN_ENDINGS)
-        path = choose_new_file(self, self.tr("Write mission files"), proposed, kinds, suffix, others)
+        path = choose_new_file(self, self.tr("Write mission files"), proposed, kinds, suffix, (*others, *PLAIN_ENDINGS))
         if path is None or self._prepared is None:
             return
         if self._may_replace(path):

@@ -81,6 +81,7 @@ class MissionPage(QObject):
         if plan is None or site_model is None:
             return None
         dialog = ExportDialog(self._workspace, plan, site_model, self._export_folder(), self._stage.window())
+        self._workspace.tell_of_plugins()
         dialog.written.connect(self._note_folder)
         dialog.open()
         return dialog

@@ -10,12 +10,12 @@ from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QW
 
 from groundstation.gui.widgets.inputs import ChoiceBox, Form
 from groundstation.services.model.export import (
-    OF_ALL_PARTS,
-    WITH_PRESETS,
-    WITHOUT_COLOURS,
+    EXPORTERS,
     ModelExport,
     ModelFormat,
     Preset,
+    model_exporter,
+    model_exporters,
 )
 
 PRESETS = get_args(Preset)
@@ -69,25 +69,30 @@ class ExportDialog(QDialog):
     def wanted(self) -> ModelExport:
         """What is chosen; what the format does not ask for is left as it usually is."""
         kind = self._kind()
-        facade = self.part.currentData() if kind not in OF_ALL_PARTS else None
-        is_baked = bool(self.colours.currentData()) or kind in WITHOUT_COLOURS
-        preset = self.preset.currentData() if kind in WITH_PRESETS else "balanced"
+        exporter = model_exporter(kind)
+        facade = self.part.currentData() if exporter.has_parts else None
+        is_baked = bool(self.colours.currentData()) or not exporter.has_colours
+        preset = self.preset.currentData() if exporter.has_presets else "balanced"
         return ModelExport(kind, is_baked, None, preset, None if facade is None else (str(facade),))
 
-    def _kind(self) -> ModelFormat:
-        return ModelFormat(self.format.currentData())
+    def _kind(self) -> str:
+        return str(self.format.currentData())
 
     def _show_format(self) -> None:
-        kind = self._kind()
-        self.about.setText(format_words()[kind][1])
-        self.part.setEnabled(kind not in OF_ALL_PARTS)
-        self.colours.setEnabled(kind not in WITHOUT_COLOURS)
-        self.preset.setEnabled(kind in WITH_PRESETS)
+        exporter = model_exporter(self._kind())
+        self.about.setText(format_words()[self._kind()][1])
+        self.part.setEnabled(exporter.has_parts)
+        self.colours.setEnabled(exporter.has_colours)
+        self.preset.setEnabled(exporter.has_presets)
 
 
-def format_words() -> dict[ModelFormat, tuple[str, str]]:
-    """What formats are called, and what they are for, in the order in which they are offered."""
+def format_words() -> dict[str, tuple[str, str]]:
+    """What formats are called, and what they are for, in the order in which they are offered.
+
+    Those of plug-ins are last; they have words of their own in whatever language.
+    """
     translate = QCoreApplication.translate
+    of_plugins = {name: (each.title, each.about) for name, each in model_exporters().items() if name not in EXPORTERS}
     return {
         ModelFormat.WEB: (
             translate("ModelFormats", "Web page"),
@@ -133,4 +138,5 @@ def format_words() -> dict[ModelFormat, tuple[str, str]]:
             "IFC",
             translate("ModelFormats", "The panels alone, as plates of curtain walls, with their property sets."),
         ),
+        **of_plugins,
     }

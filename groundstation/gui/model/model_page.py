@@ -17,7 +17,7 @@ from groundstation.gui.model.report_maker import ReportMaker
 from groundstation.gui.model.scene_pane import ScenePane
 from groundstation.gui.shared_view import Stage
 from groundstation.gui.widgets.questions import Questions, choose_new_file, file_name
-from groundstation.services.model.export import ENDINGS, OTHER_ENDINGS, ModelFormat, with_ending
+from groundstation.services.model.export import model_exporter, with_ending
 from groundstation.services.model.scene_card import PanelRow
 from groundstation.services.reconstruct.folders import MODELS_FOLDER
 from groundstation.services.units import UnitSystem
@@ -139,19 +139,20 @@ class ModelPage(QObject):
         if card is None:
             return
         dialog = ExportDialog(tuple(dict.fromkeys(panel.facade for panel in card.panels)), self._stage.window())
+        self._workspace.tell_of_plugins()
         if dialog.exec() == QDialog.DialogCode.Accepted:
             out = self._place_for(dialog.wanted().format, card.name)
             if out is not None:
                 self.controller.export(out, dialog.wanted())
         dialog.deleteLater()
 
-    def _place_for(self, kind: ModelFormat, name: str) -> Path | None:
+    def _place_for(self, kind: str, name: str) -> Path | None:
         """Where a file or folder is to be."""
-        title, ending = self.tr("Export the model"), ENDINGS.get(kind)
-        if ending is None:
+        title, endings = self.tr("Export the model"), model_exporter(kind).endings
+        if not endings:
             return self.questions.new_folder(self._stage.window(), title, Path.home() / file_name(name))
-        others = OTHER_ENDINGS.get(kind, ())
-        kinds = " ".join(f"*{each}" for each in (ending, *others))
+        ending, *others = endings
+        kinds = " ".join(f"*{each}" for each in endings)
         found = choose_new_file(self._stage.window(), title, Path(f"{file_name(name)}{ending}"), kinds, ending, others)
         return None if found is None else with_ending(found, kind)
 

@@ -23,7 +23,7 @@ from groundstation.services.reconstruct.folders import (
 from planning.base.files import real_path
 from planning.base.findings import Severity
 from reconstruction.light.photo_set import held_out_names
-from reconstruction.training.method_registry import METHODS
+from reconstruction.training.method_registry import method_named
 
 HELD_OUT, SEED = 0.15, 0
 """Share and seed that trainings hold views out by unless their settings say otherwise."""
@@ -68,7 +68,7 @@ class FolderController(QObject):
 
     def forecast(self) -> Forecast | None:
         """What memory the training would ask for."""
-        knows = METHODS[self.choice.method].knows_panels
+        knows = method_named(self.choice.method).knows_panels
         return None if self.card is None else forecast(self.card, self.machine, knows)
 
     def unseen(self) -> frozenset[str]:

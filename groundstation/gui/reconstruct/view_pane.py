@@ -24,7 +24,7 @@ from groundstation.services.reconstruct.messages import Seen, Subject
 from groundstation.services.units import UnitSystem, length_unit
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.training.layers import PICTURE
-from reconstruction.training.method_registry import METHODS
+from reconstruction.training.method_registry import training_methods
 
 # Above the picture: the layer that is shown, what it is compared with, and the way back to the photo.
 
@@ -114,7 +114,8 @@ class ViewBar(QWidget):
 
 def _title(card: ModelCard) -> str:
     """Of a finished model: its folder, and its method."""
-    method = METHODS[card.method].title if card.method in METHODS else card.method
+    known = training_methods()
+    method = known[card.method].title if card.method in known else card.method
     return f"{Path(card.folder).name} ({method})"
 
 

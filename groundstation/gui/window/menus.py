@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 from typing import Protocol
 
 from PySide6.QtCore import QObject, Qt
@@ -13,8 +14,10 @@ from groundstation import __version__
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.window.main_window import MainWindow
+from groundstation.services.plugins import plugin_rows
 from groundstation.services.settings import Language, Settings, Theme
 from groundstation.services.units import UnitSystem
+from planning.base.plugins import PluginGroup
 
 TEXT_SCALES = (0.9, 1.0, 1.15, 1.3, 1.6)
 
@@ -195,7 +198,24 @@ class Menus(QObject):
 
     def _show_about(self) -> None:
         text = self.tr("Reflight {0}: ground station for the second flight over a glass facade.").format(__version__)
-        self._box(self.tr("About Reflight"), text)
+        self._box(self.tr("About Reflight"), f"<p>{text}</p>{self._plugins()}")
+
+    def _plugins(self) -> str:
+        """What plug-ins add, as a list; empty where there are none."""
+        kinds = {
+            PluginGroup.AIRCRAFT: self.tr("aircraft"),
+            PluginGroup.MISSION_FORMATS: self.tr("mission format"),
+            PluginGroup.MODEL_FORMATS: self.tr("model format"),
+            PluginGroup.TRAINING_METHODS: self.tr("training method"),
+        }
+        lines = []
+        for row in plugin_rows():
+            line = escape(f"{row.plugin.name}: {kinds[row.plugin.group]} ({row.plugin.package})")
+            if row.problem is not None:
+                line += "<br>" + escape(self._workspace.words(str(row.problem)))
+            lines.append(f"<li>{line}</li>")
+        title = self.tr("Plug-ins")
+        return f"<p>{title}</p><ul>{''.join(lines)}</ul>" if lines else ""
 
     def _box(self, title: str, text: str) -> None:
         box = QMessageBox(self._window)

@@ -24,6 +24,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import IO, Any, Protocol
 
+from planning.base.plugins import blamed
+
 NICENESS = 10
 """Half of the way to the least urgent: the window's own threads run first when both want a processor."""
 
@@ -130,6 +132,7 @@ Send = Callable[[Any], None]
 
 def sendable(error: BaseException) -> BaseException:
     """An error as it comes through a pipe; one that does not is told in words."""
+    error = blamed(error)
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

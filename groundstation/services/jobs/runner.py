@@ -23,6 +23,7 @@ from typing import Any, Generic, TypeVar
 
 from groundstation.services.jobs.worker import Worker
 from planning.base.errors import OperationCancelled
+from planning.base.plugins import blamed
 from planning.base.progress import Clock, QualityPoint, StopRequest, Trace
 
 Result = TypeVar("Result")
@@ -231,7 +232,7 @@ class JobRunner:
         except OperationCancelled as error:
             self._finish(job, JobState.CANCELLED, error=error)
         except BaseException as error:
-            self._finish(job, JobState.FAILED, error=error)
+            self._finish(job, JobState.FAILED, error=blamed(error))
         else:
             self._finish(job, JobState.SUCCEEDED, result=result)
 

@@ -156,7 +156,7 @@ def compare_with_plan(
         for j, (_, sortie, number) in enumerate(read)
         if j not in found
     ]
-    has_path = all(mission.format is not FileFormat.CSV for mission in missions)
+    has_path = all(mission.format != FileFormat.CSV for mission in missions)
     deviation_m = _path_deviation_m(plan.sorties, parts.sorties) if has_path else None
     return MissionComparison(tuple(photos), deviation_m, parts.findings)
 

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from groundstation.services.mission.files import (
     MAVLINK_FORMATS,
-    SUFFIXES,
     bare_site,
     missions_as_plan,
     plan_of_missions,
@@ -18,9 +17,8 @@ from groundstation.services.mission.files import (
 )
 from groundstation.services.project.input_files import read_given_plan, read_given_site
 from groundstation.services.project.project_file import SITE_FOLDER, check_not_index
-from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions, encode
-from missions.formats.registry import sortie_path, write_files
-from missions.mission.model import FileFormat
+from missions.formats.encode import DEFAULT_OPTIONS, ExportOptions
+from missions.formats.registry import encode, mission_format, sortie_path, write_files
 from planning.base.errors import InputError
 from planning.base.files import real_path, sha256_given
 from planning.base.findings import Finding, Severity
@@ -32,7 +30,7 @@ from planning.plan import Plan, write_plan
 from planning.site.file import read_site, write_site
 from planning.site.records import SiteModel
 
-__all__ = ["SUFFIXES", "export_plan", "find_site", "import_missions"]
+__all__ = ["export_plan", "find_site", "import_missions"]
 
 
 def find_site(plan: Plan, plan_path: Path, site_path: Path | None = None) -> SiteModel | None:
@@ -73,7 +71,7 @@ def _is_site_of(path: Path, plan: Plan) -> bool:
 
 def export_plan(
     plan_path: Path,
-    file_format: FileFormat,
+    file_format: str,
     out: Path,
     site_path: Path | None = None,
     options: ExportOptions = DEFAULT_OPTIONS,
@@ -93,7 +91,7 @@ def export_plan(
     sources = [path for path in (plan_path, site_path) if path is not None]
     check_not_index(out)
     check_output(out, sources)
-    check_ending(out, SUFFIXES[file_format])
+    check_ending(out, mission_format(file_format).endings)
     site_model = find_site(plan, plan_path, site_path)
     findings = list(_name_findings(out, file_format))
     origin, home = plan.origin, plan.home_enu_m
@@ -112,8 +110,8 @@ def export_plan(
     return write_files(encoded, out), (*findings, *encoded.findings)
 
 
-def _name_findings(out: Path, file_format: FileFormat) -> Iterator[Finding]:
-    suffixes = SUFFIXES[file_format]
+def _name_findings(out: Path, file_format: str) -> Iterator[Finding]:
+    suffixes = mission_format(file_format).endings
     if out.suffix.lower() not in suffixes:
         text = f"{out.name}: other programs look for {file_format} files with names that end in {' or '.join(suffixes)}"
         yield Finding(Severity.WARNING, "file-name", text)

@@ -11,8 +11,8 @@ import numpy as np
 
 from groundstation.services.project.input_files import FileKind, expecting
 from groundstation.services.project.project_file import check_not_index
-from missions.formats.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot, encode
-from missions.formats.registry import read_missions, sortie_path, write_files
+from missions.formats.encode import DEFAULT_OPTIONS, EncodedFiles, ExportOptions, default_autopilot
+from missions.formats.registry import encode, read_missions, sortie_path, write_files
 from missions.mission.legs import distance_m
 from missions.mission.model import FileFormat, GeoPoint, ReadMission
 from missions.mission.to_plan import viewpoints_and_sorties
@@ -34,15 +34,6 @@ from planning.site.records import MAX_DISTANCE_M, Airspace, Site, SiteModel
 from planning.viewpoints.prepare import prepare
 
 MAVLINK_FORMATS = (FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL)
-
-SUFFIXES = {
-    FileFormat.DJI_KMZ: (".kmz",),
-    FileFormat.MAVLINK_PLAN: (".plan",),
-    FileFormat.MAVLINK_WPL: (".waypoints", ".txt"),
-    FileFormat.KML: (".kml",),
-    FileFormat.CSV: (".csv",),
-}
-"""How the names of files end that other programs offer to open."""
 
 BARE_MARGIN_M = 40.0
 FLOOR_M = 2.0
@@ -81,7 +72,7 @@ class PreparedExport:
 
 
 def prepare_export(
-    plan: Plan, site_model: SiteModel, file_format: FileFormat, options: ExportOptions = DEFAULT_OPTIONS
+    plan: Plan, site_model: SiteModel, file_format: str, options: ExportOptions = DEFAULT_OPTIONS
 ) -> PreparedExport:
     """Mission files of a plan in memory, with everything that is to be said before they are written.
 

@@ -1,10 +1,14 @@
-"""Use case of exporting a model: a scene of objects, or a trained model, into the formats of other programs."""
+"""Use case of exporting a model: a scene of objects, or a trained model, into the formats of other programs.
+
+Plug-ins add formats: an entry point of the group `reflight.model_formats` stands for a `ModelExporter`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -12,6 +16,7 @@ from planning.base.errors import InputError
 from planning.base.files import read_given
 from planning.base.folders import check_ending, check_folder_name
 from planning.base.json_file import check_output
+from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, load_plugins, told_problem
 from planning.base.progress import QUIET, Monitor, Stop, Trace
 
 if TYPE_CHECKING:
@@ -23,7 +28,7 @@ Preset = Literal["small", "balanced", "fine"]
 
 
 class ModelFormat(StrEnum):
-    """What a model can be written as."""
+    """What this program itself writes models as, by the names of the command line."""
 
     WEB = "web"
     GLTF = "gltf"
@@ -38,35 +43,6 @@ class ModelFormat(StrEnum):
     CITYJSON = "cityjson"
     IFC = "ifc"
 
-
-ENDINGS: Mapping[ModelFormat, str] = {
-    ModelFormat.GLTF: ".glb",
-    ModelFormat.USD: ".usdc",
-    ModelFormat.PLY: ".ply",
-    ModelFormat.PLY_2DGS: ".ply",
-    ModelFormat.SPZ: ".spz",
-    ModelFormat.SPZ_4: ".spz",
-    ModelFormat.SOG: ".sog",
-    ModelFormat.MESH: ".glb",
-    ModelFormat.CITYJSON: ".city.json",
-    ModelFormat.IFC: ".ifc",
-}
-"""Of files by format; what is not here is a folder."""
-
-OTHER_ENDINGS: Mapping[ModelFormat, tuple[str, ...]] = {
-    ModelFormat.USD: (".usda", ".usd"),
-    ModelFormat.CITYJSON: (".json",),
-}
-"""That files of a format may have as well."""
-
-WITH_PRESETS = frozenset({ModelFormat.SPZ, ModelFormat.SPZ_4, ModelFormat.SOG, ModelFormat.TILES})
-"""Formats whose size a preset decides."""
-
-OF_ALL_PARTS = frozenset({ModelFormat.IFC})
-"""Formats that always have the whole building."""
-
-WITHOUT_COLOURS = frozenset({ModelFormat.MESH, ModelFormat.CITYJSON, ModelFormat.IFC})
-"""Formats of panels alone, for which no colours of Gaussians are asked."""
 
 Gaussians = Literal["numbers", "spz", "points"]
 
@@ -95,7 +71,7 @@ class ModelExport:
         itself.
     """
 
-    format: ModelFormat
+    format: str
     baked: bool = True
     degree: int | None = None
     preset: Preset = "balanced"
@@ -116,13 +92,13 @@ class WrittenModel:
     notes: tuple[str, ...] = ()
 
 
-def with_ending(path: Path, kind: ModelFormat) -> Path:
+def with_ending(path: Path, kind: str) -> Path:
     """A file's path with the ending of its format, where it has none."""
-    ending = ENDINGS.get(kind, "")
-    return path if path.suffix or not ending else path.with_name(path.name + ending)
+    endings = model_exporter(kind).endings
+    return path if path.suffix or not endings else path.with_name(path.name + endings[0])
 
 
-def check_name(out: Path, kind: ModelFormat) -> None:
+def check_name(out: Path, kind: str) -> None:
     """Refuse a name that says that something else is in the file, or that a folder is one.
 
     Raises
@@ -130,10 +106,11 @@ def check_name(out: Path, kind: ModelFormat) -> None:
     InputError
         It does, or the file could not be written.
     """
-    if kind not in ENDINGS:
+    endings = model_exporter(kind).endings
+    if not endings:
         check_folder_name(out)
         return
-    check_ending(out, (ENDINGS[kind], *OTHER_ENDINGS.get(kind, ())))
+    check_ending(out, endings)
     check_output(out)
 
 
@@ -146,13 +123,13 @@ def export_model(folder: Path, out: Path, wanted: ModelExport, monitor: Monitor 
         The folder holds no model, or a file cannot be read or written.
     """
     check_name(out, wanted.format)
-    if wanted.format is ModelFormat.IFC:
+    if wanted.format == ModelFormat.IFC:
         return _ifc(folder, out)
+    exporter = model_exporter(wanted.format)
     whole, trained = _read(folder, monitor)
-    scene, notes = _shown(whole, trained, wanted, monitor)
+    scene, notes = _shown(whole, trained, wanted, exporter, monitor)
     attributes, rows = _records(folder)
-    writer = WRITERS[wanted.format]
-    notes += writer(_Export(scene, trained, folder, out, wanted, attributes, rows, monitor))
+    notes += exporter.write(ModelToExport(scene, trained, folder, out, wanted, attributes, rows, monitor))
     return WrittenModel(out, _size(out), tuple(notes))
 
 
@@ -164,8 +141,22 @@ def export_apart(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Export:
-    """What a writer needs."""
+class ModelToExport:
+    """What a writer is given.
+
+    Parameters
+    ----------
+    scene
+        The components that are wanted, with what panels mirror in their colours where that is wanted.
+    trained
+        The whole model, with its light.
+    folder
+        Where the model lies, for what is beside it.
+    out
+        The file or folder to write.
+    attributes, rows
+        Records of panels: attributes by object, and all records as plain rows.
+    """
 
     scene: GsScene
     trained: TrainedModel
@@ -189,10 +180,10 @@ def _read(folder: Path, monitor: Monitor) -> tuple[GsScene, TrainedModel]:
     return scene, put_together(scene, folder)
 
 
-def _shown(whole: GsScene, trained: TrainedModel, wanted: ModelExport, monitor: Monitor) -> tuple[GsScene, list[str]]:
+def _shown(
+    whole: GsScene, trained: TrainedModel, wanted: ModelExport, exporter: ModelExporter, monitor: Monitor
+) -> tuple[GsScene, list[str]]:
     """The components that are wanted, with what panels show in their colours."""
-    from dataclasses import replace
-
     from reconstruction.exports.baked import baked, needs_baking
     from reconstruction.training.methods.shader import Shader
 
@@ -204,7 +195,7 @@ def _shown(whole: GsScene, trained: TrainedModel, wanted: ModelExport, monitor: 
             raise InputError(f"--components: there is no component '{unknown}'; known are {', '.join(known)}")
         chosen = tuple(component for component in whole.components if component.name in wanted.components)
         scene = replace(whole, components=chosen)
-    if wanted.format in WITHOUT_COLOURS:
+    if not exporter.has_colours:
         return scene, notes
     if not needs_baking(trained.model):
         if type(trained.model.shader) is not Shader:
@@ -240,7 +231,7 @@ def _ifc(folder: Path, out: Path) -> WrittenModel:
     return WrittenModel(out, _size(out), done.notes)
 
 
-def _web(export: _Export) -> list[str]:
+def _web(export: ModelToExport) -> list[str]:
     from contextlib import nullcontext
 
     from groundstation.services.model.facility_records import open_records, records_path
@@ -276,7 +267,7 @@ def _web(export: _Export) -> list[str]:
     return [text.format(n) for n, text in told if n]
 
 
-def _gltf(export: _Export) -> list[str]:
+def _gltf(export: ModelToExport) -> list[str]:
     from reconstruction.exports.gltf import GltfOptions, write_gltf
 
     gaussians = export.wanted.gaussians or "numbers"
@@ -285,7 +276,7 @@ def _gltf(export: _Export) -> list[str]:
     return []
 
 
-def _tiles(export: _Export) -> list[str]:
+def _tiles(export: ModelToExport) -> list[str]:
     from reconstruction.exports.tiles3d import TilesOptions, write_tiles
 
     place: Literal["earth", "local"] = "local" if export.scene.origin is None else "earth"
@@ -298,67 +289,133 @@ def _tiles(export: _Export) -> list[str]:
     return notes + {"spz": [TWO_LAYERS], "numbers": [NO_CESIUM], "points": []}[gaussians]
 
 
-def _usd(export: _Export) -> list[str]:
+def _usd(export: ModelToExport) -> list[str]:
     from reconstruction.exports.usd import UsdOptions, write_usd
 
     write_usd(export.scene, export.out, UsdOptions(sh_degree=export.degree(3)), export.attributes, export.monitor)
     return []
 
 
-def _ply(export: _Export) -> list[str]:
+def _ply(export: ModelToExport) -> list[str]:
     from reconstruction.exports.ply_export import write_ply
 
-    kind: Literal["2dgs", "3dgs"] = "2dgs" if export.wanted.format is ModelFormat.PLY_2DGS else "3dgs"
+    kind: Literal["2dgs", "3dgs"] = "2dgs" if export.wanted.format == ModelFormat.PLY_2DGS else "3dgs"
     done = write_ply(export.scene, export.out, kind, degree=export.degree(3), monitor=export.monitor)
     return _left_out(done)
 
 
-def _spz(export: _Export) -> list[str]:
+def _spz(export: ModelToExport) -> list[str]:
     from reconstruction.exports.spz.writing import write_spz
 
-    version: Literal[3, 4] = 4 if export.wanted.format is ModelFormat.SPZ_4 else 3
+    version: Literal[3, 4] = 4 if export.wanted.format == ModelFormat.SPZ_4 else 3
     compression = _compression(export)
     return _left_out(write_spz(export.scene, export.out, compression, monitor=export.monitor, version=version))
 
 
-def _sog(export: _Export) -> list[str]:
+def _sog(export: ModelToExport) -> list[str]:
     from reconstruction.exports.sog.writing import write_sog
 
     return _left_out(write_sog(export.scene, export.out, _compression(export), monitor=export.monitor))
 
 
-def _mesh(export: _Export) -> list[str]:
+def _mesh(export: ModelToExport) -> list[str]:
     from reconstruction.exports.mesh import write_mesh
 
     write_mesh(export.scene, export.trained.model, export.out, attributes=export.attributes, monitor=export.monitor)
     return ["each panel is a picture of its front: mirror images in it belong to that view alone"]
 
 
-def _cityjson(export: _Export) -> list[str]:
+def _cityjson(export: ModelToExport) -> list[str]:
     from reconstruction.exports.cityjson import write_cityjson
 
     write_cityjson(export.scene, export.out, export.attributes, export.monitor)
     return []
 
 
-WRITERS: dict[ModelFormat, Callable[[_Export], list[str]]] = {
-    ModelFormat.WEB: _web,
-    ModelFormat.GLTF: _gltf,
-    ModelFormat.TILES: _tiles,
-    ModelFormat.USD: _usd,
-    ModelFormat.PLY: _ply,
-    ModelFormat.PLY_2DGS: _ply,
-    ModelFormat.SPZ: _spz,
-    ModelFormat.SPZ_4: _spz,
-    ModelFormat.SOG: _sog,
-    ModelFormat.MESH: _mesh,
-    ModelFormat.CITYJSON: _cityjson,
+@dataclass(frozen=True, slots=True)
+class ModelExporter:
+    """A format that models are written as.
+
+    Parameters
+    ----------
+    endings
+        Of the names of its files, with the dot; the first is proposed. Empty: a folder is written.
+    write
+        Writes a `ModelToExport`; gives what a reader of the file should know.
+    title, about
+        Of a plug-in, in the window's list: what it is called, and in one sentence what it is for. For the formats of
+        this program the window has words in the user's language.
+    has_presets
+        Whether a preset decides the size.
+    has_parts
+        Whether components can be written alone.
+    has_colours
+        Whether Gaussians, with their colours, are written; otherwise panels alone.
+    """
+
+    endings: tuple[str, ...]
+    write: Callable[[ModelToExport], list[str]]
+    title: str = ""
+    about: str = ""
+    has_presets: bool = False
+    has_parts: bool = True
+    has_colours: bool = True
+
+    def __post_init__(self) -> None:
+        if not all(ending.startswith(".") for ending in self.endings):
+            raise ValueError(f"endings: expected such as ('.ply',), got {self.endings}")
+
+
+def _in_another_way(_export: ModelToExport) -> list[str]:
+    raise ValueError("IFC is written from records alone: _ifc")
+
+
+EXPORTERS: dict[str, ModelExporter] = {
+    ModelFormat.WEB: ModelExporter((), _web),
+    ModelFormat.GLTF: ModelExporter((".glb",), _gltf),
+    ModelFormat.TILES: ModelExporter((), _tiles, has_presets=True),
+    ModelFormat.USD: ModelExporter((".usdc", ".usda", ".usd"), _usd),
+    ModelFormat.PLY: ModelExporter((".ply",), _ply),
+    ModelFormat.PLY_2DGS: ModelExporter((".ply",), _ply),
+    ModelFormat.SPZ: ModelExporter((".spz",), _spz, has_presets=True),
+    ModelFormat.SPZ_4: ModelExporter((".spz",), _spz, has_presets=True),
+    ModelFormat.SOG: ModelExporter((".sog",), _sog, has_presets=True),
+    ModelFormat.MESH: ModelExporter((".glb",), _mesh, has_colours=False),
+    ModelFormat.CITYJSON: ModelExporter((".city.json", ".json"), _cityjson, has_colours=False),
+    ModelFormat.IFC: ModelExporter((".ifc",), _in_another_way, has_parts=False, has_colours=False),
 }
+"""Of this program, by the name on the command line."""
 
 
-def _compression(export: _Export) -> Compression:
-    from dataclasses import replace
+@cache
+def model_exporters() -> dict[str, ModelExporter]:
+    """All formats by the name on the command line: those of this program, then those of plug-ins."""
+    return EXPORTERS | load_plugins(PluginGroup.MODEL_FORMATS, _of_plugin, EXPORTERS)
 
+
+def _of_plugin(plugin: Plugin, found: object) -> ModelExporter:
+    own = expect_type(found, ModelExporter)
+    return replace(own, title=own.title or plugin.name, write=guarded(plugin, own.write, list))
+
+
+def model_exporter(name: str) -> ModelExporter:
+    """A format by its name.
+
+    Raises
+    ------
+    InputError
+        There is none; the message lists all, or says why a plug-in was left out.
+    """
+    if name in EXPORTERS:
+        return EXPORTERS[name]
+    if name not in model_exporters():
+        problem = told_problem(PluginGroup.MODEL_FORMATS, name)
+        known = ", ".join(model_exporters())
+        raise InputError(f"there is no model format '{name}'; known are: {known}" if problem is None else str(problem))
+    return model_exporters()[name]
+
+
+def _compression(export: ModelToExport) -> Compression:
     from reconstruction.exports.compression import PRESETS
 
     found = PRESETS[export.wanted.preset]

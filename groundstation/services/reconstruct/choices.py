@@ -9,7 +9,7 @@ from pathlib import Path
 
 from groundstation.services.reconstruct.folders import DataSetCard
 from groundstation.services.reconstruct.request import TrainRequest
-from reconstruction.training.method_registry import DEFAULT_METHOD, METHODS
+from reconstruction.training.method_registry import DEFAULT_METHOD, method_named, training_methods
 from reconstruction.training.names import LIGHTS, PRESETS
 from reconstruction.training.photos.decoded_photo import DECODING_BYTES_PER_PX, Decoding, decoded_bytes
 
@@ -54,7 +54,7 @@ def method_rows() -> tuple[MethodRow, ...]:
     """All methods, the usual one first."""
     rows = [
         MethodRow(name, each.title, each.what, each.knows_panels, str(each.settings.get("light", "auto")))
-        for name, each in METHODS.items()
+        for name, each in training_methods().items()
     ]
     return tuple(sorted(rows, key=lambda row: row.name != DEFAULT_METHOD))
 
@@ -101,7 +101,7 @@ class TrainChoice:
 
     def wish(self, memory_bytes: int | None = None) -> TrainRequest:
         """What is asked of the training."""
-        knows_panels = METHODS[self.method].knows_panels
+        knows_panels = method_named(self.method).knows_panels
         return TrainRequest(
             self.preset if self.minutes is None else preset_for(self.minutes),
             self.method,

@@ -42,13 +42,20 @@ _SHADERS: dict[str, Callable[[TrainConfig, Surroundings], Shader]] = {
     "ref-gaussian": lambda config, surroundings: RefGaussian(torch.from_numpy(surroundings.triangles_m)),
     "ref-gs": lambda config, surroundings: RefGs(config.seed),
 }
-"""By the method's name; all others have harmonics alone."""
+"""By the method's name; plug-ins bring theirs, and all others have harmonics alone."""
 
 
 def shader_of(config: TrainConfig, surroundings: Surroundings) -> Shader:
     """For a training that begins."""
-    make = _SHADERS.get(config.method)
-    return Shader() if make is None else make(config, surroundings)
+    if config.method in _SHADERS:
+        return _SHADERS[config.method](config, surroundings)
+    of_plugin = config.trained_by.shader
+    if of_plugin is None:
+        return Shader()
+    made = of_plugin(config, surroundings)
+    if not isinstance(made, Shader):
+        raise TypeError(f"the method '{config.method}': expected a Shader, got {type(made).__name__}")
+    return made
 
 
 def empty_shader(config: TrainConfig, tensors: Mapping[str, Tensor]) -> Shader:

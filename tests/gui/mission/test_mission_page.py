@@ -298,7 +298,7 @@ def test_every_choice_of_the_export_form_comes_back(application):
         assert form.value() == value
     assert heard == []
     form._format.setCurrentIndex(1)
-    assert heard[-1][0] is FileFormat.MAVLINK_PLAN
+    assert heard[-1][0] == FileFormat.MAVLINK_PLAN
 
 
 def test_import_makes_a_plan_that_undo_takes_away(page, workspace, planned, idle, said, tmp_path):

@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given, settings
 
 from missions.dji.write import DjiOptions, LinkLoss, kmz_bytes
-from missions.formats.encode import ExportOptions, encode
+from missions.formats.encode import ExportOptions
+from missions.formats.registry import encode
 from missions.mission.build import missions_from_plan
 from missions.mission.model import FileFormat, HeightReference, Mission, altitude_amsl_m
 from planning.base.errors import MissionError

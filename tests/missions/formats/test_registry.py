@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from missions.formats.encode import ExportOptions, encode, takeoff_check
-from missions.formats.registry import export, read_missions, sortie_path
+from missions.formats.encode import ExportOptions, takeoff_check
+from missions.formats.registry import encode, export, read_missions, sortie_path
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
 from missions.mission.model import FileFormat, GeoPoint, HeightReference, ReadMission, altitude_amsl_m

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from missions.formats.encode import ExportOptions, encode
-from missions.formats.registry import read_missions
+from missions.formats.encode import ExportOptions
+from missions.formats.registry import encode, read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.plan_json import read_plan_json
 from missions.mission.model import FileFormat, GeoPoint, altitude_amsl_m

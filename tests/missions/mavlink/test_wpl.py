@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from missions.formats.encode import ExportOptions, encode
-from missions.formats.registry import read_missions
+from missions.formats.encode import ExportOptions
+from missions.formats.registry import encode, read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.wpl import read_wpl
 from missions.mission.build import missions_from_plan

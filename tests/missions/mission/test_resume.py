@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.formats.encode import ExportOptions, encode
+from missions.formats.encode import ExportOptions
+from missions.formats.registry import encode
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import MissionItem, mission_items
 from missions.mission.model import FileFormat, HeightReference, Mission

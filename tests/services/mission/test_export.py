@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import pytest
 
-from groundstation.services.mission.export import SUFFIXES, export_plan, find_site, import_missions
+from groundstation.services.mission.export import export_plan, find_site, import_missions
 from groundstation.services.plan.planning import plan_site
 from groundstation.services.project.document import Document
 from groundstation.services.project.folder import create_project
 from missions.formats.encode import ExportOptions
-from missions.formats.registry import read_missions
+from missions.formats.registry import FORMATS, read_missions
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.model import FileFormat
 from planning.base.errors import InputError
@@ -46,7 +46,7 @@ def test_a_site_at_another_place_is_refused(folder, tmp_path):
 
 
 def test_every_format_has_an_ending():
-    assert set(SUFFIXES) == set(FileFormat)
+    assert set(FORMATS) == set(FileFormat)
 
 
 def test_sorties_that_an_autopilot_cannot_keep_are_shared_out_anew(folder, tmp_path, monkeypatch):
@@ -65,7 +65,9 @@ def test_sorties_that_an_autopilot_cannot_keep_are_shared_out_anew(folder, tmp_p
 @pytest.mark.parametrize("file_format", list(FileFormat))
 def test_a_mission_that_comes_back_covers_what_the_plan_covers(folder, tmp_path, file_format):
     plan, site = read_plan(folder / "roof.plan.json"), folder / "roof.site.json"
-    paths, findings = export_plan(folder / "roof.plan.json", file_format, tmp_path / f"m{SUFFIXES[file_format][0]}")
+    paths, findings = export_plan(
+        folder / "roof.plan.json", file_format, tmp_path / f"m{FORMATS[file_format].endings[0]}"
+    )
     assert not [finding for finding in findings if finding.code in ("file-name", "not-ready", "site-changed")]
     back, _, _ = import_missions(paths, site, tmp_path / "back.json")
     assert read_plan(tmp_path / "back.json") == back

@@ -6,7 +6,6 @@ import pytest
 
 from groundstation.services.mission import files as mission_files
 from groundstation.services.mission.files import (
-    SUFFIXES,
     export_paths,
     in_order_of_sorties,
     missions_as_plan,
@@ -16,6 +15,7 @@ from groundstation.services.mission.files import (
 from groundstation.services.mission.preflight import preflight
 from missions.dji.write import LinkLoss
 from missions.formats.encode import ExportOptions
+from missions.formats.registry import FORMATS
 from missions.mission.model import FileFormat, HeightReference
 from planning.base.errors import InputError
 from planning.base.findings import Severity
@@ -37,7 +37,7 @@ def test_every_format_is_prepared_and_then_written(planned, tmp_path, file_forma
     plan, model = planned
     prepared = prepare_export(plan, model, file_format)
     assert prepared.can_be_written
-    path = tmp_path / f"out{SUFFIXES[file_format][0]}"
+    path = tmp_path / f"out{FORMATS[file_format].endings[0]}"
     assert not list(tmp_path.iterdir())
     assert write_export(prepared, path) == export_paths(prepared, path) == tuple(sorted(tmp_path.iterdir()))
     back, _ = missions_as_plan([path], model)
