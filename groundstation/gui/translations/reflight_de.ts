@@ -2769,6 +2769,26 @@ Scheiben: {2}, je {3} × {4}</translation>
         <source>About Reflight</source>
         <translation>Über Reflight</translation>
     </message>
+    <message>
+        <source>aircraft</source>
+        <translation>Fluggerät</translation>
+    </message>
+    <message>
+        <source>mission format</source>
+        <translation>Missionsformat</translation>
+    </message>
+    <message>
+        <source>model format</source>
+        <translation>Modellformat</translation>
+    </message>
+    <message>
+        <source>training method</source>
+        <translation>Trainingsmethode</translation>
+    </message>
+    <message>
+        <source>Plug-ins</source>
+        <translation>Erweiterungen</translation>
+    </message>
 </context>
 <context>
     <name>MessageArea</name>
@@ -12266,6 +12286,58 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>baking panels</source>
         <translation>Spiegelungen werden in Farben übertragen</translation>
+    </message>
+    <message>
+        <source>there is no mission format &apos;{0}&apos;; known are: {1}</source>
+        <translation>es gibt kein Missionsformat „{0}“; bekannt sind: {1}</translation>
+    </message>
+    <message>
+        <source>there is no model format &apos;{0}&apos;; known are: {1}</source>
+        <translation>es gibt kein Modellformat „{0}“; bekannt sind: {1}</translation>
+    </message>
+    <message>
+        <source>the plug-in &apos;{0}&apos; of {1}</source>
+        <translation>die Erweiterung „{0}“ von {1}</translation>
+    </message>
+    <message>
+        <source>an unknown package</source>
+        <translation>einem unbekannten Paket</translation>
+    </message>
+    <message>
+        <source>{0} is left out: {1}; update it, or remove it</source>
+        <translation>{0} bleibt weg: {1}; aktualisieren oder entfernen</translation>
+    </message>
+    <message>
+        <source>{0} failed: {1}: {2}; update it, or remove it</source>
+        <translation>{0} ist gescheitert: {1}: {2}; aktualisieren oder entfernen</translation>
+    </message>
+    <message>
+        <source>its name has other characters than a-z, 0-9, dot, hyphen and underscore</source>
+        <translation>ihr Name hat andere Zeichen als a-z, 0-9, Punkt, Binde- und Unterstrich</translation>
+    </message>
+    <message>
+        <source>there is another one of that name</source>
+        <translation>es gibt schon etwas mit diesem Namen</translation>
+    </message>
+    <message>
+        <source>expected a {0} from it, got {1}</source>
+        <translation>erwartet wird von ihr {0}, gekommen ist {1}</translation>
+    </message>
+    <message>
+        <source>expected its entry point to stand for a {0}, got {1}</source>
+        <translation>ihr Einstiegspunkt muss für {0} stehen, steht aber für {1}</translation>
+    </message>
+    <message>
+        <source>expected its entry point to stand for the path of a TOML file, got {0}</source>
+        <translation>ihr Einstiegspunkt muss für den Pfad einer TOML-Datei stehen, steht aber für {0}</translation>
+    </message>
+    <message>
+        <source>&apos;{0}&apos; has other characters than a-z, 0-9, dot, hyphen and underscore</source>
+        <translation>„{0}“ hat andere Zeichen als a-z, 0-9, Punkt, Binde- und Unterstrich</translation>
+    </message>
+    <message>
+        <source>there is another aircraft profile &apos;{0}&apos;</source>
+        <translation>es gibt schon ein Fluggerät „{0}“</translation>
     </message>
     <message>
         <source>writing panels</source>
