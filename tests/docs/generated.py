@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.docs import commands, parameter_texts, settings
+from tests.docs.drawings import drawings
 
 
 def generated_pages(docs: Path) -> dict[Path, str]:
@@ -13,4 +14,5 @@ def generated_pages(docs: Path) -> dict[Path, str]:
         docs / "reference" / "commands.md": commands.page(),
         docs / "reference" / "settings.md": settings.page(),
         docs.parent / "groundstation/gui/application/parameter_texts.py": parameter_texts.module(),
+        **{docs / "drawings" / name: text for name, text in drawings(docs.parent / "pyproject.toml").items()},
     }
