@@ -1,7 +1,8 @@
-"""The drawings of docs/drawings as SVG: data flow, hemisphere sections, the house with its floors, phases of a flight."""
+"""The drawings of docs/drawings as SVG: data flow, sections of a hemisphere, the house, phases of a flight."""
 
 from __future__ import annotations
 
+import itertools
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -100,9 +101,24 @@ def data_flow() -> str:
     rows = [(40, "before the second flight"), (190, "the second flight"), (340, "after it")]
     for y, text in rows:
         drawing.text(20, y - 12, text, is_bold=True, colour=BLUE)
-    first = ["Building model\nIFC, CityGML, mesh", "Site\nsite.json", "Plan\nplan.json, bound", "Checks\nverdict, brief"]
-    second = ["Mission files\nKMZ, .plan, ...", "Flight\nreal or simulated", "Report\nflight.json", "Top-up\na shorter plan"]
-    third = ["Photos\npose, quality", "Data set\npanels drawn in", "Model\nsplats and light", "Objects\nrecords, exports"]
+    first = [
+        "Building model\nIFC, CityGML, mesh",
+        "Site\nsite.json",
+        "Plan\nplan.json, bound",
+        "Checks\nverdict, brief",
+    ]
+    second = [
+        "Mission files\nKMZ, .plan, ...",
+        "Flight\nreal or simulated",
+        "Report\nflight.json",
+        "Top-up\na shorter plan",
+    ]
+    third = [
+        "Photos\npose, quality",
+        "Data set\npanels drawn in",
+        "Model\nsplats and light",
+        "Objects\nrecords, exports",
+    ]
     colours = ["#e7f0fa", "#fdf0e2", "#e6f4ec"]
     for (y, _), texts, fill in zip(rows, (first, second, third), colours, strict=True):
         for column, text in enumerate(texts):
@@ -120,7 +136,9 @@ def data_flow() -> str:
     drawing.text(180, 307, "card", colour=BLUE, size=12)
     # Panels are found in photos of the first flight, and go back into the site.
     drawing.arrow([(60, 410), (60, 450), (925, 450), (925, 20), (330, 20), (330, 38)], GREEN, is_dashed=True)
-    drawing.text(480, 444, "panels found in the first flight's photos become the site's", "middle", colour=GREEN, size=12)
+    drawing.text(
+        480, 444, "panels found in the first flight's photos become the site's", "middle", colour=GREEN, size=12
+    )
     return drawing.svg()
 
 
@@ -189,7 +207,7 @@ def _section(ring: int, sector: int) -> NDArray[np.float64]:
 HOUSES = {
     "groundstation.gui": "the window",
     "groundstation.cli": "the command line",
-    "groundstation.services": "use cases without Qt: project, jobs, site, plan, mission, fly, photos, reconstruct, model",
+    "groundstation.services": "use cases without Qt: a room for each task",
     "groundstation.vehicle": "one vehicle on a link: telemetry, setup, list before take-off, sortie",
     "missions": "what an aircraft is told: files, MAVLink, simulator, flight records",
     "reconstruction": "photos to panels, data set, model, objects, exports",
@@ -230,7 +248,7 @@ def _storey(
 ) -> None:
     x, y, width, height = place
     fill = {"groundstation": "#e7f0fa", "missions": "#fdf0e2", "reconstruction": "#e6f4ec"}.get(
-        name.split(".")[0], "#f0ecf7"
+        name.split(".", 1)[0], "#f0ecf7"
     )
     drawing.shapes.append(
         f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" fill="{fill}" stroke="{INK}"/>'
@@ -260,7 +278,7 @@ def flight_phases() -> str:
         drawing.box(x, y, 140, 44, name, "#e7f0fa")
         drawing.text(x + 70, y + 62, leads_on, "middle", size=12, colour=GREEN)
         drawing.text(x + 70, y + 79, fails, "middle", size=12, colour=RED)
-    for (x0, y0), (x1, y1) in zip(places, places[1:], strict=False):
+    for (x0, y0), (x1, y1) in itertools.pairwise(places):
         if y0 != y1:
             drawing.arrow([(x0 + 140, y0 + 22), (x0 + 185, y0 + 22), (x0 + 185, y1 + 22), (x1 + 142, y1 + 22)])
         elif x1 > x0:

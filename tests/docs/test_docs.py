@@ -46,6 +46,54 @@ def exists(parts):
     return False
 
 
+def written():
+    """Pages that people write, and the text of each."""
+    texts = {page: page.read_text("utf-8") for page in PAGES[1:]}
+    return {page: text for page, text in texts.items() if "do not edit by hand" not in text[:400].lower()}
+
+
+def test_pages_are_short_enough_to_be_read():
+    words = {page: len(text.split()) for page, text in written().items()}
+    assert sum(words.values()) <= 44_000
+    assert max(words.values()) <= 2500, max(words, key=words.get)
+    for page, text in written().items():
+        for block in re.split(r"\n\s*\n", text):
+            if not block.lstrip().startswith(("|", "```", "- |")):
+                assert len(block.split()) <= 120, (
+                    f"{page.name}: a paragraph of {len(block.split())} words: {block[:60]}"
+                )
+    assert PAGES[0].read_text("utf-8").count("\n") <= 120
+
+
+MEASURED = re.compile(r"(?<![\w.])\d[\d ]*\.?\d*\s(?:dB|ms|GiB|MiB|GB|MB|fps|M pairs/s)\b")
+
+
+def test_prose_repeats_no_figure_of_a_generated_table():
+    tables = " ".join(
+        line.replace("|", " | ")
+        for name in ("benchmarks.md", "tables.md")
+        for line in (ROOT / "docs" / name).read_text("utf-8").splitlines()
+        if line.startswith("|")
+    )
+    known = {" ".join(figure.split()) for figure in MEASURED.findall(tables)}
+    for page, text in written().items():
+        prose = re.sub(r"^```.*?^```", "", text, flags=re.S | re.M)
+        for line in prose.splitlines():
+            for figure in [] if line.startswith("|") else MEASURED.findall(line):
+                assert " ".join(figure.split()) not in known, f"{page.name} repeats {figure} of a table: {line[:80]}"
+
+
+def test_every_page_is_linked_from_the_contents():
+    listed = set()
+    for page, text in written().items():
+        for block in re.findall(r"```\{toctree\}\n(.*?)```", text, re.S):
+            for line in block.splitlines():
+                if line and not line.startswith(":"):
+                    listed |= {path.with_suffix("") for path in page.parent.glob(f"{line}.md")}
+    pages = {page.with_suffix("") for page in PAGES[1:]}
+    assert pages - listed == {ROOT / "docs" / "index"}
+
+
 def test_a_name_that_is_nowhere_is_found_out():
     assert exists(["planning", "plan", "Constraints"])
     assert exists(["planning", "geo"])
