@@ -3485,7 +3485,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>how views are chosen</source>
-        <translation>wie Ansichten gewählt werden</translation>
+        <translation>wie Aufnahmen gewählt werden</translation>
     </message>
     <message>
         <source>Views</source>
@@ -3493,7 +3493,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>number of views</source>
-        <translation>Zahl der Ansichten</translation>
+        <translation>Zahl der Aufnahmen</translation>
     </message>
     <message>
         <source>Coverage</source>
@@ -3501,7 +3501,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>share of what can be covered, 0 to 1, with as few views as possible</source>
-        <translation>Anteil dessen, was abgedeckt werden kann, 0 bis 1, mit möglichst wenigen Ansichten</translation>
+        <translation>Anteil dessen, was abgedeckt werden kann, 0 bis 1, mit möglichst wenigen Aufnahmen</translation>
     </message>
     <message>
         <source>Batteries</source>
@@ -3525,7 +3525,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>of every view and path to everything solid</source>
-        <translation>jeder Ansicht und jedes Wegs zu allem Festen</translation>
+        <translation>jeder Aufnahme und jedes Wegs zu allem Festen</translation>
     </message>
     <message>
         <source>Section step</source>
@@ -3541,7 +3541,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>a view counts only when all four corners of a panel are in the picture, not just its middle</source>
-        <translation>eine Ansicht zählt nur, wenn alle vier Ecken einer Scheibe im Bild sind, nicht nur ihre Mitte</translation>
+        <translation>eine Aufnahme zählt nur, wenn alle vier Ecken einer Scheibe im Bild sind, nicht nur ihre Mitte</translation>
     </message>
     <message>
         <source>Wanted pixel</source>
@@ -4066,7 +4066,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>number of views</source>
-        <translation>Zahl der Ansichten</translation>
+        <translation>Zahl der Aufnahmen</translation>
     </message>
     <message>
         <source>batteries at hand</source>
