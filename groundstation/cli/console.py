@@ -14,8 +14,10 @@ from planning.base.findings import Finding, Severity
 
 if TYPE_CHECKING:
     from missions.flight.outcome import FlightReport
+    from planning.tradeoff.runner import Compared
 
 Result = TypeVar("Result")
+Found = TypeVar("Found")
 
 MARKS = {Severity.ERROR: "ERROR", Severity.WARNING: "warning", Severity.NOTE: "note", Severity.OK: "ok"}
 
@@ -75,6 +77,32 @@ class _ProgressLine:
 def print_json(content: dict[str, Any]) -> None:
     """One JSON object on stdout."""
     print(json.dumps(content, indent=1, allow_nan=False))
+
+
+def show_tradeoff(
+    name: str,
+    is_json: bool,
+    work: Callable[[JobContext], Compared[Found]],
+    summary: Callable[[Found], dict[str, Any]],
+    tell: Callable[[Found], object],
+) -> int:
+    """Weigh something against time and say what came of it; returns the exit status.
+
+    Parameters
+    ----------
+    summary
+        What the JSON object has besides the files.
+    tell
+        Prints it for people; the files follow.
+    """
+    made = run_job(f"tradeoff {name}", work)
+    if is_json:
+        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), **summary(made.found)})
+        return 0
+    tell(made.found)
+    for path in made.paths:
+        print(path)
+    return 0
 
 
 def print_findings(findings: Iterable[Finding]) -> None:

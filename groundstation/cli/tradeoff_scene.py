@@ -12,7 +12,7 @@ from groundstation.cli.options import add_profile_argument, checked_seed, effect
 from planning.base.errors import InputError
 
 if TYPE_CHECKING:
-    from groundstation.services.scenes.tradeoff import SceneTradeoff
+    from groundstation.services.scenes.tradeoff import SceneTrials
     from groundstation.services.scenes.views import SceneRequest
     from reconstruction.tradeoff.scene_downstream import EffectWorth
     from reconstruction.tradeoff.scene_tradeoff import SceneVariants
@@ -81,43 +81,38 @@ def add_arguments(parser: Any) -> None:
 
 def run_scene(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
+    from groundstation.cli.console import show_tradeoff
     from groundstation.services.scenes.tradeoff import scene_tradeoff
-    from reconstruction.tradeoff.scene_downstream import worth_rows
-    from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
 
     wish, variants = _wish(options), _variants(options)
     if options.truth_rays < 0:
         raise InputError(f"--truth-rays: expected 0 or more, got {options.truth_rays}")
     if options.reflections != 0 and not options.reflections >= LEAST_VIEWS:
         raise InputError(f"--reflections: expected {LEAST_VIEWS} or more photos, or 0, got {options.reflections}")
-    made = run_job(
-        "tradeoff scene",
+    return show_tradeoff(
+        "scene",
+        options.json,
         lambda context: scene_tradeoff(
-            wish,
-            variants,
-            options.truth_rays or None,
-            options.out,
-            context,
-            n_reflection_views=options.reflections,
+            wish, variants, options.truth_rays or None, options.out, context, n_reflection_views=options.reflections
         ),
+        _summary,
+        _print,
     )
-    if options.json:
-        import msgspec
 
-        print_json(
-            {
-                "csv": str(made.csv_path),
-                "picture": str(made.picture_path),
-                "truth": {"name": made.truth.name, "seconds": made.truth.seconds, "error": truth_error(made.truth)},
-                "effects": msgspec.to_builtins(made.decisions),
-                "settings": scene_rows(made.truth, made.trials),
-                "reflections": worth_rows(made.worths) if made.worths else [],
-            }
-        )
-        return 0
-    _print(made)
-    return 0
+
+def _summary(found: SceneTrials) -> dict[str, Any]:
+    import msgspec
+
+    from reconstruction.tradeoff.scene_downstream import worth_rows
+    from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
+
+    truth = found.truth
+    return {
+        "truth": {"name": truth.name, "seconds": truth.seconds, "error": truth_error(truth)},
+        "effects": msgspec.to_builtins(found.decisions),
+        "settings": scene_rows(truth, found.trials),
+        "reflections": worth_rows(found.worths) if found.worths else [],
+    }
 
 
 def _wish(options: argparse.Namespace) -> SceneRequest:
@@ -153,7 +148,7 @@ def _variants(options: argparse.Namespace) -> SceneVariants:
     return SceneVariants(options.samples, options.widths, options.rays, effects)
 
 
-def _print(made: SceneTradeoff) -> None:
+def _print(made: SceneTrials) -> None:
     from missions.simulator.build import effects_table
     from reconstruction.tradeoff.scene_tradeoff import scene_rows, truth_error
 
@@ -171,9 +166,6 @@ def _print(made: SceneTradeoff) -> None:
         print(f"  {row['setting']:<36}{ready}{row['seconds']:>10.3f}{error}{found}")
     if made.worths:
         _print_worths(made.worths)
-    for path in (made.csv_path, made.picture_path, made.worths_path):
-        if path is not None:
-            print(path)
 
 
 def _print_worths(worths: Sequence[EffectWorth]) -> None:

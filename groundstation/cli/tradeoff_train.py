@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,7 @@ def add_arguments(parser: Any) -> None:
 
 def run_train(options: argparse.Namespace) -> int:
     """Compare and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
+    from groundstation.cli.console import show_tradeoff
     from groundstation.cli.options import checked_seed
     from groundstation.services.reconstruct.tradeoff import train_tradeoff
     from groundstation.services.reconstruct.training import TrainRequest
@@ -75,19 +76,22 @@ def run_train(options: argparse.Namespace) -> int:
         options.settings,
     )
     knobs = dict(map(knob_of, options.vary or DEFAULT_KNOBS))
-    made = run_job("tradeoff train", lambda context: train_tradeoff(options.dataset, wish, knobs, options.out, context))
-    rows = trial_rows(made.trials)
-    if options.json:
-        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), "settings": rows})
-        return 0
+    return show_tradeoff(
+        "train",
+        options.json,
+        lambda context: train_tradeoff(options.dataset, wish, knobs, options.out, context),
+        lambda trials: {"settings": trial_rows(trials)},
+        lambda trials: _print(trial_rows(trials)),
+    )
+
+
+def _print(rows: Sequence[Mapping[str, Any]]) -> None:
     print(f"  {'setting':<38}{'time':>9}{'facade':>11}{'':>9}{'whole':>11}{'steps':>8}{'splats':>8}")
     for row in rows:
         print(
             f"  {row['setting']:<38}{row['seconds']:>7.1f} s{row['facade_psnr_db']:>8.2f} dB"
             f"{row['change_db']:>+9.2f}{row['whole_psnr_db']:>8.2f} dB{row['steps']:>8}{row['splats']:>8}"
         )
-    print(f"{made.csv_path}\n{made.picture_path}")
-    return 0
 
 
 def knob_of(text: str) -> tuple[str, list[Any]]:

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Decision
 from planning.base.errors import InfeasibleError, InputError
-from planning.base.progress import QUIET, Clock, Monitor, QualityPoint
+from planning.base.progress import QUIET, Clock, Monitor
 from planning.site.records import Facade
-from planning.tradeoff.curves import Curve, falling
-from planning.tradeoff.picture import GapAxis, Line, Panel
+from planning.tradeoff.picture import GapAxis, Panel
+from planning.tradeoff.runner import knob_lines
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
 from reconstruction.metrics.run import own_method, score_answer
@@ -215,6 +215,21 @@ class SceneTrial:
     seconds: float
     error: float
     panels: SetScores
+
+    @property
+    def knob(self) -> str:
+        """What was turned."""
+        return self.setting.knob
+
+    @property
+    def value(self) -> str:
+        """To where."""
+        return self.setting.value
+
+    @property
+    def gap(self) -> float:
+        """Its error."""
+        return self.error
 
     @property
     def psnr_db(self) -> float:
@@ -416,15 +431,6 @@ def _found(trial: SceneTrial | Truth, truth: Truth) -> dict[str, Any]:
 
 def scene_panel(title: str, trials: Sequence[SceneTrial], truth: Truth) -> Panel:
     """A line for each knob; the truth's own error as a mark."""
-    lines = []
-    for knob in dict.fromkeys(trial.setting.knob for trial in trials):
-        chosen = sorted((trial for trial in trials if trial.setting.knob == knob), key=lambda trial: trial.seconds)
-        best = min(chosen, key=lambda trial: trial.error)
-        remark = f"{best.setting.value}: {best.psnr_db:.1f} dB in {best.seconds:.2f} s".removeprefix(": ")
-        lines.append(Line(knob or "as the scene decides", _curve(chosen), remark))
+    lines = knob_lines(trials, "as the scene decides", lambda best: f"{best.psnr_db:.1f} dB in {best.seconds:.2f} s")
     own = truth_error(truth)
-    return Panel(title, tuple(lines), (("the truth itself", own),) if own > 0.0 else ())
-
-
-def _curve(trials: Sequence[SceneTrial]) -> Curve:
-    return falling([QualityPoint(t.seconds, t.error) for t in trials], max(t.seconds for t in trials))
+    return Panel(title, lines, (("the truth itself", own),) if own > 0.0 else ())

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from planning.base.progress import QUIET, Monitor, QualityPoint
-from planning.tradeoff.curves import Curve, falling
-from planning.tradeoff.picture import GapAxis, Line, Panel
+from planning.base.progress import QUIET, Monitor
+from planning.tradeoff.picture import GapAxis, Panel
+from planning.tradeoff.runner import knob_lines
 from reconstruction.metrics.metrics import PhotoScores, SetScores, summarise
 from reconstruction.metrics.run import Method, own_method, score_answer, together_method, viewed, viewed_method
 from reconstruction.metrics.sets import PhotoSet
@@ -82,6 +82,11 @@ class SettingScores:
     parameters: SegmentationParameters
     scores: SetScores
     view_error_px: float | None = None
+
+    @property
+    def seconds(self) -> float:
+        """Mean of a photo."""
+        return self.scores.seconds.mean
 
     @property
     def gap(self) -> float:
@@ -181,18 +186,5 @@ def variant_rows(runs: Sequence[SettingScores]) -> list[dict[str, Any]]:
 
 def variants_panel(title: str, runs: Sequence[SettingScores]) -> Panel:
     """A line for each knob: the best mIoU that its settings reach in the time they take."""
-    knobs = dict.fromkeys(run.knob for run in runs)
-    lines = []
-    for knob in knobs:
-        chosen = sorted((run for run in runs if run.knob == knob), key=lambda run: run.scores.seconds.mean)
-        best = min(chosen, key=lambda run: run.gap)
-        remark = f"{best.value}: " if knob else ""
-        remark += f"{1.0 - best.gap:.4f} in {best.scores.seconds.mean:.2f} s"
-        lines.append(Line(knob or "as asked", _curve(chosen), remark))
-    return Panel(title, tuple(lines))
-
-
-def _curve(runs: Sequence[SettingScores]) -> Curve:
-    """Settings of one knob, the fastest first."""
-    points = [QualityPoint(run.scores.seconds.mean, run.gap) for run in runs]
-    return falling(points, max(point.t_s for point in points))
+    lines = knob_lines(runs, "as asked", lambda best: f"{1.0 - best.gap:.4f} in {best.seconds:.2f} s")
+    return Panel(title, lines)

@@ -12,6 +12,7 @@ from typing import Any
 from planning.base.progress import QUIET, Clock, Monitor, QualityPoint
 from planning.tradeoff.curves import Curve, falling
 from planning.tradeoff.picture import Line, Panel
+from planning.tradeoff.runner import NumberedRuns
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.training.callbacks import Callbacks
 from reconstruction.training.config import TrainConfig, config_of
@@ -103,9 +104,9 @@ def run_settings(
     OperationCancelled
         From `monitor`.
     """
-    trials = []
+    trials, named = [], NumberedRuns(monitor, "training")
     for number, setting in enumerate(settings):
-        named = _Named(monitor, number, len(settings))
+        named.begin(number, len(settings))
         trained = train_model(folder, setting.config, Callbacks(named), watch=Timer(clock))
         trials.append(_trial(setting, trained, folder, named))
     return tuple(trials)
@@ -124,17 +125,6 @@ def _trial(setting: Setting, trained: TrainedModel, folder: Path, monitor: Monit
         trained.n_splats,
         trained.history,
     )
-
-
-class _Named:
-    """Progress of a training among all."""
-
-    def __init__(self, monitor: Monitor, number: int, n: int) -> None:
-        self._monitor, self._prefix = monitor, f"training {number + 1} of {n}, "
-
-    def report(self, stage: str, done: float, total: float) -> None:
-        """Pass it on."""
-        self._monitor.report(self._prefix + stage, done, total)
 
 
 def trial_rows(trials: Sequence[Trial]) -> list[dict[str, Any]]:

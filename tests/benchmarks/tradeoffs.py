@@ -8,10 +8,18 @@ from planning.request import PlanRequest
 from planning.site.bundled import SCENES
 from planning.tradeoff.curves import seconds_text
 from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, draw
-from planning.tradeoff.plan_report import plan_panels, plan_report, plan_title
-from planning.tradeoff.plan_runs import PlanRun, Variants, common_steps, load_kernels, run_plan, settings
-from planning.tradeoff.tour_report import tour_panel, tour_report, tour_title
-from planning.tradeoff.tour_runs import run_tours, tsplib_case
+from planning.tradeoff.plans import (
+    PlanRun,
+    Variants,
+    common_steps,
+    load_kernels,
+    plan_panels,
+    plan_report,
+    plan_title,
+    run_plan,
+    settings,
+)
+from planning.tradeoff.tours import run_tours, tour_panel, tour_report, tour_title, tsplib_case
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.benchmarks.problems import PLANAR_VIEWS
 

@@ -19,18 +19,33 @@ from planning.site.bundled import SCENES
 from planning.site.free_space import free_space
 from planning.tradeoff.curves import Curve, Noise, answers, falling, mean_curve, seconds_text, winner
 from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, Line, Panel, draw
-from planning.tradeoff.plan_report import (
+from planning.tradeoff.plans import (
+    FailedRun,
+    Variants,
+    bounds_by_step,
+    name_of,
     plan_panels,
     plan_report,
     plan_rows,
     plan_summary,
     plan_title,
+    run_plan,
+    settings,
     share_text,
     time_to_part_s,
 )
-from planning.tradeoff.plan_runs import FailedRun, Variants, bounds_by_step, name_of, run_plan, settings
-from planning.tradeoff.tour_report import tour_panel, tour_report, tour_rows, tour_summary, tour_title
-from planning.tradeoff.tour_runs import TourCase, plan_case, run_tours, tour_methods, tsplib_case
+from planning.tradeoff.tours import (
+    TourCase,
+    plan_case,
+    run_tours,
+    tour_methods,
+    tour_panel,
+    tour_report,
+    tour_rows,
+    tour_summary,
+    tour_title,
+    tsplib_case,
+)
 from planning.viewpoints.prepare import coverage_model
 
 BASE = PlanRequest(n_views=12, greedy=GreedyParameters(n_candidates=300, improve=False), time_budget_s=20.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,10 +18,11 @@ from groundstation.cli.options import checked_seed, new_folder
 from planning.base.errors import InputError
 
 if TYPE_CHECKING:
+    from groundstation.services.plan.tradeoff import PlanRuns
     from planning.tradeoff.curves import Answers
-    from planning.tradeoff.plan_report import PlanReport
-    from planning.tradeoff.plan_runs import FailedRun, Variants
-    from planning.tradeoff.tour_report import TourReport
+    from planning.tradeoff.plans import FailedRun, PlanReport, Variants
+    from planning.tradeoff.tours import TourReport
+    from reconstruction.tradeoff.search_tradeoff import SettingScores
 
 DEFAULT_SECONDS = 30.0
 
@@ -193,16 +194,17 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
 
 def run_plan(options: argparse.Namespace) -> int:
     """Compare planning settings and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
+    from groundstation.cli.console import show_tradeoff
     from groundstation.services.plan.tradeoff import plan_tradeoff
-    from planning.tradeoff.plan_report import plan_summary
+    from planning.tradeoff.plans import plan_summary
 
     variants = _variants(options)
     base = request_of(
         argparse.Namespace(**{name: value for name, value in vars(options).items() if name != "candidates"})
     )
-    made = run_job(
-        "tradeoff plan",
+    return show_tradeoff(
+        "plan",
+        options.json,
         lambda context: plan_tradeoff(
             options.site,
             base,
@@ -213,25 +215,26 @@ def run_plan(options: argparse.Namespace) -> int:
             address=options.cluster,
             monitor=context,
         ),
+        lambda found: {
+            "sites": [plan_summary(report) for report in found.reports],
+            "failed": [{"site": run.site, "run": _failed_name(run), "reason": run.message} for run in found.failed],
+        },
+        lambda found: _print_plans(found, is_timed=options.jobs == 1 and not options.cluster),
     )
-    if options.json:
-        reports = [plan_summary(report) for report in made.reports]
-        failed = [{"site": run.site, "run": _failed_name(run), "reason": run.message} for run in made.failed]
-        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), "sites": reports, "failed": failed})
-        return 0
-    if options.jobs > 1 or options.cluster:
+
+
+def _print_plans(found: PlanRuns, is_timed: bool) -> None:
+    if not is_timed:
         print("note: the runs shared the machine, so their times cannot be compared", file=sys.stderr)
-    for report in made.reports:
+    for report in found.reports:
         _print_plan(report)
-    for run in made.failed:
+    for run in found.failed:
         print(f"warning: {run.site}, {_failed_name(run)}: {run.message}", file=sys.stderr)
-    print(f"{made.csv_path}\n{made.picture_path}")
-    return 0
 
 
 def _variants(options: argparse.Namespace) -> Variants:
     from planning.parameters import check_section_step
-    from planning.tradeoff.plan_runs import Variants
+    from planning.tradeoff.plans import Variants
 
     try:
         for step in options.steps:
@@ -248,7 +251,7 @@ def _failed_name(run: FailedRun) -> str:
 
 def _print_plan(report: PlanReport) -> None:
     from planning.tradeoff.curves import seconds_text
-    from planning.tradeoff.plan_report import plan_title, share_text, time_to_part_s
+    from planning.tradeoff.plans import plan_title, share_text, time_to_part_s
 
     step = report.base_step_deg
     print(plan_title(report))
@@ -292,31 +295,30 @@ def _print_answers(found: Answers, text: Callable[[float], str], goal: Callable[
 
 def run_route(options: argparse.Namespace) -> int:
     """Compare routing methods and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
+    from groundstation.cli.console import show_tradeoff
     from groundstation.services.plan.tradeoff import route_tradeoff
-    from planning.tradeoff.tour_report import tour_summary
-    from planning.tradeoff.tour_runs import tour_methods
+    from planning.tradeoff.tours import tour_methods, tour_summary
 
     methods, seed = tour_methods(options.methods), checked_seed(options.seed)
-    made = run_job(
-        "tradeoff route",
+    return show_tradeoff(
+        "route",
+        options.json,
         lambda context: route_tradeoff(
             options.file, options.seconds, options.out, methods=methods, seed=seed, monitor=context
         ),
+        lambda reports: {"tours": [tour_summary(report) for report in reports]},
+        _print_tours,
     )
-    if options.json:
-        tours = [tour_summary(report) for report in made.reports]
-        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), "tours": tours})
-        return 0
-    for report in made.reports:
+
+
+def _print_tours(reports: Sequence[TourReport]) -> None:
+    for report in reports:
         _print_tour(report)
-    print(f"{made.csv_path}\n{made.picture_path}")
-    return 0
 
 
 def _print_tour(report: TourReport) -> None:
     from planning.tradeoff.curves import seconds_text
-    from planning.tradeoff.tour_report import gap_text, plain, tour_title
+    from planning.tradeoff.tours import gap_text, plain, tour_title
 
     case = report.case
     optimum = "" if case.optimum is None else f", known optimum {plain(case.optimum)}"
@@ -335,7 +337,7 @@ def _print_tour(report: TourReport) -> None:
 
 def run_segment(options: argparse.Namespace) -> int:
     """Compare settings of the search for panels and print; returns the exit status."""
-    from groundstation.cli.console import print_json, run_job
+    from groundstation.cli.console import show_tradeoff
     from groundstation.services.photos.segmentation import segment_tradeoff
     from reconstruction.tradeoff.search_tradeoff import SegmentVariants, variant_rows
 
@@ -346,16 +348,22 @@ def run_segment(options: argparse.Namespace) -> int:
     except ValueError as error:
         raise InputError(str(error)) from error
     request = score_request_of(argparse.Namespace(**{**vars(options), "samples": None}))
-    made = run_job("tradeoff segment", lambda context: segment_tradeoff(request, variants, options.out, context))
-    rows = variant_rows(made.runs)
-    if options.json:
-        print_json({"csv": str(made.csv_path), "picture": str(made.picture_path), "settings": rows})
-        return 0
-    print(f"{made.runs[0].scores.n_panels} panels in {rows[0]['photos']} photos")
+    return show_tradeoff(
+        "segment",
+        options.json,
+        lambda context: segment_tradeoff(request, variants, options.out, context),
+        lambda runs: {"settings": variant_rows(runs)},
+        _print_searches,
+    )
+
+
+def _print_searches(runs: Sequence[SettingScores]) -> None:
+    from reconstruction.tradeoff.search_tradeoff import variant_rows
+
+    rows = variant_rows(runs)
+    print(f"{runs[0].scores.n_panels} panels in {rows[0]['photos']} photos")
     print(f"  {'setting':<24}{'s a photo':>10}{'mIoU':>9}{'worst':>9}{'missed':>8}")
     for row in rows:
         single, worst = row["individual_miou"], row["individual_miou_worst"]
         off = "" if row["view_error_px"] is None else f"  off by up to {row['view_error_px']:.2f} px in the photo"
         print(f"  {row['setting']:<24}{row['seconds']:>10.3f}{single:>9.4f}{worst:>9.4f}{row['missed']:>8}{off}")
-    print(f"{made.csv_path}\n{made.picture_path}")
-    return 0

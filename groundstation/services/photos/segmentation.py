@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from groundstation.services.plan.tradeoff import output_folder, write_results
 from groundstation.services.project.input_files import FileKind, expecting
 from planning.base.errors import InputError
 from planning.base.json_file import check_output
 from planning.base.progress import QUIET, Monitor
+from planning.tradeoff.runner import Compared, Subject, compare, output_folder
 from reconstruction.metrics.annotated import READERS
 from reconstruction.metrics.metrics import SetScores
 from reconstruction.metrics.pictures import read_picture, write_picture
@@ -205,18 +205,9 @@ def photo_set(request: ScoreRequest, n_beside: int = 0) -> PhotoSet:
     raise ValueError(f"expected a known set, got {name}")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SegmentTradeoff:
-    """What `tradeoff segment` found: every setting, and the files written."""
-
-    runs: tuple[SettingScores, ...]
-    csv_path: Path
-    picture_path: Path
-
-
 def segment_tradeoff(
     request: ScoreRequest, variants: SegmentVariants, out: Path, monitor: Monitor = QUIET
-) -> SegmentTradeoff:
+) -> Compared[tuple[SettingScores, ...]]:
     """Turn the knobs of the search for panels one at a time; write `tradeoff-segment.csv` and `.png` into `out`.
 
     Raises
@@ -231,9 +222,11 @@ def segment_tradeoff(
         )
     photos = photo_set(request, max(variants.n_views, default=1) - 1)
     base = request.parameters or SegmentationParameters()
-    with output_folder(out) as folder:
-        runs = run_variants(photos, base, variants, monitor)
-        title = f"{photos.name}: {photos.n_photos} photos, {runs[0].scores.n_panels} panels"
-        panel = variants_panel("accuracy against time for one photo", runs)
-        names = write_results(folder, "tradeoff-segment", variant_rows(runs), title, [panel], MIOU_AXIS)
-    return SegmentTradeoff(runs, *(out / name for name in names))
+    subject: Subject[tuple[SettingScores, ...]] = Subject(
+        "segment",
+        MIOU_AXIS,
+        variant_rows,
+        lambda runs: f"{photos.name}: {photos.n_photos} photos, {runs[0].scores.n_panels} panels",
+        lambda runs: [variants_panel("accuracy against time for one photo", runs)],
+    )
+    return compare(subject, out, lambda _: run_variants(photos, base, variants, monitor))

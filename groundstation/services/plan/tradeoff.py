@@ -1,19 +1,12 @@
-"""Use cases around quality against time: run settings side by side, write a table and a picture, name the winner.
-
-Both files are written into a temporary folder and moved together: runs that fail or are cancelled leave nothing behind.
-"""
+"""Use cases of weighing plans and tours against time: which files are compared, and with what."""
 
 from __future__ import annotations
 
-import csv
-import io
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from groundstation.services.mission.export import find_site
 from groundstation.services.project.input_files import (
@@ -25,7 +18,6 @@ from groundstation.services.project.input_files import (
     read_given_site,
 )
 from planning.base.errors import InfeasibleError, InputError
-from planning.base.json_file import part_folder, write_atomically
 from planning.base.parallel_map import sweep
 from planning.base.progress import QUIET, Monitor
 from planning.parameters import DEFAULT_VIEWS
@@ -33,30 +25,59 @@ from planning.plan import Plan
 from planning.request import PlanRequest
 from planning.routing.methods import TourMethod
 from planning.site.records import SiteModel
-from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS, GapAxis, Panel, draw
-from planning.tradeoff.plan_report import PlanReport, plan_panels, plan_report, plan_rows, plan_title
-from planning.tradeoff.plan_runs import FailedRun, PlanRun, Variants, common_steps, load_kernels, run_plan, settings
-from planning.tradeoff.tour_report import TourReport, tour_panel, tour_report, tour_rows, tour_title
-from planning.tradeoff.tour_runs import TOUR_METHODS, TourCase, plan_case, run_tours, tsplib_case
+from planning.tradeoff.picture import COVERAGE_AXIS, TOUR_AXIS
+from planning.tradeoff.plans import (
+    FailedRun,
+    PlanReport,
+    PlanRun,
+    Variants,
+    common_steps,
+    load_kernels,
+    plan_panels,
+    plan_report,
+    plan_rows,
+    plan_title,
+    run_plan,
+    settings,
+)
+from planning.tradeoff.runner import Compared, NumberedRuns, Subject, compare
+from planning.tradeoff.tours import (
+    TOUR_METHODS,
+    TourCase,
+    TourReport,
+    plan_case,
+    run_tours,
+    tour_panel,
+    tour_report,
+    tour_rows,
+    tour_title,
+    tsplib_case,
+)
 
 
 @dataclass(frozen=True, slots=True)
-class PlanTradeoff:
-    """What `tradeoff plan` found: a report a site, runs that could not be done, and the files written."""
+class PlanRuns:
+    """What `tradeoff plan` found: a report a site, and runs that could not be done."""
 
     reports: tuple[PlanReport, ...]
     failed: tuple[FailedRun, ...]
-    csv_path: Path
-    picture_path: Path
 
 
-@dataclass(frozen=True, slots=True)
-class RouteTradeoff:
-    """What `tradeoff route` found: a report a tour, and the files written."""
+PLANS: Subject[PlanRuns] = Subject(
+    "plan",
+    COVERAGE_AXIS,
+    rows=lambda found: [row for report in found.reports for row in plan_rows(report)],
+    title=lambda found: "\n".join(plan_title(report) for report in found.reports),
+    panels=lambda found: [panel for report in found.reports for panel in plan_panels(report)],
+)
 
-    reports: tuple[TourReport, ...]
-    csv_path: Path
-    picture_path: Path
+TOURS: Subject[tuple[TourReport, ...]] = Subject(
+    "route",
+    TOUR_AXIS,
+    rows=lambda reports: [row for report in reports for row in tour_rows(report)],
+    title=lambda reports: "\n".join(tour_title(report) for report in reports),
+    panels=lambda reports: [tour_panel(report) for report in reports],
+)
 
 
 def plan_tradeoff(
@@ -69,7 +90,7 @@ def plan_tradeoff(
     n_processes: int = 1,
     address: str | None = None,
     monitor: Monitor = QUIET,
-) -> PlanTradeoff:
+) -> Compared[PlanRuns]:
     """Plan every site with the base request and every variant; write `tradeoff-plan.csv` and `.png` into `out`.
 
     Without any goal in `base` every run gets the same number of views, `DEFAULT_VIEWS`. With one process and no cluster
@@ -88,15 +109,17 @@ def plan_tradeoff(
     _check_names([model.site.name for model, _ in sites])
     requests = settings(base, variants, n_seeds)
     steps = common_steps(requests)
-    with output_folder(out) as folder:
+    arguments = [(model, request, steps, read_s) for model, read_s in sites for request in requests]
+
+    def run(_folder: Path) -> PlanRuns:
         is_timed = n_processes == 1 and address is None
+        progress, plan_once = monitor, run_plan
         if is_timed:
             monitor.report("loading kernels", 0, 1)
             load_kernels(requests)
-            monitor = _NumberedRuns(monitor)
-        arguments = [(model, request, steps, read_s) for model, read_s in sites for request in requests]
-        run = partial(run_plan, monitor=monitor) if is_timed else run_plan
-        results = sweep(run, arguments, n_processes=n_processes, address=address, monitor=monitor)
+            progress = NumberedRuns(monitor)
+            plan_once = partial(run_plan, monitor=progress)
+        results = sweep(plan_once, arguments, n_processes=n_processes, address=address, monitor=progress)
         failed = tuple(result for result in results if isinstance(result, FailedRun))
         reports = []
         for model, _ in sites:
@@ -105,11 +128,9 @@ def plan_tradeoff(
             if all(run.request.constraints.section_step_deg != steps[0] for run in done):
                 raise InfeasibleError(next(run.message for run in failed if run.site == name))
             reports.append(plan_report(done, base))
-        rows = [row for report in reports for row in plan_rows(report)]
-        panels = [panel for report in reports for panel in plan_panels(report)]
-        title = "\n".join(plan_title(report) for report in reports)
-        names = write_results(folder, "tradeoff-plan", rows, title, panels, COVERAGE_AXIS)
-    return PlanTradeoff(tuple(reports), failed, *(out / name for name in names))
+        return PlanRuns(tuple(reports), failed)
+
+    return compare(PLANS, out, run)
 
 
 def route_tradeoff(
@@ -120,7 +141,7 @@ def route_tradeoff(
     methods: Sequence[TourMethod] = TOUR_METHODS,
     seed: int = 0,
     monitor: Monitor = QUIET,
-) -> RouteTradeoff:
+) -> Compared[tuple[TourReport, ...]]:
     """Run the routing methods on TSPLIB files and plans; write `tradeoff-route.csv` and `.png` into `out`.
 
     `paths` are TSPLIB files, plan files and site files in any order. A plan's site is the one given that it was made
@@ -133,30 +154,14 @@ def route_tradeoff(
     """
     tsplib_paths = [path for path in paths if path.suffix.lower() in TSPLIB_SUFFIXES]
     plans = _plans_with_sites([path for path in paths if path not in tsplib_paths])
-    with output_folder(out) as folder:
+
+    def run(_folder: Path) -> tuple[TourReport, ...]:
         cases = [_tsplib_case(path, monitor) for path in tsplib_paths]
         cases += [plan_case(plan, model, monitor) for plan, model in plans]
         _check_names([case.name for case in cases])
-        reports = tuple(tour_report(case, run_tours(case, seconds, methods, seed, monitor)) for case in cases)
-        rows = [row for report in reports for row in tour_rows(report)]
-        title = "\n".join(tour_title(report) for report in reports)
-        panels = [tour_panel(report) for report in reports]
-        names = write_results(folder, "tradeoff-route", rows, title, panels, TOUR_AXIS)
-    return RouteTradeoff(reports, *(out / name for name in names))
+        return tuple(tour_report(case, run_tours(case, seconds, methods, seed, monitor)) for case in cases)
 
-
-class _NumberedRuns:
-    """Progress of the run at hand, with its number among all runs."""
-
-    def __init__(self, monitor: Monitor) -> None:
-        self._monitor, self._prefix = monitor, ""
-
-    def report(self, stage: str, done: float, total: float) -> None:
-        """Take the number of the run from the sweep, everything else from the run itself."""
-        if stage == "running":
-            self._prefix = f"run {done + 1:.0f} of {total:.0f}, "
-        else:
-            self._monitor.report(self._prefix + stage, done, total)
+    return compare(TOURS, out, run)
 
 
 def _timed_site(path: Path) -> tuple[SiteModel, float]:
@@ -198,48 +203,3 @@ def _site_for(plan: Plan, plan_path: Path, sites: Sequence[SiteModel]) -> SiteMo
     if beside is None:
         raise InputError(f"{plan_path}: the plan is for the site '{plan.site}'; name its site file as well")
     return beside
-
-
-@contextmanager
-def output_folder(path: Path) -> Iterator[Path]:
-    """A temporary folder whose files are moved into `path` in the end; nothing is left where that end is an error.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be made or written into.
-    """
-    made = [folder for folder in (path, *path.parents) if not folder.exists()]
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        with part_folder(path, "tradeoff") as temporary:
-            yield temporary
-            for file in sorted(temporary.iterdir()):
-                file.replace(path / file.name)
-            made = []
-    except OSError as error:
-        text = f"{path}: this folder cannot be made or written into ({error.strerror or error}); name another"
-        raise InputError(text) from error
-    finally:
-        for folder in made:
-            with suppress(OSError):  # it was never made, or holds something
-                folder.rmdir()
-
-
-def write_results(
-    folder: Path, stem: str, rows: Sequence[Mapping[str, Any]], title: str, panels: Sequence[Panel], axis: GapAxis
-) -> tuple[str, str]:
-    """Write a table and a picture into a folder; returns their names."""
-    write_rows(folder / f"{stem}.csv", rows)
-    draw(title, panels, axis, folder / f"{stem}.png")
-    return f"{stem}.csv", f"{stem}.png"
-
-
-def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write a table; cells stay empty where a row lacks a column."""
-    columns = list(dict.fromkeys(column for row in rows for column in row))
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, columns, restval="")
-    writer.writeheader()
-    writer.writerows(rows)
-    write_atomically(path, text.getvalue().encode())

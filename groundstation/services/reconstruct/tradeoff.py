@@ -3,36 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.services.plan.tradeoff import output_folder, write_results
 from groundstation.services.reconstruct.training import TrainRequest, config_of_wish
 from planning.base.errors import InputError
 from planning.base.progress import QUIET, Monitor
+from planning.tradeoff.runner import Compared, Subject, compare
 
 if TYPE_CHECKING:
     from reconstruction.tradeoff.train_tradeoff import Trial
-
-STEM = "tradeoff-train"
 
 POINTS = 12
 """Of a curve at least, where the time is known."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TrainTradeoff:
-    """What `tradeoff train` found, and the files written."""
-
-    trials: tuple[Trial, ...]
-    csv_path: Path
-    picture_path: Path
-
-
 def train_tradeoff(
     dataset: Path, wish: TrainRequest, knobs: Mapping[str, Sequence[Any]], out: Path, monitor: Monitor = QUIET
-) -> TrainTradeoff:
+) -> Compared[tuple[Trial, ...]]:
     """Turn settings of a training one at a time; write `tradeoff-train.csv` and `.png` into `out`.
 
     Parameters
@@ -58,8 +47,6 @@ def train_tradeoff(
     settings = settings_of(base, knobs)
     if not (dataset / "dataset.json").is_file():
         raise InputError(f"{dataset}: has no dataset.json; name a folder that `prepare` or `scene render` has finished")
-    with output_folder(out) as folder:
-        trials = run_settings(dataset, settings, monitor)
-        title = f"{dataset.name}: facades of unseen views"
-        names = write_results(folder, STEM, trial_rows(trials), title, trial_panels(trials), ERROR_AXIS)
-    return TrainTradeoff(trials, out / names[0], out / names[1])
+    title = f"{dataset.name}: facades of unseen views"
+    subject: Subject[tuple[Trial, ...]] = Subject("train", ERROR_AXIS, trial_rows, lambda _: title, trial_panels)
+    return compare(subject, out, lambda _: run_settings(dataset, settings, monitor))

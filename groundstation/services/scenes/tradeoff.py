@@ -6,14 +6,14 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from groundstation.services.plan.tradeoff import output_folder, write_results, write_rows
 from groundstation.services.scenes.views import SceneRequest, given_scene, plan_of_site, planned_photos
 from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.progress import QUIET, Monitor
+from planning.tradeoff.runner import Compared, Subject, compare
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.effects.registry import decide_effects
 from reconstruction.scenes.photos.flight_views import lens_of, planned_shots, posed_photos
@@ -38,29 +38,47 @@ if TYPE_CHECKING:
 
 DEFAULT_VIEWS = 4
 
-STEM, WORTH_STEM = "tradeoff-scene", "tradeoff-scene-reflections"
-
 REFLECTIONS_WIDTH_PX = 128
 """Of photos that reflections are learned from: dozens of them, a minute of training on two cores."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SceneTradeoff:
-    """What `tradeoff scene` found: every way to render, what the scene decides, and the files written.
+class SceneTrials:
+    """What `tradeoff scene` found.
 
     Parameters
     ----------
-    worths, worths_path
-        What effects are worth to who learns reflections from the photos; empty and None where that was not asked.
+    title
+        What was rendered, and what it was compared with.
+    trials
+        Every way to render.
+    decisions
+        What the scene decides.
+    worths
+        What effects are worth to who learns reflections from the photos; empty where that was not asked.
     """
 
+    title: str
     trials: tuple[SceneTrial, ...]
     decisions: tuple[Decision, ...]
     truth: Truth
-    csv_path: Path
-    picture_path: Path
     worths: tuple[EffectWorth, ...] = ()
-    worths_path: Path | None = None
+
+
+def _worth_tables(found: SceneTrials) -> dict[str, list[dict[str, Any]]]:
+    from reconstruction.tradeoff.scene_downstream import worth_rows
+
+    return {"reflections": worth_rows(found.worths)} if found.worths else {}
+
+
+SCENES: Subject[SceneTrials] = Subject(
+    "scene",
+    ERROR_AXIS,
+    rows=lambda found: scene_rows(found.truth, found.trials),
+    title=lambda found: found.title,
+    panels=lambda found: [scene_panel("error against time for one photo", found.trials, found.truth)],
+    more=_worth_tables,
+)
 
 
 def scene_tradeoff(
@@ -72,7 +90,7 @@ def scene_tradeoff(
     *,
     n_reflection_views: int = 0,
     config: ReflectionConfig | None = None,
-) -> SceneTradeoff:
+) -> Compared[SceneTrials]:
     """Turn the knobs of rendering one at a time; write `tradeoff-scene.csv` and `.png` into `out`.
 
     Photos are a plan's, or such as a first flight takes before each facade, where panels can be looked for.
@@ -93,27 +111,23 @@ def scene_tradeoff(
         A file cannot be read, Mitsuba is asked for and not installed, or the folder cannot be written into.
     """
     make = _physically_based() if truth_rays is not None or variants.rays else None
-    with output_folder(out) as folder:
+
+    def run(folder: Path) -> SceneTrials:
         scene, _ = given_scene(wish)
         photos = _photos(wish, scene, folder)
+        lens = photos[0].intrinsics
         decisions = tuple(decide_effects(scene, photos, wish.settings).values())
         judge = None if make is None or truth_rays is None else (make, truth_rays)
         truth = make_truth(scene, photos, judge, monitor)
-        settings = scene_settings(wish.settings, decisions, variants, photos[0].intrinsics.width_px)
+        settings = scene_settings(wish.settings, decisions, variants, lens.width_px)
         trials = run_scene_variants(scene, photos, truth, settings, make, monitor)
-        lens = photos[0].intrinsics
         title = f"{scene.name}: {len(photos)} photos of {lens.width_px} x {lens.height_px} px\nagainst {truth.name}"
-        panel = scene_panel("error against time for one photo", trials, truth)
-        names = write_results(folder, STEM, scene_rows(truth, trials), title, [panel], ERROR_AXIS)
         worths: tuple[EffectWorth, ...] = ()
         if n_reflection_views:
             worths = _worths(replace(wish, n_views=n_reflection_views), scene, variants.effects, config, monitor)
-            from reconstruction.tradeoff.scene_downstream import worth_rows
+        return SceneTrials(title, trials, decisions, truth, worths)
 
-            write_rows(folder / f"{WORTH_STEM}.csv", worth_rows(worths))
-    worths_path = out / f"{WORTH_STEM}.csv" if worths else None
-    csv_name, picture_name = names
-    return SceneTradeoff(trials, decisions, truth, out / csv_name, out / picture_name, worths, worths_path)
+    return compare(SCENES, out, run)
 
 
 def _worths(
