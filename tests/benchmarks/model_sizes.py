@@ -22,9 +22,7 @@ from reconstruction.exports.baked import ALMOST_NO_LOGIT, baked
 from reconstruction.exports.compression import PRESETS, Compressed, Compression
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.ply_export import write_ply
-from reconstruction.exports.sog.reading import read_sog
 from reconstruction.exports.sog.writing import write_sog
-from reconstruction.exports.spz.reading import read_spz
 from reconstruction.exports.spz.writing import write_spz
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.light.shading import display_from_linear
@@ -42,6 +40,8 @@ from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import score_views
 from reconstruction.training.train import train_model
 from tests.benchmarks.harness import Benchmark, Context, Row
+from tests.reconstruction.exports.sog.reading import read_sog
+from tests.reconstruction.exports.spz.reading import read_spz
 
 N_VIEWS, WIDTH_PX = 60, 256
 QUICK_N_VIEWS, QUICK_WIDTH_PX = 10, 48

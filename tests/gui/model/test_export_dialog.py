@@ -4,8 +4,8 @@ import pytest
 
 from groundstation.gui.model.export_dialog import ExportDialog, format_words
 from groundstation.services.model.export import EXPORTERS, ModelExport, ModelFormat, with_ending
-from reconstruction.exports.spz.reading import read_spz
 from tests.gui.driving import choose, clicked, escape, press, shut, turn_until
+from tests.reconstruction.exports.spz.reading import read_spz
 from tests.services.reconstruct.test_shown_models import made_model
 
 

@@ -17,14 +17,14 @@ from reconstruction.exports.cityjson import write_cityjson
 from reconstruction.exports.compression import Compression
 from reconstruction.exports.ellipsoids import Ellipsoids, ellipsoids_of_all
 from reconstruction.exports.ply_export import write_ply
-from reconstruction.exports.sog.reading import read_sog
 from reconstruction.exports.sog.writing import write_sog
-from reconstruction.exports.spz.reading import read_spz
 from reconstruction.exports.spz.writing import write_spz
 from reconstruction.exports.turned_axes import turned
 from reconstruction.splats.ply_file import read_blocks, read_header
 from tests import foreign
 from tests.reconstruction.exports.hard_scenes import antialiased, in_order
+from tests.reconstruction.exports.sog.reading import read_sog
+from tests.reconstruction.exports.spz.reading import read_spz
 from tests.reconstruction.exports.test_turned_axes import covariances
 from tests.reconstruction.objects.made_scene import made_scene
 

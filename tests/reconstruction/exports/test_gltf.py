@@ -17,9 +17,9 @@ from reconstruction.exports.glb import GlbBuffer, write_glb
 from reconstruction.exports.gltf import GltfOptions, write_gltf
 from reconstruction.exports.gltf_meshes import SPZ
 from reconstruction.exports.gltf_tables import identifier, one_after_the_other
-from reconstruction.exports.spz.reading import read_spz
 from reconstruction.objects.gs_scene import GsGaussian
 from tests.reconstruction.exports.glb_reader import FEATURES, SPLATTING, Glb
+from tests.reconstruction.exports.spz.reading import read_spz
 from tests.reconstruction.objects.made_scene import gaussians, made_scene
 
 IDENTIFIER = re.compile(r"[a-zA-Z_][a-zA-Z0-9_]*")

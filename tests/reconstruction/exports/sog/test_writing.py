@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from planning.base.errors import InputError, OperationCancelled
 from reconstruction.exports.compression import PRESETS, Compression
 from reconstruction.exports.sog.images import image_of
-from reconstruction.exports.sog.reading import read_sog
 from reconstruction.exports.sog.writing import palette_size, write_sog
 from tests.reconstruction.exports.hard_scenes import (
     Interrupted,
@@ -24,6 +23,7 @@ from tests.reconstruction.exports.hard_scenes import (
     scene_with,
     spread,
 )
+from tests.reconstruction.exports.sog.reading import read_sog
 from tests.reconstruction.objects.made_scene import made_scene
 
 ALL = Compression(palette=65_536, gaussians_each=1, least_opacity=0.0)

@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 
 from planning.base.errors import InputError, OperationCancelled
 from reconstruction.exports.compression import PRESETS, Compression
-from reconstruction.exports.spz.reading import read_spz
 from reconstruction.exports.spz.writing import write_spz
 from tests.reconstruction.exports.hard_scenes import (
     Interrupted,
@@ -25,6 +24,7 @@ from tests.reconstruction.exports.hard_scenes import (
     scene_with,
     spread,
 )
+from tests.reconstruction.exports.spz.reading import read_spz
 from tests.reconstruction.objects.made_scene import made_scene
 
 ALL = Compression(first_bits=8, further_bits=8, least_opacity=0.0)

@@ -7,9 +7,9 @@ import pytest
 
 from planning.geo.mesh import TriangleMesh
 from reconstruction.base.ray_casting import RayCaster
-from reconstruction.panels.solving.by_ray_casting import averaged, cast_corners
 from tests.reconstruction.panels.rectify.scenes import looking_at, surface_mesh
 from tests.reconstruction.panels.rectify.test_surface import surface
+from tests.reconstruction.panels.solving.by_ray_casting import averaged, cast_corners
 
 S, T = np.linspace(-6.0, 6.0, 7), np.linspace(-4.0, 4.0, 5)
 

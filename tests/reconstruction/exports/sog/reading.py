@@ -17,9 +17,9 @@ from reconstruction.exports.sog.codebooks import CODES
 from reconstruction.exports.sog.images import Bytes, values_of
 from reconstruction.exports.sog.writing import FIRST_TAG, META, PALETTE_COLUMNS, STEPS
 from reconstruction.exports.spz.packing import LARGEST_SMALL, OTHERS
-from reconstruction.exports.spz.reading import MOST_GAUSSIANS
 from reconstruction.exports.turned_axes import Axes, turned_back
 from reconstruction.splats.harmonic_colour import N_HARMONICS
+from tests.reconstruction.exports.spz.reading import MOST_GAUSSIANS
 
 Floats = NDArray[np.float32]
 
