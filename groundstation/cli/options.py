@@ -6,6 +6,7 @@ import argparse
 import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -47,24 +48,21 @@ def in_words_of_options(record: type[Any] = PlanParameters) -> Iterator[None]:
         raise InputError(f"{own.get(name) or OPTIONS.get(name, name)}{colon}{rest}") from error
 
 
-def add_parameter(place: Any, each: Declared, *, has_default: bool = False) -> None:
-    """Add the option of a parameter to a parser or a group of one.
+def add_parameter(place: Any, each: Declared, *, unset: str = "") -> None:
+    """Add the option of a parameter to a parser or a group of one; only what is typed stands in the options then.
 
     Parameters
     ----------
-    has_default
-        Whether the default stands in the options where nothing was typed; without, only what was typed stands there.
+    unset
+        What this command does where nothing is typed, if that is not the default.
     """
-    known = each.parameter
+    known = replace(each.parameter, unset=unset or each.parameter.unset)
+    each = replace(each, parameter=known)
     words = tuple(choice.typed for choice in known.choices)
     if each.kind is str and not words:
         words = known.suggested
     told = f"{known.help} ({_default_text(each)})" if _default_text(each) else known.help
-    facts: dict[str, Any] = {"help": told.replace("%", "%%")}
-    if has_default or known.option == "":
-        facts["default"] = each.default
-    else:
-        facts["default"] = argparse.SUPPRESS
+    facts: dict[str, Any] = {"help": told.replace("%", "%%"), "default": argparse.SUPPRESS}
     if each.kind is bool and not words:
         place.add_argument(known.option, action="store_true", **facts)
         return

@@ -21,6 +21,7 @@ from missions.simulator.airframe.parts import (
     Receiver,
     SteadyPack,
 )
+from missions.simulator.conditions import Conditions
 from missions.simulator.effects.barometer import BarometerDrift, DriftingBarometer
 from missions.simulator.effects.battery import BatterySag, SaggingPack
 from missions.simulator.effects.facts import effect_facts
@@ -30,7 +31,7 @@ from missions.simulator.effects.link_loss import LinkLoss
 from missions.simulator.effects.multipath import GlassSky, Multipath, ReflectedReceiver
 from missions.simulator.effects.shutter import PhotoTiming
 from missions.simulator.effects.wind import GustyAir, Wind
-from missions.simulator.scene import Conditions, FlightScene, flight_scene
+from missions.simulator.scene import FlightScene, flight_scene
 from planning.base.effects import Decision, Effect, Wish, decide
 from planning.base.errors import InputError
 from planning.geo.frames import Vec3

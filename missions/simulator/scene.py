@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from missions.simulator.conditions import Conditions
 from planning.geo.bvh import build_bvh, nearest_d2
-from planning.geo.frames import Vec3
 from planning.motion.timing import photo_stop_s
 from planning.parameters import FlightRules
 from planning.plan import Aircraft, Camera, Plan, Sortie, viewpoint_arrays
@@ -18,73 +17,8 @@ from planning.site.records import SiteModel, panel_corners, panel_triangles, req
 
 Floats = NDArray[np.float64]
 
-FixKind = Literal["rtk-fixed", "rtk-float", "single"]
-HeightSource = Literal["auto", "gnss", "barometer"]
-
 STEP_S = 0.02
 """Step for which the cost of effects is stated."""
-
-
-@dataclass(frozen=True, slots=True)
-class Conditions:
-    """What the weather, the camera and the links are like; nothing of it is in a plan but the wind.
-
-    Parameters
-    ----------
-    wind_m_s, wind_from_deg
-        Mean wind at the height of a mast (6 m), and where it comes from, clockwise from north.
-    fix
-        What the GNSS receiver reaches under open sky.
-    height_source
-        What the autopilot takes its height from; `auto` is the receiver with an RTK fix, as DJI does, else the
-        barometer. ArduPilot's default (EK3_SRC1_POSZ 1) is always the barometer.
-    exposure_s
-        1/500 s is what automatic exposure chooses on a bright day.
-    photo_latency_s
-        From the command to the opening of the shutter; a single-lens camera at the end of a cable takes 0.1 s, a camera
-        that has to focus first much longer.
-    message_loss
-        Share of the messages that the radio loses, each way.
-    outages_s
-        Begin and end of times in which it loses all, seconds after take-off.
-    """
-
-    wind_m_s: float = 0.0
-    wind_from_deg: float = 270.0
-    fix: FixKind = "rtk-fixed"
-    height_source: HeightSource = "auto"
-    exposure_s: float = 0.002
-    photo_latency_s: float = 0.1
-    message_loss: float = 0.0
-    outages_s: tuple[tuple[float, float], ...] = ()
-
-    def __post_init__(self) -> None:
-        for field in ("wind_m_s", "exposure_s", "photo_latency_s"):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value >= 0.0):
-                raise ValueError(f"{field}: expected 0 or more, got {value}")
-        if not math.isfinite(self.wind_from_deg):
-            raise ValueError(f"wind_from_deg: expected degrees clockwise from north, got {self.wind_from_deg}")
-        if self.fix not in ("rtk-fixed", "rtk-float", "single"):
-            raise ValueError(f"fix: expected rtk-fixed, rtk-float or single, got '{self.fix}'")
-        if self.height_source not in ("auto", "gnss", "barometer"):
-            raise ValueError(f"height_source: expected auto, gnss or barometer, got '{self.height_source}'")
-        if not 0.0 <= self.message_loss < 1.0:
-            raise ValueError(f"message_loss: expected 0 to below 1, got {self.message_loss}")
-        for begin_s, end_s in self.outages_s:
-            if not 0.0 <= begin_s < end_s:
-                raise ValueError(f"outages_s: expected begin before end, got {begin_s} and {end_s}")
-
-    @property
-    def height_by_gnss(self) -> bool:
-        """Whether heights come from the GNSS receiver."""
-        return self.height_source == "gnss" or (self.height_source == "auto" and self.fix == "rtk-fixed")
-
-    @property
-    def wind_enu_m_s(self) -> Vec3:
-        """Mean wind, towards where it blows."""
-        angle = math.radians(self.wind_from_deg)
-        return -self.wind_m_s * math.sin(angle), -self.wind_m_s * math.cos(angle), 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

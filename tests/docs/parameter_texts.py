@@ -6,6 +6,7 @@ import json
 import textwrap
 from typing import Any
 
+from missions.simulator.conditions import Conditions
 from planning.base.parameters import declared
 from planning.parameters import PlanParameters
 
@@ -21,7 +22,7 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP
 TEXTS = (
 '''
 
-RECORDS: tuple[type[Any], ...] = (PlanParameters,)
+RECORDS: tuple[type[Any], ...] = (PlanParameters, Conditions)
 """Records whose parameters have rows in forms."""
 
 LINE = 120

@@ -44,6 +44,7 @@ def settings_files() -> Sequence[SettingsFile]:
     """Every file, in the order of the page; imported here, since half of them bring torch."""
     from groundstation.services.fly.options import FlightSettings
     from groundstation.services.settings import Settings
+    from missions.simulator.conditions import Conditions
     from planning.parameters import PlanParameters
     from planning.plan import Aircraft, Camera
     from reconstruction.panels.search.parameters import SegmentationParameters
@@ -55,6 +56,7 @@ def settings_files() -> Sequence[SettingsFile]:
         SettingsFile("The program: settings.toml", "In the user's folder for settings.", Settings),
         SettingsFile("How flights are flown: flight.toml", "Beside `settings.toml`.", FlightSettings),
         SettingsFile("Planning", "`plan --settings FILE`.", PlanParameters),
+        SettingsFile("Simulated flights", "Options of `simulate`, rows in the Fly tab.", Conditions),
         SettingsFile("Aircraft", "`aircraft` in a table of a profile, `plan --profile FILE`.", Aircraft),
         SettingsFile("Camera", "`camera` in a table of a profile, `plan --profile FILE`.", Camera),
         SettingsFile("Search for panels", "`segment --parameters FILE`.", SegmentationParameters),

@@ -17,7 +17,7 @@ from missions.dji.write import LinkLoss
 from missions.formats.encode import ExportOptions
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.model import FileFormat, HeightReference
-from missions.simulator.scene import Conditions
+from missions.simulator.conditions import Conditions
 from planning.geo.frames import Origin
 from planning.parameters import LARGEST_SEED, Constraints, FlightRules, GreedyParameters
 from planning.plan import Camera, Viewpoint

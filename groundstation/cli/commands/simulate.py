@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.options import checked_seed, json_file, number
+from groundstation.cli.options import add_parameter, checked_seed, in_words_of_options, json_file, number, typed_values
 from groundstation.cli.options import effect_wishes as wishes_of_effects
+from missions.simulator.conditions import Conditions
 from planning.base.errors import InputError
+from planning.base.parameters import declared, with_values
 
 if TYPE_CHECKING:
     from groundstation.services.fly.flying import FlightRequest, Flown
-    from missions.simulator.scene import FixKind
     from planning.base.effects import Wish
     from planning.base.progress import Monitor
 
@@ -34,7 +36,6 @@ examples:
   simulate office.plan.json office.site.json -o windy.flight.json --wind 8 --gnss single
 """
 
-FIXES: dict[str, FixKind] = {"rtk": "rtk-fixed", "float": "rtk-float", "single": "single"}
 SITL_SPEEDUP = 10.0
 """Ten times is flown the same as real time, and leaves the link's time-outs room."""
 
@@ -59,9 +60,10 @@ def add_parser(subparsers: Any) -> None:
     add("-o", "--out", type=json_file, required=True, metavar="FLIGHT", help="flight file to write")
     add("--link", default="sim", metavar="URL", help="sim (default), or the url of a vehicle")
     add("--autopilot", choices=("ardupilot", "px4"), help="which one is simulated, or expected (default: by profile)")
-    add("--wind", type=number, metavar="M_S", help="mean wind (default: what the plan expects)")
-    add("--wind-from", type=number, default=270.0, metavar="DEG", help="where it comes from (default 270, west)")
-    add("--gnss", choices=tuple(FIXES), default="rtk", help="what the receiver reaches (default rtk)")
+    for name, each in declared(Conditions).items():
+        if each.parameter.option:
+            unset = "what the plan expects" if name == "wind_m_s" else ""
+            add_parameter(parser, replace(each, default=None if unset else each.default), unset=unset)
     add("--effects", action="append", default=[], metavar="WISH", help="auto, none, all, or NAME=on|off|auto")
     add("--seed", type=int, default=0, help="of everything random (default 0)")
     add("--speedup", type=number, metavar="X", help="times real time (default: as fast as it goes)")
@@ -121,10 +123,7 @@ def _wish(options: argparse.Namespace) -> FlightRequest:
     from groundstation.services.fly.flying import SIMULATED, FlightRequest
     from groundstation.services.fly.signing import link_signer
     from missions.mavlink.autopilots import Autopilot
-    from missions.simulator.scene import Conditions
 
-    if options.wind is not None and options.wind < 0.0:
-        raise InputError(f"--wind: expected 0 m/s or more, got {options.wind:g}")
     if options.speedup is not None and not options.speedup > 0.0:
         raise InputError(f"--speedup: expected more than 0, got {options.speedup:g}")
     is_simulated = options.link == SIMULATED
@@ -136,15 +135,16 @@ def _wish(options: argparse.Namespace) -> FlightRequest:
         )
     elif options.signed:
         raise InputError("--signed: is for --link URL; the simulation in this program has no link to listen to")
-    wind_m_s = options.wind
-    if wind_m_s is None:
+    with in_words_of_options(Conditions):
+        conditions = with_values(Conditions(), typed_values(options, Conditions))
+    if not hasattr(options, "wind"):
         from groundstation.services.project.input_files import read_given_plan
 
-        wind_m_s = read_given_plan(options.plan).rules.wind_m_s
+        conditions = replace(conditions, wind_m_s=read_given_plan(options.plan).rules.wind_m_s)
     return FlightRequest(
         link=options.link,
         autopilot=None if options.autopilot is None else Autopilot(options.autopilot),
-        conditions=Conditions(wind_m_s=wind_m_s, wind_from_deg=options.wind_from, fix=FIXES[options.gnss]),
+        conditions=conditions,
         effects=effect_wishes(options.effects),
         seed=checked_seed(options.seed),
         speedup=options.speedup,
@@ -171,7 +171,7 @@ def _check_link(options: argparse.Namespace) -> None:
     from missions.mavlink.link import parsed_url
 
     kind, _, _ = parsed_url(options.link)
-    if options.effects or options.wind is not None or options.speedup is not None:
+    if options.effects or hasattr(options, "wind") or options.speedup is not None:
         raise InputError("--effects, --wind and --speedup are for --link sim; the vehicle at a link has its own")
     if kind == "serial" and not options.take_off:
         raise InputError(f"--link {options.link}: {MAY_BE_REAL}")

@@ -50,4 +50,12 @@ TEXTS = (
     QT_TRANSLATE_NOOP(
         "Parameters", "longest wall time for the whole plan; the search ends earlier when it finds nothing more"
     ),
+    QT_TRANSLATE_NOOP("Parameters", "mean wind at the height of a mast (6 m)"),
+    QT_TRANSLATE_NOOP("Parameters", "Wind from"),
+    QT_TRANSLATE_NOOP("Parameters", "where the wind comes from, clockwise from north"),
+    QT_TRANSLATE_NOOP("Parameters", "GNSS"),
+    QT_TRANSLATE_NOOP("Parameters", "what the GNSS receiver reaches under open sky"),
+    QT_TRANSLATE_NOOP("Parameters", "RTK fixed"),
+    QT_TRANSLATE_NOOP("Parameters", "RTK float"),
+    QT_TRANSLATE_NOOP("Parameters", "without RTK"),
 )

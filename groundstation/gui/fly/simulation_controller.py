@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from PySide6.QtCore import QObject, QSignalBlocker, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.widgets.effects_panel import EffectsPanel
-from groundstation.gui.widgets.inputs import ChoiceBox, Form, NumberBox, SpeedBox
+from groundstation.gui.widgets.inputs import Form
+from groundstation.gui.widgets.parameter_form import add_rows, rows_of
 from groundstation.services.fly.connection import CALM, Simulation
 from groundstation.services.fly.link_choice import ConnectionChoice
 from groundstation.services.fly.sortie import LiveSortie, simulation_effects
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.plan.effects import EffectChoice
 from groundstation.services.units import UnitSystem
-from missions.simulator.scene import Conditions
+from missions.simulator.conditions import Conditions
 from planning.base.effects import Wish
+from planning.base.parameters import declared, with_values
 from planning.plan import Plan
 
 # What the embedded simulation flies in: wind, GNSS, and the effects that the flight calls for.
-
-MAX_WIND_M_S = 20.0
 
 
 class SimulationPage(QWidget):
@@ -39,27 +37,18 @@ class SimulationPage(QWidget):
         super().__init__(parent)
         self._conditions = Conditions()
         self._wishes: dict[str, Wish] = {}
-        self.wind, self.wind_from = SpeedBox(0.0, MAX_WIND_M_S), NumberBox(0.0, 360.0, 10.0, "\u00b0", 0)
-        self.fix, self.effects = ChoiceBox(), EffectsPanel()
-        for kind, text in (
-            ("rtk-fixed", self.tr("RTK fixed")),
-            ("rtk-float", self.tr("RTK float")),
-            ("single", self.tr("without RTK")),
-        ):
-            self.fix.addItem(text, kind)
+        self.rows = rows_of(declared(Conditions))
+        self.effects = EffectsPanel()
         form = Form()
-        form.addRow(self.tr("Wind"), self.wind)
-        form.addRow(self.tr("Wind from"), self.wind_from)
-        form.addRow(self.tr("GNSS"), self.fix)
+        add_rows(form, self.rows)
         layout = QVBoxLayout(self)
         # The cards need the whole width beside a scroll bar.
         for one in (layout, self.effects.layout()):
             one.setContentsMargins(2, 4, 2, 4)
         layout.addLayout(form)
         layout.addWidget(self.effects, 1)
-        self.wind.valueChanged.connect(self._edited)
-        self.wind_from.valueChanged.connect(self._edited)
-        self.fix.currentIndexChanged.connect(self._edited)
+        for row in self.rows.values():
+            row.valueChanged.connect(self._edited)
         self.effects.wishChanged.connect(self._wished)
         self.setValue(self._conditions, {})
 
@@ -70,10 +59,9 @@ class SimulationPage(QWidget):
     def setValue(self, conditions: Conditions, wishes: dict[str, Wish]) -> None:  # noqa: N802
         """Show other conditions."""
         self._conditions, self._wishes = conditions, dict(wishes)
-        blockers = [QSignalBlocker(box) for box in (self.wind_from, self.fix)]
-        self.wind.setValue(conditions.wind_m_s)
-        self.wind_from.setValue(conditions.wind_from_deg)
-        self.fix.setCurrentIndex(self.fix.findData(conditions.fix))
+        blockers = [QSignalBlocker(row) for row in self.rows.values()]
+        for row in self.rows.values():
+            row.setValue(row.declared.value_in(conditions))
         del blockers
 
     def set_effects(self, choices: tuple[EffectChoice, ...]) -> None:
@@ -82,16 +70,13 @@ class SimulationPage(QWidget):
 
     def set_units(self, units: UnitSystem) -> None:
         """Show speeds in other units."""
-        self.wind.set_units(units)
+        for row in self.rows.values():
+            row.set_units(units)
         self.effects.set_units(units)
 
     def _edited(self, *_value: object) -> None:
-        self._conditions = replace(
-            self._conditions,
-            wind_m_s=self.wind.value(),
-            wind_from_deg=self.wind_from.value(),
-            fix=self.fix.currentData(),
-        )
+        values = {row.declared.path: row.value() for row in self.rows.values()}
+        self._conditions = with_values(self._conditions, values)
         self.valueChanged.emit()
 
     def _wished(self, effect: str, wish: Wish) -> None:

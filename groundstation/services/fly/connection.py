@@ -20,10 +20,10 @@ from missions.mavlink.wire import Counts
 from missions.simulator.airframe.state import Airframe, Battery, Fix, Pose, Target
 from missions.simulator.autopilot.profiles import vehicle_profile
 from missions.simulator.build import make_airframe
+from missions.simulator.conditions import Conditions
 from missions.simulator.effects.battery import BatterySag
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.link_loss import through_air
-from missions.simulator.scene import Conditions
 from missions.simulator.server import MAX_SPEEDUP, serve
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.effects import Decision, Wish

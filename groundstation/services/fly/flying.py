@@ -31,8 +31,8 @@ from missions.mavlink.link import ChannelLink, open_link
 from missions.mavlink.signing import Signer
 from missions.mission.build import missions_from_plan
 from missions.simulator.build import make_airframe
+from missions.simulator.conditions import Conditions
 from missions.simulator.effects.link_loss import through_air
-from missions.simulator.scene import Conditions
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.effects import Decision, Wish

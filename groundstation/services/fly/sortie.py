@@ -11,7 +11,8 @@ from groundstation.vehicle.orders import SortieOrders, sortie_orders
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
 from missions.simulator.build import decide_effects
-from missions.simulator.scene import Conditions, flight_scene
+from missions.simulator.conditions import Conditions
+from missions.simulator.scene import flight_scene
 from planning.base.effects import Wish
 from planning.base.errors import MissionError
 from planning.base.findings import Severity

@@ -8,7 +8,8 @@ import numpy as np
 
 from missions.mavlink.link import Link
 from missions.mavlink.messages import Message, Received
-from missions.simulator.scene import Conditions, FlightScene
+from missions.simulator.conditions import Conditions
+from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment, Decision
 
 FlightClock = Callable[[], float]

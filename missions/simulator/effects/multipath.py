@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from missions.simulator.airframe.parts import Receiver
 from missions.simulator.airframe.state import Fix
+from missions.simulator.conditions import FixKind
 from missions.simulator.effects.facts import MultipathFacts, ReceiverFacts, effect_facts
 from missions.simulator.effects.gnss import AboveStart
 from missions.simulator.effects.noise import SmoothNoise
-from missions.simulator.scene import FixKind, FlightScene
+from missions.simulator.scene import FlightScene
 from planning.base.effects import Assessment
 from planning.geo.frames import Vec3
 from planning.site.records import SiteModel, panel_corners, panel_triangles

@@ -20,6 +20,7 @@ from groundstation.services.site.import_wording import in_window_words
 from groundstation.services.site.sources import preview_import
 from groundstation.services.units import UnitSystem
 from missions.formats.registry import read_missions
+from missions.simulator.conditions import Conditions
 from planning.base.errors import GroundStationError
 from planning.base.parameters import declared
 from planning.checks import check_plan
@@ -226,7 +227,7 @@ def test_every_sentence_of_the_sources_is_known_to_the_window():
 def refusals():
     """What is said of values out of the ranges of parameters, without the names that stand before it."""
     found = set()
-    for name, each in declared(PlanRequest).items():
+    for name, each in {**declared(PlanRequest), **declared(Conditions)}.items():
         wrong = next((value for value in ("?", -1, math.nan) if not each.parameter.holds(value)), None)
         if wrong is not None:
             with pytest.raises(ValueError, match=r"expected .*, got ") as caught:

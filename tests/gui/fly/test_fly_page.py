@@ -325,7 +325,7 @@ def test_effects_of_the_simulation_are_shown_with_reason_and_overruled(applicati
     page.right.setCurrentIndex(1)
     turn_until(application, lambda: "wind" in page.simulation.effects._cards)
     assert "no wind" in page.simulation.effects.card("wind").text()
-    page.simulation.wind.box().setValue(8.0)
+    page.simulation.rows["wind_m_s"].widget.box().setValue(8.0)
     turn_until(application, lambda: "is on" in page.simulation.effects.card("wind").text())
     card = page.simulation.effects.card("wind")
     card.wish.setCurrentIndex(card.wish.findData("off"))
@@ -524,7 +524,7 @@ def test_too_many_photos_for_the_autopilot_are_shared_out_on_a_yes(application, 
 
 
 def test_start_waits_for_rtk_only_where_it_is_needed(application, controller, page):
-    from missions.simulator.scene import Conditions
+    from missions.simulator.conditions import Conditions
 
     page.controller.simulation.conditions = Conditions(fix="single")
     connect(application, page)

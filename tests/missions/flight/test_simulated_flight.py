@@ -19,7 +19,7 @@ from missions.flight.report import report_flight
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
 from missions.simulator.build import make_airframe
-from missions.simulator.scene import Conditions
+from missions.simulator.conditions import Conditions
 from missions.simulator.server import DirectLink
 from missions.simulator.vehicle import SimulatedVehicle
 from planning.base.findings import Severity

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from missions.simulator.build import decide_effects
-from missions.simulator.scene import Conditions, flight_scene
+from missions.simulator.conditions import Conditions
+from missions.simulator.scene import flight_scene
 from planning.plan import Sortie
 from tests.missions.simulator.flying import GLASS_M, bundled
 

@@ -28,7 +28,7 @@ from missions.flight.logs.read import read_log
 from missions.flight.outcome import Reason
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import MissionAck
-from missions.simulator.scene import Conditions
+from missions.simulator.conditions import Conditions
 from planning.base.errors import MissionError
 from tests.services.live_cases import SPEED_UP, Follower, Reopening, planned, simulation, sortie
 from tests.slow import slow

@@ -13,7 +13,7 @@ from missions.flight.flight_file import read_flight
 from missions.flight.outcome import Reason
 from missions.mavlink.autopilots import Autopilot
 from missions.simulator.build import EFFECTS
-from missions.simulator.scene import Conditions
+from missions.simulator.conditions import Conditions
 from planning.base.errors import (
     InfeasibleError,
     InputError,

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from missions.simulator.airframe.state import Target
 from missions.simulator.build import make_airframe
+from missions.simulator.conditions import Conditions
 from missions.simulator.effects.barometer import DriftingBarometer, drift_m_s
 from missions.simulator.effects.battery import SaggingPack, power_ratio
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.gimbal import lagging_rad
 from missions.simulator.effects.shutter import blur_px
-from missions.simulator.scene import Conditions
 from tests.missions.simulator.flying import bundled
 
 FACTS = effect_facts()

@@ -13,9 +13,10 @@ from missions.mavlink.messages import MissionCurrent
 from missions.simulator.airframe.multirotor import Multirotor
 from missions.simulator.airframe.parts import ExactReceiver, RateGimbal, SteadyPack
 from missions.simulator.build import EFFECTS, decide_effects, effects_table, make_airframe
+from missions.simulator.conditions import Conditions
 from missions.simulator.effects.link_loss import LossyLink, through_air
 from missions.simulator.effects.shutter import blur_px
-from missions.simulator.scene import Conditions, flight_scene
+from missions.simulator.scene import flight_scene
 from planning.base.effects import Wish
 from planning.base.errors import InfeasibleError, InputError
 from planning.plan import Plan

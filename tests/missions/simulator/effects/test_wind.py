@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from missions.simulator.airframe.state import Target
 from missions.simulator.build import make_airframe
+from missions.simulator.conditions import Conditions
 from missions.simulator.effects.facts import effect_facts
 from missions.simulator.effects.wind import GustResponse, GustyAir, gust_scale_m, gust_sigma_m_s, highest_airspeed_m_s
-from missions.simulator.scene import Conditions
 from tests.missions.simulator.flying import bundled
 
 FACTS = effect_facts().wind
