@@ -3615,6 +3615,38 @@ Blickrichtung: {3}</translation>
         <source>longest wall time for the whole plan; the search ends earlier when it finds nothing more</source>
         <translation>längste Zeit für den ganzen Plan; die Suche endet früher, wenn sie nichts mehr findet</translation>
     </message>
+    <message>
+        <source>mean wind at the height of a mast (6 m)</source>
+        <translation>mittlerer Wind in der Höhe eines Masts (6 m)</translation>
+    </message>
+    <message>
+        <source>Wind from</source>
+        <translation>Wind aus</translation>
+    </message>
+    <message>
+        <source>where the wind comes from, clockwise from north</source>
+        <translation>woher der Wind kommt, im Uhrzeigersinn von Norden</translation>
+    </message>
+    <message>
+        <source>GNSS</source>
+        <translation>GNSS</translation>
+    </message>
+    <message>
+        <source>what the GNSS receiver reaches under open sky</source>
+        <translation>was der GNSS-Empfänger unter freiem Himmel erreicht</translation>
+    </message>
+    <message>
+        <source>RTK fixed</source>
+        <translation>RTK fixiert</translation>
+    </message>
+    <message>
+        <source>RTK float</source>
+        <translation>RTK Float</translation>
+    </message>
+    <message>
+        <source>without RTK</source>
+        <translation>ohne RTK</translation>
+    </message>
 </context>
 <context>
     <name>PassphraseDialog</name>
@@ -13023,33 +13055,6 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>Look at the flight</source>
         <translation>Flug betrachten</translation>
-    </message>
-</context>
-<context>
-    <name>SimulationPage</name>
-    <message>
-        <source>RTK fixed</source>
-        <translation>RTK fixiert</translation>
-    </message>
-    <message>
-        <source>RTK float</source>
-        <translation>RTK Float</translation>
-    </message>
-    <message>
-        <source>without RTK</source>
-        <translation>ohne RTK</translation>
-    </message>
-    <message>
-        <source>Wind</source>
-        <translation>Wind</translation>
-    </message>
-    <message>
-        <source>Wind from</source>
-        <translation>Wind aus</translation>
-    </message>
-    <message>
-        <source>GNSS</source>
-        <translation>GNSS</translation>
     </message>
 </context>
 <context>
