@@ -54,7 +54,7 @@ def written():
 
 def test_pages_are_short_enough_to_be_read():
     words = {page: len(text.split()) for page, text in written().items()}
-    assert sum(words.values()) <= 44_000
+    assert sum(words.values()) <= 40_000
     assert max(words.values()) <= 2500, max(words, key=words.get)
     for page, text in written().items():
         for block in re.split(r"\n\s*\n", text):
