@@ -187,7 +187,7 @@ def test_the_curve_stands_below_its_bound_and_both_where_their_values_are(applic
     from PySide6.QtCore import QRectF
 
     from groundstation.gui.charts.axes import box_of_axes
-    from groundstation.gui.charts.curve_plot import Curve, CurvePlot
+    from groundstation.gui.charts.quality_chart import Curve, CurvePlot
     from groundstation.gui.widgets.theme import colours
 
     plot = CurvePlot("time in s", "covered sections")
@@ -203,7 +203,7 @@ def test_the_curve_stands_below_its_bound_and_both_where_their_values_are(applic
 
 
 def test_an_empty_curve_and_a_tiny_widget_are_no_trouble(application):
-    from groundstation.gui.charts.curve_plot import Curve, CurvePlot
+    from groundstation.gui.charts.quality_chart import Curve, CurvePlot
 
     plot = CurvePlot("time in s", "covered sections")
     none = np.zeros(0)
@@ -217,7 +217,7 @@ def test_an_empty_curve_and_a_tiny_widget_are_no_trouble(application):
 def test_of_thousands_of_improvements_only_those_that_can_be_seen_are_drawn(application):
     from PySide6.QtCore import QRectF
 
-    from groundstation.gui.charts.curve_plot import Curve, steps
+    from groundstation.gui.charts.quality_chart import Curve, steps
 
     x = np.linspace(0.1, 9.9, 20_000)
     curve = Curve(x, 1000.0 * x, 10.0, 10_000.0)

@@ -1,7 +1,8 @@
-"""The axes of charts, painted by Qt alone.
+"""Charts that are painted by Qt alone: their axes, and the widget that all of them are.
 
-Charts that are drawn several times a second beside a running plan or training use them, and others to look alike; a
-plot of pyqtgraph takes 5 to 20 ms to be laid out anew, these less than one to be painted.
+Charts that are drawn several times a second beside a running plan or training are of this kind, and others to look
+alike: with 500 points a new curve costs half of what pyqtgraph takes to lay its plot out. Charts of a whole flight
+that are zoomed and clicked into, and drawn once, are pyqtgraph's: `profile_chart.py`, `clearance_chart.py`.
 """
 
 from __future__ import annotations
@@ -9,10 +10,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent
+from PySide6.QtWidgets import QWidget
 
-from groundstation.gui.widgets.theme import Colours
+from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.services.map.shapes import round_length
 
 PAD_PX = 6.0
@@ -98,6 +100,54 @@ def ticks(low: float, high: float, least: float) -> list[float]:
     step = round_length(max(2.5 * least * (high - low), 1e-12))
     first = math.ceil(low / step - 1e-9)
     return [step * number for number in range(first, math.floor(high / step + 1e-9) + 1)]
+
+
+class Chart(QWidget):
+    """Paints axes and what lies in them, in the colours of the theme; a chart says where its axes are and what.
+
+    Without anything to draw it says `empty`.
+    """
+
+    def __init__(self, title_x: str, title_y: str = "", least_height_px: int = 110) -> None:
+        super().__init__()
+        self.title_x, self.title_y, self.empty = title_x, title_y, ""
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        self.setMinimumHeight(least_height_px)
+        self.setAccessibleName(title_y)
+
+    def axes(self) -> Axes | None:
+        """Where things lie; None where there is nothing to draw."""
+        raise NotImplementedError
+
+    def paint_inside(self, painter: QPainter, axes: Axes, look: Colours) -> None:
+        """Paint what lies between the axes; nothing reaches beyond them."""
+        raise NotImplementedError
+
+    def paint_above(self, painter: QPainter, axes: Axes, look: Colours) -> None:
+        """Paint what stands above them, such as a legend."""
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Follow the theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self.update()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
+        """Axes, what lies in them, what stands above."""
+        painter, look, axes = QPainter(self), colours(), self.axes()
+        painter.fillRect(self.rect(), QColor(look.base))
+        if axes is None:
+            painter.setPen(QColor(look.muted))
+            flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+            painter.drawText(QRectF(self.rect()).adjusted(PAD_PX, PAD_PX, -PAD_PX, -PAD_PX), int(flags), self.empty)
+        else:
+            axes.paint(painter, look, self.title_x, self.title_y)
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.setClipRect(axes.box.adjusted(-1.0, -1.0, 1.0, 1.0))
+            self.paint_inside(painter, axes, look)
+            painter.setClipping(False)
+            self.paint_above(painter, axes, look)
+        painter.end()
 
 
 def _paint_upright(painter: QPainter, box: QRectF, title: str) -> None:

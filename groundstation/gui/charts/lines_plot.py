@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen
 
-from groundstation.gui.charts.axes import PAD_PX, Axes, box_of_axes
-from groundstation.gui.widgets.theme import SORTIES, Colours, colours
+from groundstation.gui.charts.axes import PAD_PX, Axes, Chart, box_of_axes
+from groundstation.gui.widgets.theme import SORTIES, Colours
 
 MARK_PX = 27.0
 
@@ -32,20 +31,17 @@ class Line:
     y: NDArray[np.float64]
 
 
-class LinesPlot(QWidget):
+class LinesPlot(Chart):
     """Draws what it gets, with titles of its axes; time begins at 0, the other axis where the lines do.
 
     Without lines it says `empty`.
     """
 
-    def __init__(self, title_x: str, title_y: str, empty: str = "", parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._title_x, self._title_y, self._empty = title_x, title_y, empty
+    def __init__(self, title_x: str, title_y: str, empty: str = "") -> None:
+        super().__init__(title_x, title_y, least_height_px=120)
+        self.empty = empty
         self._lines: tuple[Line, ...] = ()
         self._from_zero = False
-        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
-        self.setMinimumHeight(120)
-        self.setAccessibleName(title_y)
 
     def lines(self) -> tuple[Line, ...]:
         """What is drawn."""
@@ -53,18 +49,12 @@ class LinesPlot(QWidget):
 
     def set_title_x(self, title: str) -> None:
         """Another unit of time."""
-        self._title_x = title
+        self.title_x = title
 
     def set_lines(self, lines: tuple[Line, ...], *, from_zero: bool = False) -> None:
         """Draw other lines; `from_zero` where the lower end of the axis is to be 0."""
         self._lines, self._from_zero = lines, from_zero
         self.update()
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
-        """Follow the theme."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self.update()
 
     def range_y(self) -> tuple[float, float]:
         """Ends of the upright axis, a little beyond the lines."""
@@ -77,20 +67,18 @@ class LinesPlot(QWidget):
         room = max(0.08 * (high - low), 1e-3 * abs(high), 1e-9)
         return (low if self._from_zero else low - room), high + room
 
-    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
-        """Axes, lines, legend."""
-        painter, look = QPainter(self), colours()
-        painter.fillRect(self.rect(), QColor(look.base))
+    def axes(self) -> Axes | None:
+        """Room for the legend above them."""
         if not any(len(line.x) for line in self._lines):
-            painter.setPen(QColor(look.muted))
-            flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
-            painter.drawText(QRectF(self.rect()).adjusted(PAD_PX, PAD_PX, -PAD_PX, -PAD_PX), int(flags), self._empty)
-            painter.end()
-            return
-        axes = self._axes()
-        axes.paint(painter, look, self._title_x, self._title_y)
-        painter.setClipRect(axes.box.adjusted(-1.0, -1.0, 1.0, 1.0))
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            return None
+        rows = 0 if len(self._lines) < 2 else math.ceil(len(self._lines) / self._columns())
+        box = box_of_axes(QRectF(self.rect()), self.font(), rows * QFontMetricsF(self.font()).height())
+        end_x = max([1.0, *(1.02 * float(line.x[-1]) for line in self._lines if len(line.x))])
+        low, high = self.range_y()
+        return Axes(box, end_x, high, low)
+
+    def paint_inside(self, painter: QPainter, axes: Axes, look: Colours) -> None:
+        """Lines, and dots where they are few."""
         for number, line in enumerate(self._lines):
             corners = zip(line.x.tolist(), line.y.tolist(), strict=True)
             points = [axes.place(x, y) for x, y in corners if math.isfinite(y)]
@@ -99,16 +87,6 @@ class LinesPlot(QWidget):
             if len(points) <= MOST_DOTS:
                 painter.setPen(QPen(_pen(number, look).color(), DOT_PX, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
                 painter.drawPoints(points)
-        painter.setClipping(False)
-        self._paint_legend(painter, look, axes.box)
-        painter.end()
-
-    def _axes(self) -> Axes:
-        rows = 0 if len(self._lines) < 2 else math.ceil(len(self._lines) / self._columns())
-        box = box_of_axes(QRectF(self.rect()), self.font(), rows * QFontMetricsF(self.font()).height())
-        end_x = max([1.0, *(1.02 * float(line.x[-1]) for line in self._lines if len(line.x))])
-        low, high = self.range_y()
-        return Axes(box, end_x, high, low)
 
     def _columns(self) -> int:
         """Of the legend: two where all names have room."""
@@ -116,7 +94,9 @@ class LinesPlot(QWidget):
         widest = max((metrics.horizontalAdvance(line.name) for line in self._lines), default=0.0)
         return 2 if 2.0 * (widest + MARK_PX + 4.0) < 0.75 * self.width() else 1
 
-    def _paint_legend(self, painter: QPainter, look: Colours, box: QRectF) -> None:
+    def paint_above(self, painter: QPainter, axes: Axes, look: Colours) -> None:
+        """Legend."""
+        box = axes.box
         if len(self._lines) < 2:
             return
         height, columns = QFontMetricsF(self.font()).height(), self._columns()

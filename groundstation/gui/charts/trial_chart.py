@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QRectF
-from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from groundstation.gui.charts.axes import PAD_PX, Axes, box_of_axes
-from groundstation.gui.widgets.theme import colours
+from groundstation.gui.charts.axes import PAD_PX, Axes, Chart, box_of_axes
+from groundstation.gui.widgets.theme import Colours
 from groundstation.services.photos.tradeoff import Knob, Trial
 from groundstation.services.units import UnitSystem, sampling_unit
 
@@ -15,14 +15,14 @@ DOT_PX = 4.0
 ROOM_ABOVE = 1.15
 
 
-class TrialPlot(QWidget):
+class TrialPlot(Chart):
     """Draws trials: scales as a line of dots, numbers of photos as one of squares."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__("", least_height_px=150)
+        self.title_x = self.tr("time of the search in s")
         self._trials: tuple[Trial, ...] = ()
         self._units = UnitSystem.METRIC
-        self.setMinimumHeight(150)
         self.setAccessibleName(self.tr("Accuracy of corners against the time of the search"))
 
     def set_trials(self, trials: tuple[Trial, ...], units: UnitSystem) -> None:
@@ -30,28 +30,26 @@ class TrialPlot(QWidget):
         self._trials, self._units = tuple(trial for trial in trials if trial.sigma_m is not None), units
         self.update()
 
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
-        """Follow the theme."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self.update()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
-        """Axes, then both lines."""
-        painter, look, unit = QPainter(self), colours(), sampling_unit(self._units)
-        painter.fillRect(self.rect(), QColor(look.base))
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        line = QFontMetricsF(self.font()).height()
-        heights = [unit.shown(trial.sigma_m or 0.0) for trial in self._trials]
+    def axes(self) -> Axes:
+        """From 0, in both directions; the unit stands above them."""
+        unit = sampling_unit(self._units)
         end_x = ROOM_ABOVE * max((trial.seconds for trial in self._trials), default=1.0)
-        end_y = ROOM_ABOVE * max(heights, default=1.0)
-        axes = Axes(box_of_axes(QRectF(self.rect()), self.font(), line), end_x, end_y)
-        axes.paint(painter, look, self.tr("time of the search in s"))
-        painter.setPen(QColor(look.text))
-        painter.drawText(QRectF(PAD_PX, 0.0, self.width(), line), self.tr("\u00b1 {0} at a corner").format(unit.symbol))
+        end_y = ROOM_ABOVE * max((unit.shown(trial.sigma_m or 0.0) for trial in self._trials), default=1.0)
+        return Axes(box_of_axes(QRectF(self.rect()), self.font(), self._line_px()), end_x, end_y)
+
+    def paint_inside(self, painter: QPainter, axes: Axes, look: Colours) -> None:
+        """Both lines."""
         self._paint_line(painter, "scale", QColor(look.covered), axes)
         self._paint_line(painter, "photos", QColor(look.open), axes)
-        painter.end()
+
+    def paint_above(self, painter: QPainter, axes: Axes, look: Colours) -> None:
+        """Unit."""
+        painter.setPen(QColor(look.text))
+        title = self.tr("\u00b1 {0} at a corner").format(sampling_unit(self._units).symbol)
+        painter.drawText(QRectF(PAD_PX, 0.0, self.width(), self._line_px()), title)
+
+    def _line_px(self) -> float:
+        return QFontMetricsF(self.font()).height()
 
     def _paint_line(self, painter: QPainter, knob: Knob, colour: QColor, axes: Axes) -> None:
         unit = sampling_unit(self._units)
