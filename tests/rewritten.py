@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+# pytest has no public way to compile tests without running or importing them. Of its internals this takes the steps of
+# its import hook (`_read_pyc`, `_rewrite_test`, `_write_pyc`), so that it finds the files. Its version is pinned, and a
+# test of the house tells when another one no longer finds them.
 from _pytest.assertion import AssertionState, rewrite
 from _pytest.config import get_config
 

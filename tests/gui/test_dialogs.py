@@ -215,7 +215,7 @@ def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(applica
     turn_until(application, lambda: (tmp_path / "kiosk.kmz").read_bytes() != b"before")
     turn_until_idle(application, controller)
     assert read_missions(tmp_path / "kiosk.kmz")[0].n_photos == 10
-    assert not dialog.isVisible()
+    assert controller.window.findChildren(ExportDialog) == []
 
 
 def test_files_of_further_sorties_are_replaced_after_a_yes_only(application, controller, tmp_path):

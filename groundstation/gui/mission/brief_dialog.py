@@ -47,6 +47,8 @@ class BriefDialog(QDialog):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
+        self._is_closed = False
+        self.finished.connect(self._let_go)
         self.setWindowTitle(self.tr("Flight brief"))
         plan, site_model = checked.plan, checked.site_model
         self._workspace, self._folder, self._name = workspace, folder, site_model.site.name
@@ -123,10 +125,17 @@ class BriefDialog(QDialog):
         self._workspace.start(self.tr("Flight brief"), work, self._when_drawn)
 
     def _when_drawn(self, result: tuple[dict[str, str | QImage], str]) -> None:
+        if self._is_closed:
+            return
         self._pictures, objection = result
         if objection:
             self._workspace.say(Severity.WARNING, self._workspace.words(objection))
         self._lay_out()
+
+    def _let_go(self) -> None:
+        """Closed: nothing more is drawn, and nothing is left in the window."""
+        self._is_closed = True
+        self.deleteLater()
 
     def _lay_out(self) -> None:
         if not self._pictures:

@@ -172,6 +172,8 @@ class ExportDialog(QDialog):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
+        self._is_writing = False
+        self.finished.connect(self._let_go)
         self.setWindowTitle(self.tr("Export mission files"))
         self._workspace, self._plan, self._site_model, self._folder = workspace, plan, site_model, folder
         self._prepared: PreparedExport | None = None
@@ -244,6 +246,7 @@ class ExportDialog(QDialog):
         def work(_context: JobContext) -> tuple[Path, ...]:
             return write_export(prepared, path)
 
+        self._is_writing = True
         self._workspace.start(self.tr("Export"), work, self._when_written, self._when_failed)
 
     def _wishes_changed(self) -> None:
@@ -311,9 +314,22 @@ class ExportDialog(QDialog):
         return agrees(self, self.tr("Replace files?"), text, warns=True)
 
     def _when_written(self, paths: tuple[Path, ...]) -> None:
+        self._is_writing = False
         self._workspace.say(Severity.OK, self.tr("Written: {0}").format(", ".join(str(path) for path in paths)))
         self.written.emit(paths)
         self.accept()
 
     def _when_failed(self, error: BaseException) -> None:
-        self._say("error", self.tr("Not written: {0}").format(self._workspace.words(str(error))))
+        self._is_writing = False
+        text = self.tr("Not written: {0}").format(self._workspace.words(str(error)))
+        if self.isVisible():
+            self._say("error", text)
+        else:
+            self._workspace.say(Severity.WARNING, text)
+            self._let_go()
+
+    def _let_go(self) -> None:
+        """Closed: nothing more is shown, and nothing is left in the window once files that are being written are."""
+        self._asked += 1
+        if not self._is_writing:
+            self.deleteLater()

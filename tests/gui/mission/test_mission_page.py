@@ -243,6 +243,24 @@ def test_export_shows_findings_first_then_writes_and_remembers_the_folder(
     again.close()
 
 
+def test_closed_dialogs_leave_the_window_also_while_their_jobs_run(page, workspace, planned, idle):
+    from PySide6.QtCore import QCoreApplication, QEvent
+
+    from groundstation.gui.mission.brief_dialog import BriefDialog
+    from groundstation.gui.mission.export_dialog import ExportDialog
+
+    workspace.session.open(opened(planned), None)
+    idle(lambda: page.findings.verdict().startswith("Ready to fly"))
+    page.export().reject()
+    page.print_brief()
+    window = page._stage.window()
+    window.findChildren(BriefDialog)[-1].reject()
+    idle()
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
+    assert window.findChildren(ExportDialog) == []
+    assert window.findChildren(BriefDialog) == []
+
+
 def test_export_says_why_files_cannot_be_made_and_offers_no_writing(page, workspace, planned, idle):
     sortie = planned[1].sorties[0]
     lost = next(view for view in planned[1].viewpoints if view.id == sortie.viewpoint_ids[3])
