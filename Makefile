@@ -1,4 +1,4 @@
-# make setup | demo | test | test-all | check | docs | benchmark | tables | translations | pictures: each does all the set-up it needs.
+# make setup | demo | test | test-all | check | docs | coverage | benchmark | tables | translations | pictures: each does all the set-up it needs.
 PYTHON ?= python3
 VENV := .venv
 ifeq ($(OS),Windows_NT)
@@ -20,7 +20,7 @@ TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test test-all check check-style check-types check-imports check-docs docs ready-to-test compiled-tests alone benchmark tables format
+.PHONY: setup demo test test-all check check-style check-types check-imports check-docs docs coverage ready-to-test compiled-tests alone benchmark tables format
 .PHONY: translations pictures foreign clean
 
 setup: $(VENV)/.ready $(WARM)
@@ -69,6 +69,13 @@ check-docs: $(VENV)/.ready
 # Writes the pages that are generated from the code, and the site to docs/_build/html.
 docs: setup
 	$(PY) -m tests.docs
+
+# Lines that the fast tests run, of the product alone, as a table by room. It is no part of `make test`: measuring makes
+# plain Python slower. Compiled kernels and other processes are not measured: their lines count as not run.
+coverage: ready-to-test
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal -m 'not slow and not benchmark and not alone' \
+		--cov=planning --cov=missions --cov=reconstruction --cov=groundstation --cov-report=json:.coverage.json --cov-report=
+	$(PY) -m tests.coverage_table .coverage.json
 
 # Compiling the kernels of planning takes one core as long as all the rest takes another: it has to start first.
 ready-to-test: $(WARM) check compiled-tests
